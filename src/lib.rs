@@ -1,0 +1,6 @@
+//! Bramah: an acausal component-network simulator for electro-hydraulic machines.
+//!
+//! The stages stand here in the order in which a circuit passes through them.
+
+pub mod diag;
+pub mod syntax;

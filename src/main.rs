@@ -1,0 +1,3 @@
+//! The `bramah` command.
+
+fn main() {}
