@@ -3,4 +3,10 @@
 //! The stages stand here in the order in which a circuit passes through them.
 
 pub mod diag;
+pub mod world;
+
 pub mod syntax;
+
+pub mod expr;
+pub mod flat;
+pub mod structure;

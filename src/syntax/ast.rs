@@ -39,12 +39,19 @@ pub enum ClassKind {
     Class,
     Model,
     Block,
-    Record { operator: bool },
-    Connector { expandable: bool },
+    Record {
+        operator: bool,
+    },
+    Connector {
+        expandable: bool,
+    },
     Type,
     Package,
     /// `purity` is `Some(true)` for `pure`, `Some(false)` for `impure`.
-    Function { operator: bool, purity: Option<bool> },
+    Function {
+        operator: bool,
+        purity: Option<bool>,
+    },
     Operator,
 }
 

@@ -1,0 +1,1 @@
+//! Diagnostics as text: human, short and JSON.

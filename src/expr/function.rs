@@ -1,0 +1,99 @@
+//! User functions with algorithm bodies that cannot be inlined: a small scalar program over numbered slots.
+//!
+//! Arrays are laid out row-major in consecutive slots, with sizes known when the function is built (one [`Function`]
+//! per combination of argument sizes). Slots `0..inputs` are the scalarised inputs.
+
+use super::{Binary, FunctionId, Rel, Unary};
+
+/// A compiled function body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Function {
+    /// The full name, as the user wrote it.
+    pub name: String,
+    /// Number of scalar inputs: slots `0..inputs`.
+    pub inputs: u32,
+    /// Number of slots in all.
+    pub slots: u32,
+    /// The slot of each scalar output.
+    pub outputs: Vec<u32>,
+    /// The program.
+    pub body: Vec<Stmt>,
+}
+
+/// A statement.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Stmt {
+    /// `slot := value`
+    Assign(u32, Term),
+    /// `slots[base + offset] := value`; the offset is checked against `len`.
+    AssignAt {
+        /// First slot of the array.
+        base: u32,
+        /// Number of slots of the array.
+        len: u32,
+        /// Zero-based row-major offset.
+        offset: Term,
+        /// The value.
+        value: Term,
+    },
+    /// Outputs of another function into slots (`None` skips one).
+    Call {
+        /// The function.
+        function: FunctionId,
+        /// Its scalar arguments.
+        args: Vec<Term>,
+        /// Where its scalar outputs go, by output number.
+        outputs: Vec<Option<u32>>,
+    },
+    /// `if`
+    If(Vec<(Term, Vec<Stmt>)>, Vec<Stmt>),
+    /// `for slot in from:step:to`, bounds evaluated once.
+    For {
+        /// The loop variable.
+        slot: u32,
+        /// First value.
+        from: Term,
+        /// Step.
+        step: Term,
+        /// Last value.
+        to: Term,
+        /// The body.
+        body: Vec<Stmt>,
+    },
+    /// `while`
+    While(Term, Vec<Stmt>),
+    /// `break`
+    Break,
+    /// `return`
+    Return,
+    /// `assert(condition, message)`: a failed one makes the outputs NaN and stops the call.
+    Assert(Term, String),
+}
+
+/// A scalar expression over slots.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Term {
+    /// A number.
+    Num(f64),
+    /// A slot.
+    Slot(u32),
+    /// `slots[base + offset]`, offset checked against `len`.
+    At {
+        /// First slot.
+        base: u32,
+        /// Number of slots.
+        len: u32,
+        /// Zero-based row-major offset.
+        offset: Box<Term>,
+    },
+    /// A function of one argument.
+    Unary(Unary, Box<Term>),
+    /// A function of two arguments.
+    Binary(Binary, Box<Term>, Box<Term>),
+    /// A relation.
+    Rel(Rel, Box<Term>, Box<Term>),
+    /// Only the chosen branch is evaluated.
+    If(Box<Term>, Box<Term>, Box<Term>),
+    /// One scalar output of another function.
+    Call(FunctionId, u32, Vec<Term>),
+}

@@ -1,0 +1,260 @@
+//! The flat model: scalar variables and equations, each with its origin.
+
+use crate::diag::Span;
+use crate::expr::{ExprId, Exprs, VarId};
+
+/// The flattened circuit.
+#[derive(Clone, Debug, Default)]
+pub struct FlatModel {
+    /// The class that was instantiated, by its full name.
+    pub class: String,
+    /// All expressions.
+    pub exprs: Exprs,
+    /// All scalar variables in declaration order; `VarId` indexes here.
+    pub variables: Vec<Variable>,
+    /// Equations of the `equation` sections, bindings of variables, connection equations.
+    pub equations: Vec<Equation>,
+    /// Equations of the `initial equation` sections. `fixed` starts are not listed here: see [`Variable::fixed`].
+    pub initial_equations: Vec<Equation>,
+    /// `when` clauses (also those of algorithms, already made single assignments).
+    pub whens: Vec<When>,
+    /// `assert`s outside `when`.
+    pub asserts: Vec<Assert>,
+    /// Component instances, parents before children; entry 0 is the model itself with an empty name.
+    pub instances: Vec<InstanceInfo>,
+    /// Enumeration types: full name and literals.
+    pub enumerations: Vec<(String, Vec<String>)>,
+    /// The model's `experiment` annotation.
+    pub experiment: Experiment,
+}
+
+/// `annotation(experiment(...))`; `None` where nothing is said.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[allow(missing_docs, reason = "the names of the annotation, in SI units")]
+pub struct Experiment {
+    pub start_time: Option<f64>,
+    pub stop_time: Option<f64>,
+    pub interval: Option<f64>,
+    pub tolerance: Option<f64>,
+}
+
+/// A component instance, for messages and for grouping.
+#[derive(Clone, Debug, PartialEq)]
+pub struct InstanceInfo {
+    /// Full dotted name with indices.
+    pub name: String,
+    /// Full name of its class.
+    pub class: String,
+    /// The instance it belongs to (itself for entry 0).
+    pub parent: u32,
+    /// Where it is declared.
+    pub span: Span,
+}
+
+/// Where a variable or equation comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Origin {
+    /// The place in the text.
+    pub span: Span,
+    /// The instance that holds it: index into `FlatModel::instances`.
+    pub instance: u32,
+    /// Why it exists.
+    pub kind: OriginKind,
+}
+
+/// Why a variable or equation exists.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OriginKind {
+    /// Written by the user.
+    Declared,
+    /// The binding of a declaration or a modifier.
+    Binding,
+    /// Equal potentials of a connection set.
+    ConnectPotential,
+    /// The sum of flows of a connection set.
+    ConnectFlow,
+    /// The zero flow of a port that nothing is connected to from outside.
+    OpenPort,
+    /// The time derivative of another equation, made by index reduction.
+    Differentiated,
+    /// A relation that makes events.
+    Relation,
+    /// The condition of a `when`.
+    WhenCondition,
+    /// A `fixed` start value, or one chosen by the compiler.
+    Start,
+    /// Made by the compiler for another reason.
+    Made,
+}
+
+/// The type of a scalar variable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Type {
+    /// Real
+    Real,
+    /// Integer
+    Integer,
+    /// Boolean
+    Boolean,
+    /// An enumeration: index into `FlatModel::enumerations`. Values count from 1.
+    Enumeration(u32),
+}
+
+/// When a variable may change.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Variability {
+    /// Never; its value was used to build the model (constants, structural parameters).
+    Constant,
+    /// Not during a run; may be set before one.
+    Parameter,
+    /// At events only.
+    Discrete,
+    /// At any time.
+    Continuous,
+}
+
+/// `stateSelect`
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Default)]
+#[allow(missing_docs, reason = "the Modelica literals")]
+pub enum StateSelect {
+    Never,
+    Avoid,
+    #[default]
+    Default,
+    Prefer,
+    Always,
+}
+
+/// A scalar variable.
+#[derive(Clone, Debug)]
+pub struct Variable {
+    /// Full dotted name with indices, as in `pump.b.p` or `v[3].p`.
+    pub name: String,
+    /// Its type.
+    pub ty: Type,
+    /// When it may change.
+    pub variability: Variability,
+    /// A top-level `input`: its value comes from outside. Its binding, if any, is the default.
+    pub input: bool,
+    /// A top-level `output`.
+    pub output: bool,
+    /// Declared `flow`.
+    pub flow: bool,
+    /// `protected`, or annotated `HideResult`: left out of results.
+    pub hidden: bool,
+    /// Binding of a parameter or constant, or default of an input. Bindings of variables are equations.
+    pub binding: Option<ExprId>,
+    /// `start`: a parameter expression. `None` when not given (0 or `false`, first literal).
+    pub start: Option<ExprId>,
+    /// `fixed`: the start value holds at the beginning of the run (for parameters: false means found at initialization).
+    pub fixed: bool,
+    /// `min`
+    pub min: Option<ExprId>,
+    /// `max`
+    pub max: Option<ExprId>,
+    /// `nominal`: a parameter expression.
+    pub nominal: Option<ExprId>,
+    /// `unit`, as written.
+    pub unit: Option<Box<str>>,
+    /// `displayUnit`, as written.
+    pub display_unit: Option<Box<str>>,
+    /// The description string.
+    pub description: Option<Box<str>>,
+    /// `stateSelect`
+    pub state_select: StateSelect,
+    /// Where it was declared.
+    pub origin: Origin,
+}
+
+/// `lhs = rhs`.
+///
+/// If the left side is a lone discrete-valued variable (Boolean, Integer, enumeration, or `discrete Real`), or both
+/// sides are discrete, this is a discrete equation, active at events; else a continuous one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Equation {
+    /// Left side.
+    pub lhs: ExprId,
+    /// Right side.
+    pub rhs: ExprId,
+    /// Where it comes from.
+    pub origin: Origin,
+}
+
+/// `when c1 then ... elsewhen c2 then ... end when`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct When {
+    /// The branches in order of priority.
+    pub branches: Vec<WhenBranch>,
+    /// Where it comes from.
+    pub origin: Origin,
+}
+
+/// One branch of a `when`. `when {c1, c2}` has several conditions: it fires when any of them becomes true.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WhenBranch {
+    /// Conditions; `Node::Initial` stands for `initial()`.
+    pub conditions: Vec<ExprId>,
+    /// What is done.
+    pub actions: Vec<WhenAction>,
+}
+
+/// What a `when` does.
+#[derive(Clone, Debug, PartialEq)]
+pub enum WhenAction {
+    /// `v = value`
+    Assign {
+        /// A discrete-time variable.
+        variable: VarId,
+        /// Its new value.
+        value: ExprId,
+        /// Where it stands.
+        origin: Origin,
+    },
+    /// `reinit(x, value)`; `condition` is 1 unless it stood in an `if`.
+    Reinit {
+        /// The variable whose derivative appears.
+        variable: VarId,
+        /// Its new value.
+        value: ExprId,
+        /// Where it stands.
+        origin: Origin,
+    },
+    /// `assert(condition, message, level)`
+    Assert(Assert),
+    /// `terminate(message)`
+    Terminate {
+        /// The message.
+        message: Message,
+        /// Where it stands.
+        origin: Origin,
+    },
+}
+
+/// `assert(condition, message, level)`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Assert {
+    /// Must hold.
+    pub condition: ExprId,
+    /// What to say otherwise.
+    pub message: Message,
+    /// True for `AssertionLevel.warning`.
+    pub warning: bool,
+    /// Where it stands.
+    pub origin: Origin,
+}
+
+/// A text with values in it, `"p = " + String(p)`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Message {
+    /// The pieces in order.
+    pub parts: Vec<MessagePart>,
+}
+
+/// A piece of a [`Message`].
+#[derive(Clone, Debug, PartialEq)]
+pub enum MessagePart {
+    /// Words.
+    Text(String),
+    /// A value and how it is printed.
+    Value(ExprId, Type),
+}

@@ -1,0 +1,54 @@
+//! The only door to files: stages below `cli` see the outside through a [`World`].
+
+use std::path::{Path, PathBuf};
+
+/// Where texts come from. The command reads the disk; tests and the library use [`MemoryWorld`]; classes that ship
+/// with bramah are packed into the binary and need no world.
+pub trait World: Sync {
+    /// The text of a file.
+    ///
+    /// # Errors
+    /// A sentence saying why it cannot be read (missing, not UTF-8, no permission).
+    fn read(&self, path: &Path) -> Result<String, String>;
+
+    /// Names of the entries of a folder with whether each is a folder, sorted; `None` if it is no folder.
+    fn list(&self, path: &Path) -> Option<Vec<(String, bool)>>;
+}
+
+/// Files held in memory.
+#[derive(Clone, Debug, Default)]
+pub struct MemoryWorld {
+    files: std::collections::BTreeMap<PathBuf, String>,
+}
+
+impl MemoryWorld {
+    /// A world with one file.
+    pub fn single(path: impl Into<PathBuf>, text: impl Into<String>) -> Self {
+        let mut world = MemoryWorld::default();
+        world.add(path, text);
+        world
+    }
+
+    /// Adds a file.
+    pub fn add(&mut self, path: impl Into<PathBuf>, text: impl Into<String>) {
+        self.files.insert(path.into(), text.into());
+    }
+}
+
+impl World for MemoryWorld {
+    fn read(&self, path: &Path) -> Result<String, String> {
+        self.files.get(path).cloned().ok_or_else(|| format!("there is no file `{}`", path.display()))
+    }
+
+    fn list(&self, path: &Path) -> Option<Vec<(String, bool)>> {
+        let mut entries = std::collections::BTreeMap::new();
+        for file in self.files.keys() {
+            let Ok(rest) = file.strip_prefix(path) else { continue };
+            let mut parts = rest.components();
+            let Some(first) = parts.next() else { continue };
+            let folder = parts.next().is_some();
+            entries.insert(first.as_os_str().to_string_lossy().into_owned(), folder);
+        }
+        (!entries.is_empty()).then(|| entries.into_iter().collect())
+    }
+}
