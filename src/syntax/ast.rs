@@ -151,6 +151,8 @@ pub struct LongBody {
     pub initial_algorithms: Vec<Vec<Statement>>,
     /// `external "C" ...` of a function.
     pub external: Option<Span>,
+    /// What stands between `external` and its semicolon, as written.
+    pub external_text: Option<Box<str>>,
 }
 
 /// An element of a class with its visibility.
@@ -474,6 +476,8 @@ pub enum ExprKind {
     Matrix(Vec<Vec<Expr>>),
     /// `(a, , c)`: a list of outputs; a single bracketed expression is not a tuple.
     Tuple(Vec<Option<Expr>>),
+    /// `(a)[i]`: an index on a bracketed expression (Modelica 3.6).
+    Index(Box<Expr>, Vec<Subscript>),
     /// `end` inside a subscript.
     End,
     /// Stands where the text could not be read.
