@@ -10,3 +10,5 @@ pub mod syntax;
 pub mod expr;
 pub mod flat;
 pub mod structure;
+
+pub mod results;

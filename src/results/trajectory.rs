@@ -1,0 +1,150 @@
+//! The one type for recorded signals, from a run or from a bench.
+
+/// The type of a signal's values. All are stored as `f64`: Booleans as 0 and 1, enumerations counted from 1.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Kind {
+    /// A continuous number.
+    #[default]
+    Real,
+    /// A whole number.
+    Integer,
+    /// `false` and `true`.
+    Boolean,
+    /// One of these literals.
+    Enumeration(Vec<String>),
+}
+
+impl Kind {
+    /// True for signals that stay constant between events: drawn as steps, never interpolated.
+    pub fn is_discrete(&self) -> bool {
+        *self != Kind::Real
+    }
+}
+
+/// What is known about one column of a [`Trajectory`].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Signal {
+    /// Full dotted name, as in `pump.b.p` or `v[3].p`.
+    pub name: String,
+    /// The unit of the stored values; empty where nothing is known.
+    pub unit: String,
+    /// The unit for people, used by printing and plots; empty where it is `unit`.
+    pub display_unit: String,
+    /// The description string, or empty.
+    pub description: String,
+    /// The type of the values.
+    pub kind: Kind,
+}
+
+impl Signal {
+    /// A Real signal without unit.
+    pub fn new(name: impl Into<String>) -> Self {
+        Signal { name: name.into(), ..Signal::default() }
+    }
+
+    /// The same with a unit.
+    #[must_use]
+    pub fn unit(mut self, unit: impl Into<String>) -> Self {
+        self.unit = unit.into();
+        self
+    }
+}
+
+/// Signals over time. Time never falls; two or more rows of equal time are an event (before and after it).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Trajectory {
+    /// What the columns are; time itself is not among them.
+    pub signals: Vec<Signal>,
+    /// The times of the rows in seconds.
+    pub times: Vec<f64>,
+    /// One column a signal, each as long as `times`. An empty cell of a recording is NaN.
+    pub columns: Vec<Vec<f64>>,
+}
+
+impl Trajectory {
+    /// An empty trajectory of these signals.
+    pub fn new(signals: Vec<Signal>) -> Self {
+        let columns = vec![Vec::new(); signals.len()];
+        Trajectory { signals, times: Vec::new(), columns }
+    }
+
+    /// Appends a row; `values` are in the order of `signals`.
+    pub fn push(&mut self, time: f64, values: &[f64]) {
+        debug_assert_eq!(values.len(), self.columns.len(), "one value a signal");
+        self.times.push(time);
+        for (column, &value) in self.columns.iter_mut().zip(values) {
+            column.push(value);
+        }
+    }
+
+    /// How many rows there are.
+    pub fn len(&self) -> usize {
+        self.times.len()
+    }
+
+    /// True when there is no row.
+    pub fn is_empty(&self) -> bool {
+        self.times.is_empty()
+    }
+
+    /// The index of the signal of this name.
+    pub fn index(&self, name: &str) -> Option<usize> {
+        self.signals.iter().position(|s| s.name == name)
+    }
+
+    /// The values of the signal of this name.
+    pub fn column(&self, name: &str) -> Option<&[f64]> {
+        self.index(name).map(|i| self.columns[i].as_slice())
+    }
+
+    /// The value of column `index` at a time: linear between rows for Real signals, held for others; at an event the
+    /// value after it. `None` outside the recorded interval.
+    pub fn value(&self, index: usize, time: f64) -> Option<f64> {
+        let after = self.times.partition_point(|&t| t <= time);
+        let before = after.checked_sub(1)?;
+        let column = self.columns.get(index)?;
+        let (t0, v0) = (self.times[before], column[before]);
+        if t0 == time {
+            return Some(v0);
+        }
+        let (&t1, &v1) = (self.times.get(after)?, column.get(after)?);
+        if self.signals[index].kind.is_discrete() {
+            return Some(v0);
+        }
+        Some(v0 + (v1 - v0) * ((time - t0) / (t1 - t0)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn step() -> Trajectory {
+        let mut t =
+            Trajectory::new(vec![Signal::new("x").unit("m"), Signal { kind: Kind::Boolean, ..Signal::new("on") }]);
+        t.push(0.0, &[0.0, 0.0]);
+        t.push(1.0, &[2.0, 0.0]);
+        t.push(1.0, &[5.0, 1.0]);
+        t.push(2.0, &[7.0, 1.0]);
+        t
+    }
+
+    #[test]
+    fn values_between_rows_and_at_events() {
+        let t = step();
+        assert_eq!(t.value(0, 0.5), Some(1.0));
+        assert_eq!(t.value(0, 1.0), Some(5.0));
+        assert_eq!(t.value(0, 1.5), Some(6.0));
+        assert_eq!(t.value(1, 0.999), Some(0.0));
+        assert_eq!(t.value(1, 2.0), Some(1.0));
+        assert_eq!(t.value(0, -0.1), None);
+        assert_eq!(t.value(0, 2.1), None);
+    }
+
+    #[test]
+    fn by_name() {
+        let t = step();
+        assert_eq!(t.column("on"), Some([0.0, 0.0, 1.0, 1.0].as_slice()));
+        assert_eq!(t.index("y"), None);
+    }
+}
