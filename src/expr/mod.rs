@@ -4,7 +4,10 @@
 //! sharing is free and comparison is one integer. Every value is an `f64`: Booleans are 0 and 1, enumeration values
 //! count from 1, Integers are exact up to 2^53.
 
+pub mod build;
 pub mod function;
+pub mod math;
+pub mod visit;
 
 use rustc_hash::FxHashMap;
 
