@@ -11,4 +11,6 @@ pub mod expr;
 pub mod flat;
 pub mod structure;
 
+pub mod lower;
+
 pub mod results;
