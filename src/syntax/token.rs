@@ -1,0 +1,121 @@
+//! The words and signs of Modelica.
+
+macro_rules! tokens {
+    (keywords { $($keyword:ident $word:literal)* } signs { $($sign:ident $text:literal)* }) => {
+        /// What a token is.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[repr(u8)]
+        pub enum TokenKind {
+            /// A name, plain or in single quotes.
+            Ident,
+            /// A number without point and exponent.
+            Integer,
+            /// A number with point or exponent.
+            Real,
+            /// A string, quotation marks included.
+            String,
+            /// A character that Modelica does not use.
+            Unknown,
+            /// The end of the text.
+            Eof,
+            $(#[doc = concat!("`", $word, "`")] $keyword,)*
+            $(#[doc = concat!("`", $text, "`")] $sign,)*
+        }
+
+        /// The keywords in alphabetical order.
+        const KEYWORDS: &[(&str, TokenKind)] = &[$(($word, TokenKind::$keyword),)*];
+
+        impl TokenKind {
+            /// How it is written, if always the same way.
+            pub fn spelling(self) -> Option<&'static str> {
+                match self {
+                    $(TokenKind::$keyword => Some($word),)*
+                    $(TokenKind::$sign => Some($text),)*
+                    _ => None,
+                }
+            }
+
+            /// True for reserved words.
+            pub fn is_keyword(self) -> bool {
+                matches!(self, $(TokenKind::$keyword)|*)
+            }
+        }
+    };
+}
+
+tokens! {
+    keywords {
+        Algorithm "algorithm" And "and" Annotation "annotation" Block "block" Break "break" Class "class"
+        Connect "connect" Connector "connector" Constant "constant" Constrainedby "constrainedby" Der "der"
+        Discrete "discrete" Each "each" Else "else" Elseif "elseif" Elsewhen "elsewhen" Encapsulated "encapsulated"
+        End "end" Enumeration "enumeration" Equation "equation" Expandable "expandable" Extends "extends"
+        External "external" False "false" Final "final" Flow "flow" For "for" Function "function" If "if"
+        Import "import" Impure "impure" In "in" Initial "initial" Inner "inner" Input "input" Loop "loop"
+        Model "model" Not "not" Operator "operator" Or "or" Outer "outer" Output "output" Package "package"
+        Parameter "parameter" Partial "partial" Protected "protected" Public "public" Pure "pure" Record "record"
+        Redeclare "redeclare" Replaceable "replaceable" Return "return" Stream "stream" Then "then" True "true"
+        Type "type" When "when" While "while" Within "within"
+    }
+    signs {
+        LeftParen "(" RightParen ")" LeftBracket "[" RightBracket "]" LeftBrace "{" RightBrace "}"
+        Semicolon ";" Comma "," Dot "." Colon ":" Assign ":=" Equal "="
+        EqualEqual "==" NotEqual "<>" Less "<" LessEqual "<=" Greater ">" GreaterEqual ">="
+        Plus "+" Minus "-" Star "*" Slash "/" Caret "^"
+        DotPlus ".+" DotMinus ".-" DotStar ".*" DotSlash "./" DotCaret ".^"
+        AndAnd "&&" OrOr "||" Bang "!" BangEqual "!=" StarStar "**"
+    }
+}
+
+/// For each letter the index of its first keyword, and one past the last in the end.
+const FIRST: [u8; 27] = {
+    let mut first = [0; 27];
+    let mut letter = 0;
+    let mut i = 0;
+    while letter < 27 {
+        while i < KEYWORDS.len() && KEYWORDS[i].0.as_bytes()[0] - b'a' < letter {
+            i += 1;
+        }
+        first[letter as usize] = i as u8;
+        letter += 1;
+    }
+    first
+};
+
+/// The keyword that a word is, or `Ident`.
+pub fn word_kind(word: &str) -> TokenKind {
+    let letter = match word.as_bytes().first() {
+        Some(b @ b'a'..=b'z') => usize::from(b - b'a'),
+        _ => return TokenKind::Ident,
+    };
+    let candidates = &KEYWORDS[usize::from(FIRST[letter])..usize::from(FIRST[letter + 1])];
+    candidates.iter().find(|(keyword, _)| *keyword == word).map_or(TokenKind::Ident, |&(_, kind)| kind)
+}
+
+/// A token with the bytes it covers.
+#[derive(Clone, Copy, Debug)]
+pub struct Token {
+    /// What it is.
+    pub kind: TokenKind,
+    /// First byte.
+    pub start: u32,
+    /// One past the last byte.
+    pub end: u32,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_keyword_is_found() {
+        assert!(KEYWORDS.is_sorted_by_key(|(word, _)| *word));
+        for &(word, kind) in KEYWORDS {
+            assert_eq!(word_kind(word), kind);
+            assert_eq!(kind.spelling(), Some(word));
+            assert!(kind.is_keyword());
+        }
+        for word in ["", "x", "ende", "en", "Model", "zero", "_if", "ä"] {
+            assert_eq!(word_kind(word), TokenKind::Ident);
+        }
+    }
+}
