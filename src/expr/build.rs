@@ -3,7 +3,7 @@
 //! What they may do, and nothing else: fold numbers when the result is finite (`1/0` stays as written, so that the run
 //! can name it), drop neutral elements, cancel `x - x` and double negations, move signs outwards, choose the branch of
 //! an `if` with a known condition. A product with the number 0 and a quotient of the number 0 are 0 whatever the other
-//! side is at run time: a structural zero. Nothing is reassociated, so rounding is as written; of two commutative
+//! side is at run time: a structural zero. The sign of a zero is not kept. Nothing is reassociated, so rounding is as written; of two commutative
 //! spellings the one that came first into the pool is shared.
 
 use super::math;

@@ -4,9 +4,15 @@
 //! sharing is free and comparison is one integer. Every value is an `f64`: Booleans are 0 and 1, enumeration values
 //! count from 1, Integers are exact up to 2^53.
 
+pub mod affine;
 pub mod build;
+pub mod differentiate;
+pub mod eval;
 pub mod function;
+pub mod interpret;
 pub mod math;
+mod rules;
+mod tangent;
 pub mod visit;
 
 use rustc_hash::FxHashMap;
@@ -143,6 +149,10 @@ pub struct Exprs {
     index: FxHashMap<Node, ExprId>,
     args: Vec<ExprId>,
     arg_index: FxHashMap<Box<[ExprId]>, Args>,
+    /// The function that takes values and tangents and returns tangents, by original.
+    tangents: FxHashMap<FunctionId, FunctionId>,
+    /// The derivative of all outputs by one input, by original and input.
+    partials: FxHashMap<(FunctionId, u32), FunctionId>,
     /// User functions that stay calls.
     pub functions: Vec<function::Function>,
 }
@@ -154,6 +164,8 @@ impl Default for Exprs {
             index: FxHashMap::default(),
             args: Vec::new(),
             arg_index: FxHashMap::default(),
+            tangents: FxHashMap::default(),
+            partials: FxHashMap::default(),
             functions: Vec::new(),
         };
         pool.num(0.0);

@@ -1,0 +1,142 @@
+//! Exact derivatives: partial ones by a leaf, and the total one by time.
+
+use super::rules::{self, Algebra};
+use super::{Args, Binary, ExprId, Exprs, FunctionId, Node, Rel, Unary, VarId};
+use rustc_hash::FxHashMap;
+
+/// A leaf whose time derivative depends on the model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Leaf {
+    /// The value of a variable.
+    Var(VarId),
+    /// The time derivative of a variable.
+    Der(VarId),
+}
+
+/// Partial derivatives by one leaf; every other leaf counts as constant. One value serves any number of expressions of
+/// one pool and remembers what it has done, so that shared parts are differentiated once.
+#[derive(Clone, Debug)]
+pub struct Differentiator {
+    memo: FxHashMap<ExprId, ExprId>,
+}
+
+impl Differentiator {
+    /// Derivatives by `leaf`: `pool.var(v)`, `pool.der(v)`, `pool.pre(v)`, or any other node taken as a unit.
+    pub fn new(leaf: ExprId) -> Self {
+        Differentiator { memo: std::iter::once((leaf, Exprs::ONE)).collect() }
+    }
+
+    /// The derivative of `e`.
+    pub fn derive(&mut self, pool: &mut Exprs, e: ExprId) -> ExprId {
+        for node in pool.reachable(&[e], |node| !self.memo.contains_key(&node)) {
+            let derivative = node_derivative(pool, node, &self.memo);
+            self.memo.insert(node, derivative);
+        }
+        self.memo[&e]
+    }
+}
+
+/// Total derivatives by time. One value serves any number of expressions of one pool, as [`Differentiator`] does.
+#[derive(Clone, Debug, Default)]
+pub struct TimeDerivative {
+    memo: FxHashMap<ExprId, ExprId>,
+}
+
+impl TimeDerivative {
+    /// The time derivative of `e`. `leaf` says what the derivative of a variable or of a derivative is: another
+    /// expression, 0 for what is constant between events, or `None` for what cannot be differentiated, which is then
+    /// the error.
+    pub fn derive(
+        &mut self,
+        pool: &mut Exprs,
+        e: ExprId,
+        leaf: &mut impl FnMut(&mut Exprs, Leaf) -> Option<ExprId>,
+    ) -> Result<ExprId, Leaf> {
+        for node in pool.reachable(&[e], |node| !self.memo.contains_key(&node)) {
+            let derivative = match pool.node(node) {
+                Node::Time => Exprs::ONE,
+                Node::Var(v) => leaf(pool, Leaf::Var(v)).ok_or(Leaf::Var(v))?,
+                Node::Der(v) => leaf(pool, Leaf::Der(v)).ok_or(Leaf::Der(v))?,
+                _ => node_derivative(pool, node, &self.memo),
+            };
+            self.memo.insert(node, derivative);
+        }
+        Ok(self.memo[&e])
+    }
+}
+
+impl Exprs {
+    /// The derivative of `e` by `leaf`, as [`Differentiator`] computes it.
+    pub fn differentiate(&mut self, e: ExprId, leaf: ExprId) -> ExprId {
+        Differentiator::new(leaf).derive(self, e)
+    }
+
+    /// The derivative of `e` by time, as [`TimeDerivative`] computes it.
+    pub fn time_derivative(
+        &mut self,
+        e: ExprId,
+        leaf: &mut impl FnMut(&mut Exprs, Leaf) -> Option<ExprId>,
+    ) -> Result<ExprId, Leaf> {
+        TimeDerivative::default().derive(self, e, leaf)
+    }
+}
+
+/// The derivative of a node whose arguments' derivatives are known. Leaves are constant.
+fn node_derivative(pool: &mut Exprs, e: ExprId, memo: &FxHashMap<ExprId, ExprId>) -> ExprId {
+    let of = |a: ExprId| Some(memo[&a]).filter(|&d| d != Exprs::ZERO);
+    let derivative = match pool.node(e) {
+        Node::Unary(op, a) => of(a).and_then(|da| rules::unary(pool, op, &a, &e, da)),
+        Node::Binary(op, a, b) => rules::binary(pool, op, (&a, &b, &e), of(a), of(b)),
+        Node::If(c, a, b) => rules::branch(pool, c, of(a), of(b)),
+        Node::Homotopy(a, b) => Some(pool.homotopy(memo[&a], memo[&b])),
+        Node::Call(function, output, args) => Some(call_derivative(pool, function, output, args, memo)),
+        _ => None,
+    };
+    derivative.unwrap_or(Exprs::ZERO)
+}
+
+/// The sum over the arguments of the function's derivative times the argument's.
+fn call_derivative(
+    pool: &mut Exprs,
+    function: FunctionId,
+    output: u32,
+    args: Args,
+    memo: &FxHashMap<ExprId, ExprId>,
+) -> ExprId {
+    let args = pool.args(args).to_vec();
+    let mut sum = Exprs::ZERO;
+    for (input, arg) in (0..).zip(&args) {
+        let inner = memo[arg];
+        if inner != Exprs::ZERO {
+            let partial = pool.derivative_function(function, input);
+            let outer = pool.call(partial, output, &args);
+            let term = pool.mul(outer, inner);
+            sum = pool.add(sum, term);
+        }
+    }
+    sum
+}
+
+impl Algebra for Exprs {
+    type E = ExprId;
+
+    fn num(&mut self, value: f64) -> ExprId {
+        Exprs::num(self, value)
+    }
+    fn unary(&mut self, op: Unary, a: ExprId) -> ExprId {
+        Exprs::unary(self, op, a)
+    }
+    fn binary(&mut self, op: Binary, a: ExprId, b: ExprId) -> ExprId {
+        Exprs::binary(self, op, a, b)
+    }
+    fn rel(&mut self, rel: Rel, a: ExprId, b: ExprId) -> ExprId {
+        Exprs::rel(self, rel, a, b)
+    }
+    fn if_(&mut self, c: ExprId, a: ExprId, b: ExprId) -> ExprId {
+        Exprs::if_(self, c, a, b)
+    }
+}
+
+#[cfg(test)]
+#[path = "differentiate_tests.rs"]
+mod tests;
