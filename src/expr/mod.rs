@@ -11,6 +11,7 @@ pub mod eval;
 pub mod function;
 pub mod interpret;
 pub mod math;
+pub mod print;
 mod rules;
 mod tangent;
 pub mod visit;
