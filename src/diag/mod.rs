@@ -4,9 +4,11 @@
 //! Rendering (human, short, JSON) lives in [`render`]; the list of codes in [`codes`].
 
 pub mod codes;
+mod nearest;
 pub mod render;
 
 pub use codes::{Code, Severity};
+pub use nearest::nearest;
 
 /// Index of a text in [`Sources`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -1,5 +1,16 @@
 //! Trajectories: what a run or a bench has recorded; written, read and compared.
 
+mod cells;
+pub mod compare;
+mod csv;
+mod delay;
+pub mod mat;
+pub mod number;
+pub mod recording;
 pub mod trajectory;
+mod tube;
 
+pub use compare::{Comparison, Tolerance, compare};
+pub use csv::{CsvWriter, csv_bytes_per_row};
+pub use recording::{Strictness, read_csv};
 pub use trajectory::{Kind, Signal, Trajectory};

@@ -1,0 +1,45 @@
+//! Did you mean: the known name nearest to a mis-spelled one.
+
+/// Longer names are not compared; the distance takes time with the product of the lengths.
+const LONGEST: usize = 200;
+
+/// The candidate that `name` was probably meant to be: equal but for case, or a few letters away.
+///
+/// Of several equally near ones the first is taken. `None` where nothing is near.
+pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let length = name.chars().count();
+    if name.is_empty() || length > LONGEST {
+        return None;
+    }
+    let lower = name.to_lowercase();
+    let mut best: Option<(usize, &str)> = None;
+    for candidate in candidates {
+        if candidate.len() > LONGEST || candidate == name {
+            continue;
+        }
+        let distance = strsim::damerau_levenshtein(&lower, &candidate.to_lowercase());
+        let allowed = (length.max(candidate.chars().count()) / 3).max(1);
+        let short_swap = length <= 2 && distance > 0;
+        if distance <= allowed && !short_swap && best.is_none_or(|(d, _)| distance < d) {
+            best = Some((distance, candidate));
+        }
+    }
+    best.map(|(_, candidate)| candidate)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::nearest;
+
+    #[test]
+    fn finds_spelling_mistakes_and_nothing_else() {
+        let known = ["displacement", "speed", "p_open", "V0"];
+        assert_eq!(nearest("displacment", known), Some("displacement"));
+        assert_eq!(nearest("P_Open", known), Some("p_open"));
+        assert_eq!(nearest("v0", known), Some("V0"));
+        assert_eq!(nearest("spede", known), Some("speed"));
+        assert_eq!(nearest("pressure", known), None);
+        assert_eq!(nearest("q", ["p", "x"]), None);
+        assert_eq!(nearest(&"x".repeat(100_000), known), None);
+    }
+}

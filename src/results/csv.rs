@@ -1,0 +1,131 @@
+//! Trajectories written as CSV, row by row.
+
+use std::io::{self, Write};
+
+use super::number;
+use super::trajectory::{Kind, Signal};
+
+/// Writes a head line and then one line a row.
+///
+/// The first column is `time`. Booleans are `false` and `true`, enumerations their literals, Integers have no decimals,
+/// and Reals the fewest digits that read back the same.
+#[derive(Debug)]
+pub struct CsvWriter<W: Write> {
+    out: W,
+    kinds: Vec<Kind>,
+    line: String,
+    bytes: u64,
+}
+
+impl<W: Write> CsvWriter<W> {
+    /// Writes the head line.
+    ///
+    /// # Errors
+    /// What `out` reports.
+    pub fn new(out: W, signals: &[Signal]) -> io::Result<Self> {
+        let mut line = String::from("time");
+        for signal in signals {
+            line.push(',');
+            push_name(&mut line, &signal.name);
+        }
+        line.push('\n');
+        let kinds = signals.iter().map(|s| s.kind.clone()).collect();
+        let mut writer = CsvWriter { out, kinds, line, bytes: 0 };
+        writer.flush_line()?;
+        Ok(writer)
+    }
+
+    /// Writes one row; `values` are in the order of the signals.
+    ///
+    /// # Errors
+    /// What `out` reports.
+    pub fn row(&mut self, time: f64, values: impl IntoIterator<Item = f64>) -> io::Result<()> {
+        self.line.clear();
+        number::push(&mut self.line, time);
+        for (kind, value) in self.kinds.iter().zip(values) {
+            self.line.push(',');
+            push_value(&mut self.line, kind, value);
+        }
+        self.line.push('\n');
+        self.flush_line()
+    }
+
+    /// Hands everything to the system and returns how many bytes were written.
+    ///
+    /// # Errors
+    /// What `out` reports.
+    pub fn finish(mut self) -> io::Result<u64> {
+        self.out.flush()?;
+        Ok(self.bytes)
+    }
+
+    fn flush_line(&mut self) -> io::Result<()> {
+        self.bytes += self.line.len() as u64;
+        self.out.write_all(self.line.as_bytes())
+    }
+}
+
+/// About how many bytes a row of these signals takes, to announce large files.
+pub fn csv_bytes_per_row(signals: &[Signal]) -> u64 {
+    let cell = |kind: &Kind| match kind {
+        Kind::Real => 19,
+        Kind::Integer => 4,
+        Kind::Boolean => 6,
+        Kind::Enumeration(literals) => literals.iter().map(|l| l.len() as u64).max().unwrap_or(0) + 1,
+    };
+    12 + signals.iter().map(|s| cell(&s.kind)).sum::<u64>()
+}
+
+fn push_name(line: &mut String, name: &str) {
+    if name.contains([',', '"', '\n', '\r', ';', '\t']) {
+        line.push('"');
+        line.push_str(&name.replace('"', "\"\""));
+        line.push('"');
+    } else {
+        line.push_str(name);
+    }
+}
+
+fn push_value(line: &mut String, kind: &Kind, value: f64) {
+    match kind {
+        Kind::Boolean if !value.is_nan() => line.push_str(if value == 0.0 { "false" } else { "true" }),
+        Kind::Enumeration(literals) => match literal(literals, value) {
+            Some(name) => line.push_str(name),
+            None => number::push(line, value),
+        },
+        _ => number::push(line, value),
+    }
+}
+
+/// The literal with this number, counted from 1.
+fn literal(literals: &[String], value: f64) -> Option<&str> {
+    let index = value - 1.0;
+    let inside = index >= 0.0 && index < literals.len() as f64 && index.fract() == 0.0;
+    inside.then(|| literals[index as usize].as_str())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_of_all_kinds() {
+        let signals = [
+            Signal::new("v[1].p"),
+            Signal::new("A[1,2]"),
+            Signal { kind: Kind::Boolean, ..Signal::new("on") },
+            Signal { kind: Kind::Integer, ..Signal::new("n") },
+            Signal { kind: Kind::Enumeration(vec!["stick".into(), "slip".into()]), ..Signal::new("mode") },
+        ];
+        let mut bytes = Vec::new();
+        let mut writer = CsvWriter::new(&mut bytes, &signals).unwrap();
+        writer.row(0.0, [1e5, -1e-7, 1.0, 3.0, 2.0]).unwrap();
+        writer.row(0.1, [f64::NAN, 0.1, 0.0, -1.0, 7.0]).unwrap();
+        assert_eq!(writer.finish().unwrap(), 78);
+        insta::assert_snapshot!(String::from_utf8(bytes).unwrap(), @r#"
+        time,v[1].p,"A[1,2]",on,n,mode
+        0,100000,-1e-7,true,3,slip
+        0.1,,0.1,false,-1,7
+        "#);
+    }
+}
