@@ -3,6 +3,7 @@
 //! The stages stand here in the order in which a circuit passes through them.
 
 pub mod diag;
+pub mod units;
 pub mod world;
 
 pub mod syntax;
