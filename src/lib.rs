@@ -15,3 +15,5 @@ pub mod structure;
 pub mod lower;
 
 pub mod results;
+
+pub mod solve;

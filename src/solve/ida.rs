@@ -1,0 +1,615 @@
+//! SUNDIALS IDA (of IDAS) behind a safe interface. The only file that knows SUNDIALS, and the only `unsafe` of `solve`.
+//!
+//! The matrix and the linear solver are our own ([`Lu`]). A panic inside a callback never unwinds through C: it is
+//! caught, IDA is told to stop, and the step returns [`Failure::Panic`].
+
+#![allow(unsafe_code, reason = "calls into SUNDIALS; each block states why it is sound")]
+
+use super::linear::{Csc, Lu, Singular};
+use std::os::raw::{c_int, c_long, c_void};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::ptr::null_mut;
+use sundials_sys as s;
+
+/// How an evaluation went.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Evaluation {
+    /// All values are finite.
+    Done,
+    /// Some value is not: IDA shall try a smaller step.
+    Retry,
+}
+
+/// The equations `F(t, y, y') = 0` and their zero crossings.
+pub trait Equations {
+    /// Writes `F(t, y, yp)` to `r`.
+    fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], r: &mut [f64]) -> Evaluation;
+
+    /// Writes every entry of `dF/dy + cj dF/dyp` to `val`, in the order of the pattern.
+    fn jacobian(&mut self, t: f64, cj: f64, y: &[f64], yp: &[f64], val: &mut [f64]) -> Evaluation;
+
+    /// Writes the functions whose sign changes are sought to `g`.
+    fn crossings(&mut self, t: f64, y: &[f64], yp: &[f64], g: &mut [f64]);
+}
+
+/// Why a call of [`Ida::advance`] returned.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reached {
+    /// The output time, by interpolation.
+    Output,
+    /// The stop time, exactly.
+    Stop,
+    /// A sign change of a crossing function, just behind it.
+    Root,
+    /// Neither yet; the number of steps given to [`Ida::pause_after`] has been made.
+    Pause,
+}
+
+/// Why IDA gave up.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Failure {
+    /// The error test failed too often, or with the smallest step.
+    ErrorTest,
+    /// The corrector did not converge.
+    Convergence,
+    /// The Jacobian stayed singular; the unknown without pivot, if known.
+    Singular(Option<Singular>),
+    /// The equations stayed not finite however small the step.
+    NonFinite,
+    /// More accuracy was asked for than numbers of 64 bits give.
+    TooMuchAccuracy,
+    /// A callback panicked: a bug of ours.
+    Panic(String),
+    /// Any other return code.
+    Code(i32),
+}
+
+/// Tolerances.
+#[derive(Clone, Debug)]
+pub struct Tolerances {
+    /// Relative to the values.
+    pub relative: f64,
+    /// Absolute, per unknown; positive.
+    pub absolute: Vec<f64>,
+}
+
+/// Work done since the beginning, restarts included.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Accepted steps.
+    pub steps: u64,
+    /// Evaluations of the equations.
+    pub residuals: u64,
+    /// Evaluations of the Jacobian.
+    pub jacobians: u64,
+    /// Factorisations of the iteration matrix.
+    pub factorizations: u64,
+    /// Steps repeated because their error was too large.
+    pub error_test_failures: u64,
+    /// Corrector iterations that did not converge.
+    pub convergence_failures: u64,
+    /// Evaluations of the crossing functions.
+    pub crossings: u64,
+}
+
+/// What the C side points to.
+struct Context<E> {
+    equations: E,
+    n: usize,
+    roots: usize,
+    lu: Lu,
+    singular: Option<Singular>,
+    residual_calls: u64,
+    jacobian_calls: u64,
+    crossing_calls: u64,
+    non_finite: bool,
+    panic: Option<String>,
+}
+
+/// One integrator.
+pub struct Ida<E: Equations> {
+    sundials: s::SUNContext,
+    memory: *mut c_void,
+    y: s::N_Vector,
+    yp: s::N_Vector,
+    scratch: s::N_Vector,
+    matrix: s::SUNMatrix,
+    solver: s::SUNLinearSolver,
+    context: *mut Context<E>,
+    n: usize,
+    /// Work done before the last restart.
+    before: Work,
+    found: Vec<c_int>,
+}
+
+// SAFETY: the C objects are owned by this value alone and SUNDIALS keeps no thread-local state.
+unsafe impl<E: Equations + Send> Send for Ida<E> {}
+
+/// The values of a vector.
+///
+/// # Safety
+/// `v` is a serial vector of `n` entries that outlives the slice, and no other slice of it is in use.
+unsafe fn slice<'a>(v: s::N_Vector, n: usize) -> &'a mut [f64] {
+    // SAFETY: promised by the caller; serial vectors are contiguous
+    unsafe { std::slice::from_raw_parts_mut(s::N_VGetArrayPointer(v), n) }
+}
+
+/// Runs a callback; a panic becomes the code -1 (IDA stops) and its text is kept.
+fn guarded<E>(context: &mut Context<E>, run: impl FnOnce(&mut Context<E>) -> c_int) -> c_int {
+    match catch_unwind(AssertUnwindSafe(|| run(context))) {
+        Ok(code) => code,
+        Err(payload) => {
+            let text = payload.downcast_ref::<String>().cloned();
+            let text = text.or_else(|| payload.downcast_ref::<&str>().map(ToString::to_string));
+            context.panic = Some(text.unwrap_or_else(|| "no message".to_string()));
+            -1
+        }
+    }
+}
+
+fn code_of<E>(context: &mut Context<E>, evaluation: Evaluation) -> c_int {
+    context.non_finite = evaluation == Evaluation::Retry;
+    c_int::from(context.non_finite)
+}
+
+unsafe extern "C" fn on_residual<E: Equations>(
+    t: f64,
+    y: s::N_Vector,
+    yp: s::N_Vector,
+    r: s::N_Vector,
+    user: *mut c_void,
+) -> c_int {
+    // SAFETY: `user` is the context given to IDASetUserData; IDA passes distinct serial vectors of n entries
+    let (context, y, yp, r) = unsafe {
+        let context = &mut *user.cast::<Context<E>>();
+        let n = context.n;
+        (context, slice(y, n), slice(yp, n), slice(r, n))
+    };
+    guarded(context, |c| {
+        c.residual_calls += 1;
+        let evaluation = c.equations.residual(t, y, yp, r);
+        code_of(c, evaluation)
+    })
+}
+
+#[allow(clippy::too_many_arguments, reason = "the signature of IDALsJacFn")]
+unsafe extern "C" fn on_jacobian<E: Equations>(
+    t: f64,
+    cj: f64,
+    y: s::N_Vector,
+    yp: s::N_Vector,
+    _r: s::N_Vector,
+    matrix: s::SUNMatrix,
+    user: *mut c_void,
+    _1: s::N_Vector,
+    _2: s::N_Vector,
+    _3: s::N_Vector,
+) -> c_int {
+    // SAFETY: as above; the matrix is the one made by `new_matrix`
+    let (context, y, yp, val) = unsafe {
+        let context = &mut *user.cast::<Context<E>>();
+        let n = context.n;
+        (context, slice(y, n), slice(yp, n), &mut *(*matrix).content.cast::<Vec<f64>>())
+    };
+    guarded(context, |c| {
+        c.jacobian_calls += 1;
+        let evaluation = c.equations.jacobian(t, cj, y, yp, val);
+        code_of(c, evaluation)
+    })
+}
+
+unsafe extern "C" fn on_crossings<E: Equations>(
+    t: f64,
+    y: s::N_Vector,
+    yp: s::N_Vector,
+    g: *mut f64,
+    user: *mut c_void,
+) -> c_int {
+    // SAFETY: as above; `g` has as many entries as were announced to IDARootInit
+    let (context, y, yp, g) = unsafe {
+        let context = &mut *user.cast::<Context<E>>();
+        let (n, roots) = (context.n, context.roots);
+        (context, slice(y, n), slice(yp, n), std::slice::from_raw_parts_mut(g, roots))
+    };
+    guarded(context, |c| {
+        c.crossing_calls += 1;
+        c.equations.crossings(t, y, yp, g);
+        0
+    })
+}
+
+unsafe extern "C" fn matrix_id(_: s::SUNMatrix) -> s::SUNMatrix_ID {
+    s::SUNMatrix_ID_SUNMATRIX_CUSTOM
+}
+
+/// IDA clears the matrix before each Jacobian; ours writes every entry, so nothing needs to be done.
+unsafe extern "C" fn matrix_zero(_: s::SUNMatrix) -> s::SUNErrCode {
+    0
+}
+
+unsafe extern "C" fn matrix_destroy(a: s::SUNMatrix) {
+    if !a.is_null() {
+        // SAFETY: the content was made by Box::into_raw in `new_matrix` and is dropped once
+        unsafe {
+            drop(Box::from_raw((*a).content.cast::<Vec<f64>>()));
+            (*a).content = null_mut();
+            s::SUNMatFreeEmpty(a);
+        }
+    }
+}
+
+unsafe extern "C" fn solver_type(_: s::SUNLinearSolver) -> s::SUNLinearSolver_Type {
+    s::SUNLinearSolver_Type_SUNLINEARSOLVER_DIRECT
+}
+
+unsafe extern "C" fn solver_id(_: s::SUNLinearSolver) -> s::SUNLinearSolver_ID {
+    s::SUNLinearSolver_ID_SUNLINEARSOLVER_CUSTOM
+}
+
+unsafe extern "C" fn solver_initialize(_: s::SUNLinearSolver) -> s::SUNErrCode {
+    0
+}
+
+unsafe extern "C" fn solver_setup<E: Equations>(ls: s::SUNLinearSolver, a: s::SUNMatrix) -> c_int {
+    // SAFETY: the content is the context (owned by Ida); the matrix is ours
+    let (context, val) =
+        unsafe { (&mut *(*ls).content.cast::<Context<E>>(), &*(*a).content.cast::<Vec<f64>>()) };
+    guarded(context, |c| {
+        c.singular = c.lu.factor(val).err();
+        // positive: recoverable, IDA tries a smaller step
+        c_int::from(c.singular.is_some())
+    })
+}
+
+unsafe extern "C" fn solver_solve<E: Equations>(
+    ls: s::SUNLinearSolver,
+    _: s::SUNMatrix,
+    x: s::N_Vector,
+    b: s::N_Vector,
+    _tolerance: f64,
+) -> c_int {
+    // SAFETY: as above; x and b are serial vectors of n entries, b is only read, before x is borrowed
+    let (context, x) = unsafe {
+        let context = &mut *(*ls).content.cast::<Context<E>>();
+        let (xp, bp) = (s::N_VGetArrayPointer(x), s::N_VGetArrayPointer(b));
+        if xp != bp {
+            std::ptr::copy_nonoverlapping(bp, xp, context.n);
+        }
+        let n = context.n;
+        (context, slice(x, n))
+    };
+    guarded(context, |c| c_int::from(!c.lu.solve(x)))
+}
+
+unsafe extern "C" fn solver_free(ls: s::SUNLinearSolver) -> s::SUNErrCode {
+    if !ls.is_null() {
+        // SAFETY: the content belongs to Ida, only the shell is freed
+        unsafe {
+            (*ls).content = null_mut();
+            s::SUNLinSolFreeEmpty(ls);
+        }
+    }
+    0
+}
+
+fn new_matrix(nnz: usize, context: s::SUNContext) -> s::SUNMatrix {
+    // SAFETY: a fresh shell, filled before use
+    unsafe {
+        let a = s::SUNMatNewEmpty(context);
+        assert!(!a.is_null(), "SUNDIALS has no memory");
+        (*a).content = Box::into_raw(Box::new(vec![0.0_f64; nnz])).cast();
+        let ops = &mut *(*a).ops;
+        ops.getid = Some(matrix_id);
+        ops.zero = Some(matrix_zero);
+        ops.destroy = Some(matrix_destroy);
+        a
+    }
+}
+
+fn new_solver<E: Equations>(content: *mut Context<E>, context: s::SUNContext) -> s::SUNLinearSolver {
+    // SAFETY: a fresh shell, filled before use
+    unsafe {
+        let ls = s::SUNLinSolNewEmpty(context);
+        assert!(!ls.is_null(), "SUNDIALS has no memory");
+        (*ls).content = content.cast();
+        let ops = &mut *(*ls).ops;
+        ops.gettype = Some(solver_type);
+        ops.getid = Some(solver_id);
+        ops.initialize = Some(solver_initialize);
+        ops.setup = Some(solver_setup::<E>);
+        ops.solve = Some(solver_solve::<E>);
+        ops.free = Some(solver_free);
+        ls
+    }
+}
+
+fn new_vector(values: &[f64], context: s::SUNContext) -> s::N_Vector {
+    // SAFETY: a fresh vector of as many entries as are copied
+    unsafe {
+        let v = s::N_VNew_Serial(i64::try_from(values.len()).expect("fewer than 2^63 unknowns"), context);
+        assert!(!v.is_null(), "SUNDIALS has no memory");
+        slice(v, values.len()).copy_from_slice(values);
+        v
+    }
+}
+
+impl<E: Equations> Ida<E> {
+    /// An integrator at time `t` with consistent `y` and `yp` (at least one unknown).
+    ///
+    /// # Errors
+    /// [`Failure::Code`] when SUNDIALS refuses the input.
+    pub fn new(
+        equations: E,
+        pattern: &Csc,
+        lu: Lu,
+        roots: usize,
+        tolerances: &Tolerances,
+        (t, y, yp): (f64, &[f64], &[f64]),
+    ) -> Result<Self, Failure> {
+        let n = pattern.n;
+        assert!(n > 0 && y.len() == n && yp.len() == n && tolerances.absolute.len() == n, "sizes agree");
+        let mut sundials = null_mut();
+        // SAFETY: creates a context; without error handlers nothing is printed
+        unsafe {
+            assert_eq!(s::SUNContext_Create(s::comm_no_mpi(), &raw mut sundials), 0, "SUNDIALS has no memory");
+            s::SUNContext_ClearErrHandlers(sundials);
+        }
+        let context = Box::into_raw(Box::new(Context {
+            equations,
+            n,
+            roots,
+            lu,
+            singular: None,
+            residual_calls: 0,
+            jacobian_calls: 0,
+            crossing_calls: 0,
+            non_finite: false,
+            panic: None,
+        }));
+        let mut ida = Ida {
+            sundials,
+            // SAFETY: the context lives until drop
+            memory: unsafe { s::IDACreate(sundials) },
+            y: new_vector(y, sundials),
+            yp: new_vector(yp, sundials),
+            scratch: new_vector(y, sundials),
+            matrix: new_matrix(pattern.nnz(), sundials),
+            solver: new_solver(context, sundials),
+            context,
+            n,
+            before: Work::default(),
+            found: vec![0; roots],
+        };
+        ida.configure(t, tolerances)?;
+        Ok(ida)
+    }
+
+    fn configure(&mut self, t: f64, tolerances: &Tolerances) -> Result<(), Failure> {
+        let absolute = new_vector(&tolerances.absolute, self.sundials);
+        let roots = c_int::try_from(self.found.len()).expect("fewer than 2^31 crossings");
+        // SAFETY: all objects are alive; the tolerance vector is copied by IDA and freed here
+        unsafe {
+            let results = [
+                s::IDAInit(self.memory, Some(on_residual::<E>), t, self.y, self.yp),
+                s::IDASVtolerances(self.memory, tolerances.relative, absolute),
+                s::IDASetUserData(self.memory, self.context.cast()),
+                s::IDASetLinearSolver(self.memory, self.solver, self.matrix),
+                s::IDASetJacFn(self.memory, Some(on_jacobian::<E>)),
+                if roots > 0 { s::IDARootInit(self.memory, roots, Some(on_crossings::<E>)) } else { 0 },
+                s::IDASetNoInactiveRootWarn(self.memory),
+            ];
+            s::N_VDestroy(absolute);
+            results.into_iter().try_for_each(check)
+        }
+    }
+
+    /// The equations.
+    pub fn equations(&mut self) -> &mut E {
+        // SAFETY: the context is ours; no callback runs while `self` is borrowed here
+        unsafe { &mut (*self.context).equations }
+    }
+
+    /// The values where the integrator stands.
+    pub fn y(&self) -> &[f64] {
+        // SAFETY: only read while `self` is borrowed
+        unsafe { slice(self.y, self.n) }
+    }
+
+    /// The derivatives where the integrator stands.
+    pub fn yp(&self) -> &[f64] {
+        // SAFETY: only read while `self` is borrowed
+        unsafe { slice(self.yp, self.n) }
+    }
+
+    /// Both, and the equations.
+    pub fn parts(&mut self) -> (&mut E, &[f64], &[f64]) {
+        // SAFETY: three distinct objects, borrowed as long as `self`
+        unsafe { (&mut (*self.context).equations, slice(self.y, self.n), slice(self.yp, self.n)) }
+    }
+
+    /// Forgets the past and starts again at `t` from these values.
+    ///
+    /// # Errors
+    /// [`Failure::Code`] when SUNDIALS refuses the input.
+    pub fn restart(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Failure> {
+        self.before = self.work();
+        // SAFETY: the vectors are ours and not borrowed; IDA copies them
+        unsafe {
+            slice(self.y, self.n).copy_from_slice(y);
+            slice(self.yp, self.n).copy_from_slice(yp);
+            let context = &mut *self.context;
+            context.residual_calls = 0;
+            context.jacobian_calls = 0;
+            context.crossing_calls = 0;
+            context.lu.factorizations = 0;
+            check(s::IDAReInit(self.memory, t, self.y, self.yp))
+        }
+    }
+
+    /// The length of the first step after a start or restart; 0 lets IDA choose.
+    pub fn set_first_step(&mut self, h: f64) {
+        // SAFETY: plain setter
+        unsafe { s::IDASetInitStep(self.memory, h) };
+    }
+
+    /// The longest step; 0 or infinity for no bound.
+    pub fn set_longest_step(&mut self, h: f64) {
+        // SAFETY: plain setter
+        unsafe { s::IDASetMaxStep(self.memory, if h.is_finite() { h } else { 0.0 }) };
+    }
+
+    /// A time that must not be passed.
+    pub fn set_stop(&mut self, t: f64) {
+        // SAFETY: plain setter
+        unsafe { s::IDASetStopTime(self.memory, t) };
+    }
+
+    /// Returns [`Reached::Pause`] after so many steps within one call; 0 never does.
+    pub fn pause_after(&mut self, steps: u32) {
+        // SAFETY: plain setter; a negative number means no limit
+        unsafe { s::IDASetMaxNumSteps(self.memory, if steps == 0 { -1 } else { c_long::from(steps) }) };
+    }
+
+    /// Integrates until `to`, the stop time or a root, whichever comes first; returns the time reached.
+    ///
+    /// # Errors
+    /// See [`Failure`]; `y` and `yp` hold the last accepted values.
+    pub fn advance(&mut self, to: f64) -> Result<(Reached, f64), (Failure, f64)> {
+        let mut t = 0.0;
+        // SAFETY: all objects are alive; callbacks reach the context through its own pointer while no reference to it
+        // is held here
+        let code = unsafe {
+            s::IDASolve(self.memory, to, &raw mut t, self.y, self.yp, s::IDA_NORMAL)
+        };
+        match code {
+            s::IDA_TSTOP_RETURN => Ok((Reached::Stop, t)),
+            s::IDA_ROOT_RETURN => Ok((Reached::Root, t)),
+            s::IDA_TOO_MUCH_WORK => Ok((Reached::Pause, t)),
+            0.. => Ok((Reached::Output, t)),
+            _ => Err((self.failure(code), t)),
+        }
+    }
+
+    fn failure(&mut self, code: c_int) -> Failure {
+        // SAFETY: no callback runs
+        let context = unsafe { &mut *self.context };
+        if let Some(text) = context.panic.take() {
+            return Failure::Panic(text);
+        }
+        match code {
+            s::IDA_ERR_FAIL => Failure::ErrorTest,
+            s::IDA_REP_RES_ERR | s::IDA_FIRST_RES_FAIL => Failure::NonFinite,
+            _ if context.non_finite && context.singular.is_none() => Failure::NonFinite,
+            s::IDA_CONV_FAIL if context.singular.is_some() => Failure::Singular(context.singular),
+            s::IDA_CONV_FAIL => Failure::Convergence,
+            s::IDA_LSETUP_FAIL | s::IDA_LSOLVE_FAIL => Failure::Singular(context.singular),
+            s::IDA_TOO_MUCH_ACC => Failure::TooMuchAccuracy,
+            _ => Failure::Code(code),
+        }
+    }
+
+    /// Which crossing functions changed sign at the root just found: -1 falling, 1 rising, 0 not.
+    pub fn found(&mut self) -> &[c_int] {
+        if !self.found.is_empty() {
+            // SAFETY: the array has as many entries as there are functions
+            unsafe { s::IDAGetRootInfo(self.memory, self.found.as_mut_ptr()) };
+        }
+        &self.found
+    }
+
+    /// The estimated local errors of the last step tried, each in units of its tolerance, into `out`.
+    pub fn weighted_errors(&mut self, out: &mut Vec<f64>) {
+        out.clear();
+        // SAFETY: the scratch vector is ours; IDA copies into it
+        unsafe {
+            s::IDAGetEstLocalErrors(self.memory, self.scratch);
+            out.extend(slice(self.scratch, self.n).iter());
+        }
+        let mut weights = Vec::new();
+        self.weights(&mut weights);
+        for (e, w) in out.iter_mut().zip(weights) {
+            *e *= w;
+        }
+    }
+
+    /// The reciprocal tolerances of the unknowns as used in the last step, into `out`.
+    pub fn weights(&mut self, out: &mut Vec<f64>) {
+        out.clear();
+        // SAFETY: as above
+        unsafe {
+            s::IDAGetErrWeights(self.memory, self.scratch);
+            out.extend(slice(self.scratch, self.n).iter());
+        }
+    }
+
+    /// Length of the last step made and of the one to come.
+    pub fn step_lengths(&self) -> (f64, f64) {
+        let (mut last, mut next) = (0.0, 0.0);
+        // SAFETY: plain getters
+        unsafe {
+            s::IDAGetLastStep(self.memory, &raw mut last);
+            s::IDAGetCurrentStep(self.memory, &raw mut next);
+        }
+        (last, next)
+    }
+
+    /// Order of the last step.
+    pub fn order(&self) -> u32 {
+        let mut order = 0;
+        // SAFETY: plain getter
+        unsafe { s::IDAGetLastOrder(self.memory, &raw mut order) };
+        order.unsigned_abs()
+    }
+
+    /// How far the integrator has stepped; not before the time last returned.
+    pub fn internal_time(&self) -> f64 {
+        let mut t = 0.0;
+        // SAFETY: plain getter
+        unsafe { s::IDAGetCurrentTime(self.memory, &raw mut t) };
+        t
+    }
+
+    /// Work done since the beginning.
+    pub fn work(&self) -> Work {
+        let (mut steps, mut failures, mut convergence) = (0, 0, 0);
+        // SAFETY: plain getters; the context is only read
+        unsafe {
+            s::IDAGetNumSteps(self.memory, &raw mut steps);
+            s::IDAGetNumErrTestFails(self.memory, &raw mut failures);
+            s::IDAGetNumNonlinSolvConvFails(self.memory, &raw mut convergence);
+            let (c, b) = (&*self.context, &self.before);
+            Work {
+                steps: b.steps + steps.unsigned_abs(),
+                residuals: b.residuals + c.residual_calls,
+                jacobians: b.jacobians + c.jacobian_calls,
+                factorizations: b.factorizations + c.lu.factorizations,
+                error_test_failures: b.error_test_failures + failures.unsigned_abs(),
+                convergence_failures: b.convergence_failures + convergence.unsigned_abs(),
+                crossings: b.crossings + c.crossing_calls,
+            }
+        }
+    }
+}
+
+impl<E: Equations> Drop for Ida<E> {
+    fn drop(&mut self) {
+        // SAFETY: each object is freed once, users before what they use
+        unsafe {
+            s::IDAFree(&raw mut self.memory);
+            s::SUNLinSolFree(self.solver);
+            s::SUNMatDestroy(self.matrix);
+            for v in [self.y, self.yp, self.scratch] {
+                s::N_VDestroy(v);
+            }
+            s::SUNContext_Free(&raw mut self.sundials);
+            drop(Box::from_raw(self.context));
+        }
+    }
+}
+
+fn check(code: c_int) -> Result<(), Failure> {
+    if code >= 0 { Ok(()) } else { Err(Failure::Code(code)) }
+}
+
+#[cfg(test)]
+mod tests;

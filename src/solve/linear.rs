@@ -1,0 +1,122 @@
+//! LU factorisation of the Jacobian behind one type: dense of fixed size for the small, sparse with refactorisation
+//! on a recorded pattern for the rest.
+//!
+//! Rows are weighed by their largest entry when pivots are chosen (units differ by 1e16: Pa and m3/s), with columns in
+//! units of their nominal values. The weights only steer the choice; the numbers themselves are not scaled.
+
+mod dense;
+mod sparse;
+
+pub use sparse::SparseLu;
+
+/// Compressed sparse columns: entries of column `j` stand at `colptr[j]..colptr[j + 1]` of `rowidx`.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Csc {
+    /// Number of rows and columns.
+    pub n: usize,
+    /// Start of each column, and the end of the last.
+    pub colptr: Vec<usize>,
+    /// Row of each entry.
+    pub rowidx: Vec<usize>,
+}
+
+impl Csc {
+    /// A full matrix, column by column.
+    pub fn full(n: usize) -> Self {
+        Csc { n, colptr: (0..=n).map(|j| j * n).collect(), rowidx: (0..n * n).map(|k| k % n).collect() }
+    }
+
+    /// Number of entries.
+    pub fn nnz(&self) -> usize {
+        self.rowidx.len()
+    }
+}
+
+/// No usable pivot was found: the column depends on those before it, or holds values that are not finite.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Singular {
+    /// Index of the column, that is of the unknown.
+    pub column: usize,
+}
+
+/// A factorised square matrix of fixed pattern.
+#[derive(Debug)]
+pub struct Lu {
+    kind: Kind,
+    /// Factorisations done so far.
+    pub factorizations: u64,
+    /// Factorisations that searched for pivots.
+    pub pivot_searches: u64,
+}
+
+#[derive(Debug)]
+enum Kind {
+    Empty,
+    Dense(Box<dyn dense::Dense>),
+    Sparse(Box<SparseLu>),
+}
+
+impl Lu {
+    /// Prepares for matrices of this pattern; `column_scale` holds the nominal value of each unknown.
+    pub fn new(pattern: &Csc, column_scale: &[f64]) -> Self {
+        let kind = match pattern.n {
+            0 => Kind::Empty,
+            n if Self::prefers_dense(n, pattern.nnz()) => {
+                Kind::Dense(dense::new(pattern, column_scale).expect("prefers_dense knows the sizes"))
+            }
+            _ => Kind::Sparse(Box::new(SparseLu::new(pattern, column_scale))),
+        };
+        Lu { kind, factorizations: 0, pivot_searches: 0 }
+    }
+
+    /// Dense pays while the matrix is tiny, or small and well filled (measured: see `benches/`).
+    fn prefers_dense(n: usize, nnz: usize) -> bool {
+        n <= dense::LARGEST && (n <= 8 || 4 * nnz >= n * n)
+    }
+
+    /// Factorises the matrix with these entries.
+    ///
+    /// # Errors
+    /// [`Singular`] when there is no usable pivot; the factors must not be used then.
+    pub fn factor(&mut self, val: &[f64]) -> Result<(), Singular> {
+        self.factorizations += 1;
+        match &mut self.kind {
+            Kind::Empty => Ok(()),
+            Kind::Dense(lu) => {
+                self.pivot_searches += 1;
+                lu.factor(val)
+            }
+            Kind::Sparse(lu) => {
+                let searched = lu.factor(val)?;
+                self.pivot_searches += u64::from(searched);
+                Ok(())
+            }
+        }
+    }
+
+    /// Replaces `b` by the solution; false when it is not finite.
+    pub fn solve(&mut self, b: &mut [f64]) -> bool {
+        match &mut self.kind {
+            Kind::Empty => true,
+            Kind::Dense(lu) => lu.solve(b),
+            Kind::Sparse(lu) => lu.solve(b),
+        }
+    }
+}
+
+/// `1 / max_j |a_ij| s_j` for each row; 0 for a row without entries.
+fn row_weights(pattern: &Csc, val: &[f64], column_scale: &[f64], weights: &mut [f64]) {
+    weights.fill(0.0);
+    for j in 0..pattern.n {
+        for k in pattern.colptr[j]..pattern.colptr[j + 1] {
+            let w = &mut weights[pattern.rowidx[k]];
+            *w = w.max(val[k].abs() * column_scale[j]);
+        }
+    }
+    for w in weights {
+        *w = if *w > 0.0 && w.is_finite() { 1.0 / *w } else { 0.0 };
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,140 @@
+//! Dense LU with partial pivoting, one instance of the code for each size so that the loops have known bounds.
+
+use super::{Csc, Singular, row_weights};
+
+/// The largest size there is code for.
+pub const LARGEST: usize = 24;
+
+/// A dense factorisation of some fixed size.
+pub trait Dense: Send + std::fmt::Debug {
+    /// Factorises the matrix with these entries of the pattern.
+    fn factor(&mut self, val: &[f64]) -> Result<(), Singular>;
+    /// Replaces `b` by the solution; false when it is not finite.
+    fn solve(&mut self, b: &mut [f64]) -> bool;
+}
+
+/// A factorisation for this pattern, if it is small enough.
+pub fn new(pattern: &Csc, column_scale: &[f64]) -> Option<Box<dyn Dense>> {
+    macro_rules! sizes {
+        ($($n:literal)*) => {
+            match pattern.n { $($n => Some(Box::new(Fixed::<$n>::new(pattern, column_scale)) as Box<dyn Dense>),)* _ => None }
+        };
+    }
+    sizes!(1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24)
+}
+
+/// The factors, column by column: below the diagonal L, on and above it U.
+#[derive(Debug)]
+struct Fixed<const N: usize> {
+    pattern: Csc,
+    column_scale: Vec<f64>,
+    a: [[f64; N]; N],
+    /// Reciprocal pivots.
+    inverse: [f64; N],
+    /// Row of the matrix that became pivot row `i`.
+    row: [usize; N],
+    weights: [f64; N],
+}
+
+impl<const N: usize> Fixed<N> {
+    fn new(pattern: &Csc, column_scale: &[f64]) -> Self {
+        Fixed {
+            pattern: pattern.clone(),
+            column_scale: column_scale.to_vec(),
+            a: [[0.0; N]; N],
+            inverse: [0.0; N],
+            row: [0; N],
+            weights: [0.0; N],
+        }
+    }
+
+    fn load(&mut self, val: &[f64]) {
+        self.a = [[0.0; N]; N];
+        for j in 0..N {
+            for k in self.pattern.colptr[j]..self.pattern.colptr[j + 1] {
+                self.a[j][self.pattern.rowidx[k]] += val[k];
+            }
+        }
+    }
+
+    /// The row below (or at) `j` whose weighed entry in column `j` is largest.
+    fn pivot(&self, j: usize) -> Option<usize> {
+        let mut best = (0.0, j);
+        for i in j..N {
+            let v = self.a[j][i].abs() * self.weights[i];
+            if v > best.0 || v.is_nan() {
+                best = (v, i);
+            }
+        }
+        (best.0 > 0.0 && best.0.is_finite()).then_some(best.1)
+    }
+
+    fn swap_rows(&mut self, i: usize, j: usize) {
+        if i != j {
+            for column in &mut self.a {
+                column.swap(i, j);
+            }
+            self.row.swap(i, j);
+            self.weights.swap(i, j);
+        }
+    }
+
+    fn eliminate(&mut self, j: usize) {
+        let inverse = 1.0 / self.a[j][j];
+        self.inverse[j] = inverse;
+        for i in j + 1..N {
+            self.a[j][i] *= inverse;
+        }
+        let (left, right) = self.a.split_at_mut(j + 1);
+        let l = &left[j];
+        for column in right {
+            let u = column[j];
+            if u != 0.0 {
+                for i in j + 1..N {
+                    column[i] -= l[i] * u;
+                }
+            }
+        }
+    }
+}
+
+impl<const N: usize> Dense for Fixed<N> {
+    fn factor(&mut self, val: &[f64]) -> Result<(), Singular> {
+        self.load(val);
+        row_weights(&self.pattern, val, &self.column_scale, &mut self.weights);
+        for (i, r) in self.row.iter_mut().enumerate() {
+            *r = i;
+        }
+        for j in 0..N {
+            let i = self.pivot(j).ok_or(Singular { column: j })?;
+            self.swap_rows(i, j);
+            self.eliminate(j);
+            if !self.inverse[j].is_finite() {
+                return Err(Singular { column: j });
+            }
+        }
+        Ok(())
+    }
+
+    fn solve(&mut self, b: &mut [f64]) -> bool {
+        let mut x = [0.0; N];
+        for i in 0..N {
+            x[i] = b[self.row[i]];
+        }
+        for j in 0..N {
+            let v = x[j];
+            for i in j + 1..N {
+                x[i] -= self.a[j][i] * v;
+            }
+        }
+        for j in (0..N).rev() {
+            let v = x[j] * self.inverse[j];
+            x[j] = v;
+            for i in 0..j {
+                x[i] -= self.a[j][i] * v;
+            }
+        }
+        b[..N].copy_from_slice(&x);
+        x.iter().all(|v| v.is_finite())
+    }
+}
