@@ -86,6 +86,10 @@ pub struct Target {
 }
 
 /// Explicit assignments in order, as one program.
+///
+/// Modes of crossings stand alone: a program that computes modes computes nothing else, and none of its modes reads
+/// another of them. The solver corrects a mode after its program has run (a relation that has just crossed zero keeps
+/// its new value, whatever the rounding), and what follows must read the corrected value.
 #[derive(Clone, Debug)]
 pub struct AssignCode {
     /// What it computes, in order.
@@ -125,8 +129,8 @@ pub struct LoopCode {
 pub struct MixedCode {
     /// With discrete values frozen; `Assign` and `Loop` only.
     pub continuous: Vec<BlockCode>,
-    /// The discrete equations, in order.
-    pub discrete: AssignCode,
+    /// The discrete equations, in order; several programs because modes stand alone.
+    pub discrete: Vec<AssignCode>,
 }
 
 /// A step of the event or initial system.

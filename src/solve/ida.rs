@@ -5,7 +5,8 @@
 
 #![allow(unsafe_code, reason = "calls into SUNDIALS; each block states why it is sound")]
 
-use super::linear::{Csc, Lu, Singular};
+use super::linear::{Lu, Singular};
+use crate::lower::Pattern;
 use std::os::raw::{c_int, c_long, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::ptr::null_mut;
@@ -252,8 +253,7 @@ unsafe extern "C" fn solver_initialize(_: s::SUNLinearSolver) -> s::SUNErrCode {
 
 unsafe extern "C" fn solver_setup<E: Equations>(ls: s::SUNLinearSolver, a: s::SUNMatrix) -> c_int {
     // SAFETY: the content is the context (owned by Ida); the matrix is ours
-    let (context, val) =
-        unsafe { (&mut *(*ls).content.cast::<Context<E>>(), &*(*a).content.cast::<Vec<f64>>()) };
+    let (context, val) = unsafe { (&mut *(*ls).content.cast::<Context<E>>(), &*(*a).content.cast::<Vec<f64>>()) };
     guarded(context, |c| {
         c.singular = c.lu.factor(val).err();
         // positive: recoverable, IDA tries a smaller step
@@ -340,7 +340,7 @@ impl<E: Equations> Ida<E> {
     /// [`Failure::Code`] when SUNDIALS refuses the input.
     pub fn new(
         equations: E,
-        pattern: &Csc,
+        pattern: &Pattern,
         lu: Lu,
         roots: usize,
         tolerances: &Tolerances,
@@ -458,6 +458,13 @@ impl<E: Equations> Ida<E> {
         unsafe { s::IDASetMaxStep(self.memory, if h.is_finite() { h } else { 0.0 }) };
     }
 
+    /// The shortest step: where a shorter one is needed, IDA gives up. Without a bound it would creep towards a
+    /// singularity for ever.
+    pub fn set_shortest_step(&mut self, h: f64) {
+        // SAFETY: plain setter
+        unsafe { s::IDASetMinStep(self.memory, h) };
+    }
+
     /// A time that must not be passed.
     pub fn set_stop(&mut self, t: f64) {
         // SAFETY: plain setter
@@ -478,9 +485,7 @@ impl<E: Equations> Ida<E> {
         let mut t = 0.0;
         // SAFETY: all objects are alive; callbacks reach the context through its own pointer while no reference to it
         // is held here
-        let code = unsafe {
-            s::IDASolve(self.memory, to, &raw mut t, self.y, self.yp, s::IDA_NORMAL)
-        };
+        let code = unsafe { s::IDASolve(self.memory, to, &raw mut t, self.y, self.yp, s::IDA_NORMAL) };
         match code {
             s::IDA_TSTOP_RETURN => Ok((Reached::Stop, t)),
             s::IDA_ROOT_RETURN => Ok((Reached::Root, t)),

@@ -9,28 +9,7 @@ mod sparse;
 
 pub use sparse::SparseLu;
 
-/// Compressed sparse columns: entries of column `j` stand at `colptr[j]..colptr[j + 1]` of `rowidx`.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Csc {
-    /// Number of rows and columns.
-    pub n: usize,
-    /// Start of each column, and the end of the last.
-    pub colptr: Vec<usize>,
-    /// Row of each entry.
-    pub rowidx: Vec<usize>,
-}
-
-impl Csc {
-    /// A full matrix, column by column.
-    pub fn full(n: usize) -> Self {
-        Csc { n, colptr: (0..=n).map(|j| j * n).collect(), rowidx: (0..n * n).map(|k| k % n).collect() }
-    }
-
-    /// Number of entries.
-    pub fn nnz(&self) -> usize {
-        self.rowidx.len()
-    }
-}
+use crate::lower::Pattern;
 
 /// No usable pivot was found: the column depends on those before it, or holds values that are not finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,7 +37,7 @@ enum Kind {
 
 impl Lu {
     /// Prepares for matrices of this pattern; `column_scale` holds the nominal value of each unknown.
-    pub fn new(pattern: &Csc, column_scale: &[f64]) -> Self {
+    pub fn new(pattern: &Pattern, column_scale: &[f64]) -> Self {
         let kind = match pattern.n {
             0 => Kind::Empty,
             n if Self::prefers_dense(n, pattern.nnz()) => {
@@ -105,7 +84,7 @@ impl Lu {
 }
 
 /// `1 / max_j |a_ij| s_j` for each row; 0 for a row without entries.
-fn row_weights(pattern: &Csc, val: &[f64], column_scale: &[f64], weights: &mut [f64]) {
+fn row_weights(pattern: &Pattern, val: &[f64], column_scale: &[f64], weights: &mut [f64]) {
     weights.fill(0.0);
     for j in 0..pattern.n {
         for k in pattern.colptr[j]..pattern.colptr[j + 1] {

@@ -1,6 +1,7 @@
 //! Dense LU with partial pivoting, one instance of the code for each size so that the loops have known bounds.
 
-use super::{Csc, Singular, row_weights};
+use super::{Singular, row_weights};
+use crate::lower::Pattern;
 
 /// The largest size there is code for.
 pub const LARGEST: usize = 24;
@@ -14,7 +15,7 @@ pub trait Dense: Send + std::fmt::Debug {
 }
 
 /// A factorisation for this pattern, if it is small enough.
-pub fn new(pattern: &Csc, column_scale: &[f64]) -> Option<Box<dyn Dense>> {
+pub fn new(pattern: &Pattern, column_scale: &[f64]) -> Option<Box<dyn Dense>> {
     macro_rules! sizes {
         ($($n:literal)*) => {
             match pattern.n { $($n => Some(Box::new(Fixed::<$n>::new(pattern, column_scale)) as Box<dyn Dense>),)* _ => None }
@@ -26,7 +27,7 @@ pub fn new(pattern: &Csc, column_scale: &[f64]) -> Option<Box<dyn Dense>> {
 /// The factors, column by column: below the diagonal L, on and above it U.
 #[derive(Debug)]
 struct Fixed<const N: usize> {
-    pattern: Csc,
+    pattern: Pattern,
     column_scale: Vec<f64>,
     a: [[f64; N]; N],
     /// Reciprocal pivots.
@@ -37,7 +38,7 @@ struct Fixed<const N: usize> {
 }
 
 impl<const N: usize> Fixed<N> {
-    fn new(pattern: &Csc, column_scale: &[f64]) -> Self {
+    fn new(pattern: &Pattern, column_scale: &[f64]) -> Self {
         Fixed {
             pattern: pattern.clone(),
             column_scale: column_scale.to_vec(),

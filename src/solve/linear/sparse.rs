@@ -1,7 +1,8 @@
 //! Sparse LU after Gilbert and Peierls: the first factorisation chooses pivots and records the patterns of L and U,
 //! later ones only redo the arithmetic, as long as the pivots stay good.
 
-use super::{Csc, Singular, row_weights};
+use super::{Singular, row_weights};
+use crate::lower::Pattern;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::colamd;
@@ -15,7 +16,7 @@ const LARGEST_MULTIPLIER: f64 = 1e6;
 /// Sparse LU factors with a fixed column order and pivots that change only when they must.
 #[derive(Debug)]
 pub struct SparseLu {
-    pattern: Csc,
+    pattern: Pattern,
     column_scale: Vec<f64>,
     /// Column of the matrix at each position of the elimination.
     order: Vec<u32>,
@@ -85,7 +86,7 @@ fn count(n: usize) -> u32 {
 
 impl SparseLu {
     /// Orders the columns; the first factorisation chooses the pivots.
-    pub fn new(pattern: &Csc, column_scale: &[f64]) -> Self {
+    pub fn new(pattern: &Pattern, column_scale: &[f64]) -> Self {
         let n = pattern.n;
         SparseLu {
             order: column_order(pattern),
@@ -337,7 +338,7 @@ impl Search {
 }
 
 /// COLAMD by faer; the given order should that fail.
-fn column_order(pattern: &Csc) -> Vec<u32> {
+fn column_order(pattern: &Pattern) -> Vec<u32> {
     let n = pattern.n;
     let matrix = SymbolicSparseColMatRef::new_unsorted_checked(n, n, &pattern.colptr, None, &pattern.rowidx);
     let (mut forward, mut inverse) = (vec![0usize; n], vec![0usize; n]);
