@@ -1,0 +1,155 @@
+//! The unit symbols that are known, with their prefixes.
+
+use super::Dimension;
+
+/// What one symbol means: `num*10^decade/den` coherent SI units, `offset` added.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Symbol {
+    pub dimension: Dimension,
+    /// Whether it is an angle: 1 or 0.
+    pub angle: i16,
+    pub num: f64,
+    pub den: f64,
+    pub decade: i32,
+    pub offset: f64,
+}
+
+const PREFIXES: [(&str, i32); 22] = [
+    ("da", 1),
+    ("Y", 24),
+    ("Z", 21),
+    ("E", 18),
+    ("P", 15),
+    ("T", 12),
+    ("G", 9),
+    ("M", 6),
+    ("k", 3),
+    ("h", 2),
+    ("d", -1),
+    ("c", -2),
+    ("m", -3),
+    ("u", -6),
+    ("\u{b5}", -6),
+    ("\u{3bc}", -6),
+    ("n", -9),
+    ("p", -12),
+    ("f", -15),
+    ("a", -18),
+    ("z", -21),
+    ("y", -24),
+];
+
+const fn si(dimension: [i16; 7]) -> Symbol {
+    Symbol { dimension: Dimension::new(dimension), angle: 0, num: 1.0, den: 1.0, decade: 0, offset: 0.0 }
+}
+
+const fn decimal(decade: i32, dimension: [i16; 7]) -> Symbol {
+    Symbol { decade, ..si(dimension) }
+}
+
+const fn scaled(num: f64, den: f64, dimension: [i16; 7]) -> Symbol {
+    Symbol { num, den, ..si(dimension) }
+}
+
+const fn angle(num: f64, den: f64) -> Symbol {
+    Symbol { num, den, angle: 1, ..si(ONE) }
+}
+
+const ONE: [i16; 7] = [0; 7];
+const MASS: [i16; 7] = [1, 0, 0, 0, 0, 0, 0];
+const LENGTH: [i16; 7] = [0, 1, 0, 0, 0, 0, 0];
+const TIME: [i16; 7] = [0, 0, 1, 0, 0, 0, 0];
+const TEMPERATURE: [i16; 7] = [0, 0, 0, 0, 1, 0, 0];
+const FREQUENCY: [i16; 7] = [0, 0, -1, 0, 0, 0, 0];
+const VOLUME: [i16; 7] = [0, 3, 0, 0, 0, 0, 0];
+const FORCE: [i16; 7] = [1, 1, -2, 0, 0, 0, 0];
+const PRESSURE: [i16; 7] = [1, -1, -2, 0, 0, 0, 0];
+const ENERGY: [i16; 7] = [1, 2, -2, 0, 0, 0, 0];
+const POWER: [i16; 7] = [1, 2, -3, 0, 0, 0, 0];
+const RESISTANCE: [i16; 7] = [1, 2, -3, -2, 0, 0, 0];
+const TURN: f64 = std::f64::consts::TAU;
+const HALF_TURN: f64 = std::f64::consts::PI;
+
+/// A symbol that takes prefixes.
+fn prefixable(name: &str) -> Option<Symbol> {
+    Some(match name {
+        "m" => si(LENGTH),
+        "g" => decimal(-3, MASS),
+        "s" => si(TIME),
+        "A" => si([0, 0, 0, 1, 0, 0, 0]),
+        "K" => si(TEMPERATURE),
+        "mol" => si([0, 0, 0, 0, 0, 1, 0]),
+        "cd" | "lm" => si([0, 0, 0, 0, 0, 0, 1]),
+        "rad" => angle(1.0, 1.0),
+        "sr" => si(ONE),
+        "Hz" | "Bq" => si(FREQUENCY),
+        "N" => si(FORCE),
+        "Pa" => si(PRESSURE),
+        "J" => si(ENERGY),
+        "W" | "VA" | "var" => si(POWER),
+        "C" => si([0, 0, 1, 1, 0, 0, 0]),
+        "V" => si([1, 2, -3, -1, 0, 0, 0]),
+        "F" => si([-1, -2, 4, 2, 0, 0, 0]),
+        "Ohm" | "ohm" | "\u{3a9}" | "\u{2126}" => si(RESISTANCE),
+        "S" => si([-1, -2, 3, 2, 0, 0, 0]),
+        "Wb" => si([1, 2, -2, -1, 0, 0, 0]),
+        "T" => si([1, 0, -2, -1, 0, 0, 0]),
+        "H" => si([1, 2, -2, -2, 0, 0, 0]),
+        "lx" => si([0, -2, 0, 0, 0, 0, 1]),
+        "Gy" | "Sv" => si([0, 2, -2, 0, 0, 0, 0]),
+        "kat" => si([0, 0, -1, 0, 0, 1, 0]),
+        "bar" => decimal(5, PRESSURE),
+        "l" | "L" => decimal(-3, VOLUME),
+        "t" => decimal(3, MASS),
+        "P" => decimal(-1, [1, -1, -1, 0, 0, 0, 0]),
+        "St" => decimal(-4, [0, 2, -1, 0, 0, 0, 0]),
+        "eV" => Symbol { num: 1.602_176_634, ..decimal(-19, ENERGY) },
+        "Wh" => scaled(3600.0, 1.0, ENERGY),
+        "cal" => scaled(4.184, 1.0, ENERGY),
+        _ => return None,
+    })
+}
+
+/// A symbol that stands alone.
+fn plain(name: &str) -> Option<Symbol> {
+    Some(match name {
+        "1" => si(ONE),
+        "min" => scaled(60.0, 1.0, TIME),
+        "h" => scaled(3600.0, 1.0, TIME),
+        "d" => scaled(86400.0, 1.0, TIME),
+        "deg" | "\u{b0}" => angle(HALF_TURN, 180.0),
+        "gon" => angle(HALF_TURN, 200.0),
+        "rev" | "r" => angle(TURN, 1.0),
+        "rpm" => Symbol { dimension: Dimension::new(FREQUENCY), ..angle(TURN, 60.0) },
+        "degC" | "\u{b0}C" => Symbol { offset: 273.15, ..si(TEMPERATURE) },
+        "degF" | "\u{b0}F" => Symbol { offset: 459.67 * 5.0 / 9.0, ..scaled(5.0, 9.0, TEMPERATURE) },
+        "degRk" => scaled(5.0, 9.0, TEMPERATURE),
+        "%" => decimal(-2, ONE),
+        "ppm" => decimal(-6, ONE),
+        "ha" => decimal(4, [0, 2, 0, 0, 0, 0, 0]),
+        "atm" => scaled(101_325.0, 1.0, PRESSURE),
+        "psi" => scaled(6_894.757_293_168, 1.0, PRESSURE),
+        "mmHg" => scaled(133.322_387_415, 1.0, PRESSURE),
+        "kgf" => scaled(9.80665, 1.0, FORCE),
+        "lbf" => scaled(4.448_221_615_260_5, 1.0, FORCE),
+        "lb" => scaled(0.453_592_37, 1.0, MASS),
+        "in" => Symbol { num: 254.0, ..decimal(-4, LENGTH) },
+        "ft" => Symbol { num: 3048.0, ..decimal(-4, LENGTH) },
+        "gal" => Symbol { num: 3_785_411_784.0, ..decimal(-12, VOLUME) },
+        "PS" => scaled(735.498_75, 1.0, POWER),
+        "hp" => scaled(745.699_871_582, 1.0, POWER),
+        _ => return None,
+    })
+}
+
+/// What a symbol means, with a prefix or without.
+pub(super) fn lookup(name: &str) -> Option<Symbol> {
+    plain(name).or_else(|| prefixable(name)).or_else(|| prefixed(name))
+}
+
+fn prefixed(name: &str) -> Option<Symbol> {
+    PREFIXES.iter().find_map(|(prefix, decade)| {
+        let symbol = prefixable(name.strip_prefix(prefix)?)?;
+        Some(Symbol { decade: symbol.decade + decade, ..symbol })
+    })
+}

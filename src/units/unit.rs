@@ -1,0 +1,405 @@
+//! Unit strings as Modelica writes them, and values in them.
+//!
+//! `unit = factor {("." | "*") factor} {"/" factor}`, where a factor is a symbol with an optional whole exponent (`m2`,
+//! `s-1`, `m^2`), `1`, or a unit in brackets. After a `/` only one factor may follow before the next `/`: `J/kg.K` is
+//! refused, as in Modelica, because it can be read in two ways.
+
+use super::dimension::{Dimension, power_of};
+use super::symbols::{self, Symbol};
+
+/// A unit of measurement. A value `x` in it is `x*factor + offset` in coherent SI units.
+///
+/// The factor is kept as `num*10^decade/den`, so that converting `0.8 ml` to m3 gives the number nearest to 8e-7.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unit {
+    /// The dimension. An angle has none.
+    pub dimension: Dimension,
+    /// The exponent of the angle in sixtieths, which [`Dimension`] leaves out: 60 for `rad/s`, 0 for `1/s`.
+    pub angle: i16,
+    num: f64,
+    den: f64,
+    decade: i32,
+    /// What is added after multiplying, in K; only for temperatures such as `degC`.
+    pub offset: f64,
+}
+
+/// Why a text is not a unit.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, thiserror::Error)]
+pub enum UnitError {
+    /// A symbol that is not known.
+    #[error("`{part}` in the unit `{unit}` is not known")]
+    Unknown {
+        /// The unknown symbol.
+        part: String,
+        /// The whole unit.
+        unit: String,
+    },
+    /// The text breaks off, or goes on where it should end.
+    #[error("the unit `{unit}` cannot be read from `{rest}` on")]
+    Form {
+        /// The first part that cannot be read.
+        rest: String,
+        /// The whole unit.
+        unit: String,
+    },
+    /// `a/b.c`
+    #[error("the unit `{unit}` can be read in two ways: write `a/(b.c)`, or the product before the `/`")]
+    Ambiguous {
+        /// The whole unit.
+        unit: String,
+    },
+    /// The text before a unit is not a number.
+    #[error("`{text}` is not a number")]
+    NotNumber {
+        /// The text.
+        text: String,
+    },
+}
+
+impl Unit {
+    /// The number 1.
+    pub const ONE: Unit = Unit { dimension: Dimension::NONE, angle: 0, num: 1.0, den: 1.0, decade: 0, offset: 0.0 };
+
+    /// Reads a unit string; the empty one is the unit 1.
+    pub fn parse(text: &str) -> Result<Unit, UnitError> {
+        if text.trim().is_empty() {
+            return Ok(Unit::ONE);
+        }
+        let mut parser = Parser { unit: text.trim(), rest: text.trim() };
+        let unit = parser.unit(0)?;
+        if parser.rest.is_empty() { Ok(unit) } else { Err(parser.form()) }
+    }
+
+    /// How many coherent SI units one of it is.
+    pub fn factor(&self) -> f64 {
+        ratio(1.0, self.num, self.den, self.decade)
+    }
+
+    /// A value in this unit, in coherent SI units.
+    pub fn to_si(&self, value: f64) -> f64 {
+        ratio(value, self.num, self.den, self.decade) + self.offset
+    }
+
+    /// A value in this unit as a value in another; `None` when the dimensions differ. Where both are decimal multiples of
+    /// one unit the result is the number nearest to the exact one.
+    pub fn convert(&self, value: f64, to: &Unit) -> Option<f64> {
+        let from = self;
+        if from.dimension != to.dimension {
+            return None;
+        }
+        if from.offset == to.offset && from.factor() == to.factor() {
+            return Some(value);
+        }
+        let (num, den) = (from.num * to.den, from.den * to.num);
+        let scaled = ratio(value, num, den, from.decade - to.decade);
+        let shift = from.offset - to.offset;
+        Some(if shift == 0.0 { scaled } else { scaled + ratio(shift, to.den, to.num, -to.decade) })
+    }
+
+    fn of(symbol: Symbol) -> Unit {
+        let Symbol { dimension, angle, num, den, decade, offset } = symbol;
+        Unit { dimension, angle: 60 * angle, num, den, decade, offset }
+    }
+
+    /// The product. Offsets vanish: in `W/degC` a degree is a difference.
+    fn times(self, other: Unit) -> Option<Unit> {
+        Some(Unit {
+            dimension: self.dimension.times(other.dimension)?,
+            angle: self.angle.checked_add(other.angle)?,
+            num: self.num * other.num,
+            den: self.den * other.den,
+            decade: self.decade.checked_add(other.decade)?,
+            offset: 0.0,
+        })
+    }
+
+    fn power(self, exponent: i32) -> Option<Unit> {
+        if exponent == 1 {
+            return Some(self);
+        }
+        let (num, den) = if exponent < 0 { (self.den, self.num) } else { (self.num, self.den) };
+        let magnitude = i32::try_from(exponent.unsigned_abs()).ok()?;
+        let (num, den) = (num.powi(magnitude), den.powi(magnitude));
+        if !num.is_finite() || !den.is_finite() {
+            return None;
+        }
+        Some(Unit {
+            dimension: self.dimension.power(f64::from(exponent))?,
+            angle: power_of(self.angle, f64::from(exponent))?,
+            num,
+            den,
+            decade: self.decade.checked_mul(exponent)?,
+            offset: 0.0,
+        })
+    }
+}
+
+/// `value*num*10^decade/den` with one multiplication and one division where the powers of ten are exact.
+fn ratio(value: f64, num: f64, den: f64, decade: i32) -> f64 {
+    let power = 10f64.powi(decade.abs());
+    if decade < 0 { value * num / (den * power) } else { value * (num * power) / den }
+}
+
+/// Reads a number with or without a unit behind it: `5e5`, `210 bar`, `20degC`.
+pub fn quantity(text: &str) -> Result<(f64, Option<Unit>), UnitError> {
+    let text = text.trim();
+    let (number, rest) = text.split_at(number_length(text));
+    let value = number.parse().map_err(|_| UnitError::NotNumber { text: text.into() })?;
+    let rest = rest.trim();
+    let unit = if rest.is_empty() { None } else { Some(Unit::parse(rest)?) };
+    Ok((value, unit))
+}
+
+/// How many bytes at the beginning are a decimal number.
+fn number_length(text: &str) -> usize {
+    let bytes = text.as_bytes();
+    let digits = |from: usize| bytes.iter().skip(from).take_while(|b| b.is_ascii_digit()).count();
+    let sign = |at: usize| usize::from(matches!(bytes.get(at), Some(b'+' | b'-')));
+    let mut end = sign(0);
+    end += digits(end);
+    if bytes.get(end) == Some(&b'.') {
+        end += 1 + digits(end + 1);
+    }
+    if matches!(bytes.get(end), Some(b'e' | b'E')) {
+        let power = end + 1 + sign(end + 1);
+        if digits(power) > 0 {
+            end = power + digits(power);
+        }
+    }
+    end
+}
+
+/// Brackets may be nested so deep.
+const DEEPEST: u32 = 50;
+
+struct Parser<'a> {
+    unit: &'a str,
+    rest: &'a str,
+}
+
+impl Parser<'_> {
+    fn form(&self) -> UnitError {
+        let rest = if self.rest.is_empty() { "its end" } else { self.rest };
+        UnitError::Form { rest: rest.into(), unit: self.unit.into() }
+    }
+
+    fn eat(&mut self, wanted: char) -> bool {
+        let found = self.rest.trim_start().strip_prefix(wanted);
+        if let Some(rest) = found {
+            self.rest = rest.trim_start();
+        }
+        found.is_some()
+    }
+
+    fn unit(&mut self, depth: u32) -> Result<Unit, UnitError> {
+        let mut product = self.factor(depth)?;
+        let mut below = false;
+        loop {
+            let next = if self.eat('/') {
+                below = true;
+                self.factor(depth)?.power(-1)
+            } else if self.eat('.') || self.eat('*') || self.eat('\u{b7}') {
+                if below {
+                    return Err(UnitError::Ambiguous { unit: self.unit.into() });
+                }
+                Some(self.factor(depth)?)
+            } else {
+                return Ok(product);
+            };
+            product = next.and_then(|next| product.times(next)).ok_or_else(|| self.form())?;
+        }
+    }
+
+    fn factor(&mut self, depth: u32) -> Result<Unit, UnitError> {
+        let base = if depth < DEEPEST && self.eat('(') {
+            let inner = self.unit(depth + 1)?;
+            if !self.eat(')') {
+                return Err(self.form());
+            }
+            inner
+        } else {
+            self.symbol()?
+        };
+        let exponent = if base == Unit::ONE { 1 } else { self.exponent()? };
+        base.power(exponent).ok_or_else(|| self.form())
+    }
+
+    fn symbol(&mut self) -> Result<Unit, UnitError> {
+        let letter = |c: char| c.is_alphabetic() || matches!(c, '%' | '\u{b0}' | '_');
+        let end = self.rest.find(|c| !letter(c)).unwrap_or(self.rest.len());
+        let (name, rest) = if self.rest.starts_with('1') { self.rest.split_at(1) } else { self.rest.split_at(end) };
+        if name.is_empty() {
+            return Err(self.form());
+        }
+        let symbol =
+            symbols::lookup(name).ok_or_else(|| UnitError::Unknown { part: name.into(), unit: self.unit.into() })?;
+        self.rest = rest;
+        Ok(Unit::of(symbol))
+    }
+
+    /// A whole exponent directly behind a symbol, or after `^`; else 1.
+    fn exponent(&mut self) -> Result<i32, UnitError> {
+        for (symbol, exponent) in [('\u{b2}', 2), ('\u{b3}', 3)] {
+            if let Some(rest) = self.rest.strip_prefix(symbol) {
+                self.rest = rest;
+                return Ok(exponent);
+            }
+        }
+        let raised = self.eat('^');
+        let bracket = raised && self.eat('(');
+        let sign = usize::from(self.rest.starts_with(['+', '-']));
+        let digits = self.rest[sign..].bytes().take_while(u8::is_ascii_digit).count();
+        if digits == 0 {
+            return if raised || sign > 0 { Err(self.form()) } else { Ok(1) };
+        }
+        let exponent = self.rest[..sign + digits].parse().map_err(|_| self.form())?;
+        self.rest = &self.rest[sign + digits..];
+        if bracket && !self.eat(')') {
+            return Err(self.form());
+        }
+        Ok(exponent)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Unit, factor, coherent SI unit.
+    const UNITS: &[(&str, f64, &str)] = &[
+        ("1", 1.0, "1"),
+        ("Pa", 1.0, "Pa"),
+        ("bar", 1e5, "Pa"),
+        ("mbar", 1e2, "Pa"),
+        ("MPa", 1e6, "Pa"),
+        ("N/m2", 1.0, "Pa"),
+        ("N.m", 1.0, "J"),
+        ("N*m", 1.0, "J"),
+        ("J/(kg.K)", 1.0, "J/(kg.K)"),
+        ("l", 1e-3, "m3"),
+        ("l/min", 1.0 / 60000.0, "m3/s"),
+        ("ml", 1e-6, "m3"),
+        ("cm3", 1e-6, "m3"),
+        ("mm2/s", 1e-6, "m2/s"),
+        ("cSt", 1e-6, "m2/s"),
+        ("cP", 1e-3, "Pa.s"),
+        ("m^2", 1.0, "m2"),
+        ("m^(-2)", 1.0, "1/m2"),
+        ("s-1", 1.0, "1/s"),
+        ("Hz", 1.0, "1/s"),
+        ("1/min", 1.0 / 60.0, "1/s"),
+        ("rev/min", std::f64::consts::TAU / 60.0, "1/s"),
+        ("r/min", std::f64::consts::TAU / 60.0, "1/s"),
+        ("rpm", std::f64::consts::TAU / 60.0, "1/s"),
+        ("rad/s", 1.0, "1/s"),
+        ("deg", std::f64::consts::PI / 180.0, "1"),
+        ("%", 0.01, "1"),
+        ("min", 60.0, "s"),
+        ("h", 3600.0, "s"),
+        ("d", 86400.0, "s"),
+        ("t", 1000.0, "kg"),
+        ("kg.cm2", 1e-4, "kg.m2"),
+        ("kN", 1e3, "N"),
+        ("daN", 10.0, "N"),
+        ("kW", 1e3, "W"),
+        ("mH", 1e-3, "H"),
+        ("uF", 1e-6, "F"),
+        ("\u{b5}m", 1e-6, "m"),
+        ("kOhm", 1e3, "Ohm"),
+        ("V.s/rad", 1.0, "Wb"),
+        ("Wb", 1.0, "Wb"),
+        ("T", 1.0, "T"),
+        ("K", 1.0, "K"),
+        ("1/K", 1.0, "1/K"),
+        ("W/degC", 1.0, "W/K"),
+        ("m/s/s", 1.0, "m/s2"),
+        ("psi", 6894.757293168, "Pa"),
+        ("kg/(m.s)", 1.0, "Pa.s"),
+        ("N.s/m", 1.0, "kg/s"),
+        ("(N.s)/(m)", 1.0, "kg/s"),
+        ("kg/m\u{b3}", 1.0, "kg/m3"),
+        ("kW.h", 3.6e6, "J"),
+        ("V.s/m", 1.0, "kg.m/(s2.A)"),
+        ("", 1.0, "1"),
+        ("m3/(s.Pa)", 1.0, "m4.s/kg"),
+    ];
+
+    #[test]
+    fn units_have_factor_and_dimension() {
+        for &(text, factor, si) in UNITS {
+            let unit = Unit::parse(text).unwrap_or_else(|e| panic!("{text}: {e}"));
+            assert_eq!((unit.factor(), unit.dimension.to_string().as_str()), (factor, si), "{text}");
+        }
+    }
+
+    #[test]
+    fn errors_name_the_part() {
+        let cases = [
+            ("N/foo", "`foo` in the unit `N/foo` is not known"),
+            ("kbars", "`kbars` in the unit `kbars` is not known"),
+            ("J/kg.K", "the unit `J/kg.K` can be read in two ways: write `a/(b.c)`, or the product before the `/`"),
+            ("m/", "the unit `m/` cannot be read from `its end` on"),
+            ("(m", "the unit `(m` cannot be read from `its end` on"),
+            ("m)", "the unit `m)` cannot be read from `)` on"),
+            ("m2.5", "the unit `m2.5` cannot be read from `5` on"),
+            ("10", "the unit `10` cannot be read from `0` on"),
+            ("m999999", "the unit `m999999` cannot be read from `its end` on"),
+        ];
+        for (text, message) in cases {
+            assert_eq!(Unit::parse(text).map_err(|e| e.to_string()), Err(message.to_string()));
+        }
+        let deep = "(".repeat(100_000);
+        assert!(Unit::parse(&deep).is_err());
+    }
+
+    #[test]
+    fn conversions_are_exact_where_they_can_be() {
+        let cases = [
+            (210.0, "bar", "Pa", 210e5),
+            (0.8, "ml", "m3", 0.8e-6),
+            (6.0, "l/min", "m3/s", 1e-4),
+            (20.0, "degC", "K", 293.15),
+            (293.15, "K", "degC", 20.0),
+            (3.0, "m", "m", 3.0),
+            (50.0, "%", "1", 0.5),
+            (1500.0, "rev/min", "rev/s", 25.0),
+            (46.0, "cSt", "m2/s", 46e-6),
+        ];
+        for (value, from, to, expected) in cases {
+            let (from, to) = (Unit::parse(from).expect("a unit"), Unit::parse(to).expect("a unit"));
+            let converted = from.convert(value, &to).expect("same dimension");
+            approx::assert_relative_eq!(converted, expected, max_relative = 2e-15);
+        }
+        let fahrenheit = Unit::parse("degF").expect("a unit");
+        let celsius = Unit::parse("degC").expect("a unit");
+        approx::assert_relative_eq!(fahrenheit.convert(212.0, &celsius).expect("both"), 100.0, epsilon = 1e-10);
+        assert_eq!(celsius.convert(1.0, &Unit::ONE), None);
+    }
+
+    #[test]
+    fn quantities() {
+        let bar = Unit::parse("bar").ok();
+        let cases = [
+            ("210 bar", 210.0, bar),
+            ("210bar", 210.0, bar),
+            ("5e5", 5e5, None),
+            (" -1.5E-3 ", -1.5e-3, None),
+            (".5", 0.5, None),
+            ("2eV", 2.0, Unit::parse("eV").ok()),
+            ("50 %", 50.0, Unit::parse("%").ok()),
+        ];
+        for (text, value, unit) in cases {
+            assert_eq!(quantity(text), Ok((value, unit)), "{text}");
+        }
+        assert!(matches!(quantity("bar"), Err(UnitError::NotNumber { .. })));
+        assert!(matches!(quantity("3 quux"), Err(UnitError::Unknown { .. })));
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn nothing_panics(text in "[a-zA-Z0-9./()\u{b0}\u{b2}^ -]{0,20}") {
+            let _ = Unit::parse(&text);
+            let _ = quantity(&text);
+        }
+    }
+}
