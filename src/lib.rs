@@ -17,3 +17,7 @@ pub mod lower;
 pub mod results;
 
 pub mod solve;
+
+pub mod plot;
+
+pub mod cli;

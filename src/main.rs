@@ -1,3 +1,17 @@
-//! The `bramah` command.
+//! The `bramah` command. See `bramah::cli`.
 
-fn main() {}
+/// Deeply nested models recurse; the main thread's stack is too small for the deepest that are accepted.
+const STACK: usize = 1 << 28;
+
+fn main() -> std::process::ExitCode {
+    let worker = std::thread::Builder::new().name("bramah".to_owned()).stack_size(STACK).spawn(bramah::cli::main);
+    match worker.map(std::thread::JoinHandle::join) {
+        Ok(Ok(code)) => code,
+        // The panic hook has said what happened.
+        Ok(Err(_)) => std::process::ExitCode::from(101),
+        Err(error) => {
+            eprintln!("error: no thread can be started: {error}");
+            std::process::ExitCode::from(2)
+        }
+    }
+}

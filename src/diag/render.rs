@@ -156,7 +156,16 @@ fn human(sources: &Sources, d: &Diagnostic, width: usize, colour: bool) -> Strin
     }
     let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
     let report: &[Group<'_>] = &[group];
-    renderer.decor_style(DecorStyle::Ascii).term_width(width.clamp(40, 10_000)).render(report)
+    let text = renderer.decor_style(DecorStyle::Ascii).term_width(width.clamp(40, 10_000)).render(report);
+    if d.labels.is_empty() { without_margin(&text, colour) } else { text }
+}
+
+/// Without a text beside it the empty margin line has no meaning.
+fn without_margin(text: &str, colour: bool) -> String {
+    if colour {
+        return text.to_owned();
+    }
+    text.lines().filter(|line| line.trim() != "|").collect::<Vec<_>>().join("\n")
 }
 
 fn notes(d: &Diagnostic) -> Vec<String> {

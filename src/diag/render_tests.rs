@@ -74,6 +74,16 @@ fn a_line_of_100_kb_and_control_characters_do_no_harm() {
 }
 
 #[test]
+fn messages_without_place_have_no_margin() {
+    let d = Diagnostic::new(Code::BadArgument, "no such model").note("there are two").help("name one");
+    insta::assert_snapshot!(render(&Sources::default(), &[d], Format::Human, 100, false), @r"
+    error[E901]: no such model
+     = note: there are two
+     = help: name one
+    ");
+}
+
+#[test]
 fn counts() {
     let (_, d) = open_port();
     assert_eq!(count(&[d.clone(), d]).as_deref(), Some("2 errors"));

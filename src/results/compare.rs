@@ -244,6 +244,26 @@ fn reason(out: &SignalComparison, left: &Curve, right: &Curve) -> Option<String>
     }
 }
 
+/// The edges of the tube around a signal, for pictures: times, lower and upper edge.
+pub fn tube(reference: &Trajectory, index: usize, height: f64, width: f64) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
+    let curve = Curve::new(reference, index);
+    let mut tube = Tube::new(&curve.times, &curve.values, curve.held, width, height);
+    // The edges bend half a width before and after each point.
+    let mut times: Vec<f64> = curve.times.iter().flat_map(|&t| [t - width, t, t + width]).collect();
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    let mut edges = (Vec::new(), Vec::new(), Vec::new());
+    let (start, end) = (curve.times.first().copied(), curve.times.last().copied());
+    for time in times.into_iter().filter(|&t| Some(t) >= start && Some(t) <= end) {
+        if let Some((low, high)) = tube.at(time) {
+            edges.0.push(time);
+            edges.1.push(low);
+            edges.2.push(high);
+        }
+    }
+    edges
+}
+
 #[cfg(test)]
 #[path = "compare_tests.rs"]
 mod tests;

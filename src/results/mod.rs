@@ -4,6 +4,7 @@ mod cells;
 pub mod compare;
 mod csv;
 mod delay;
+pub mod glob;
 pub mod mat;
 pub mod number;
 pub mod recording;
@@ -12,5 +13,6 @@ mod tube;
 
 pub use compare::{Comparison, Tolerance, compare};
 pub use csv::{CsvWriter, csv_bytes_per_row};
+pub use glob::Globs;
 pub use recording::{Strictness, read_csv};
 pub use trajectory::{Kind, Signal, Trajectory};

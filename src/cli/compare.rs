@@ -1,0 +1,252 @@
+//! `bramah compare`
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use super::messages::Messages;
+use super::plot::stem;
+use super::{Ending, Failure, data, files, plot};
+use crate::diag::{Code, Diagnostic, nearest};
+use crate::plot::select::shown_values;
+use crate::plot::{Band, Figure, Panel, Series};
+use crate::results::compare::{Comparison, SignalComparison, Tolerance, compare, tube};
+use crate::results::{Globs, Trajectory, glob, number};
+
+/// Put a result beside a reference, signal by signal
+#[derive(Args, Debug)]
+#[command(after_help = "\
+The first file is the reference: around each of its signals lies a tube, and the second file's signal has to stay in it.
+The tube reaches --tolerance times the signal's range up and down, and --time-tolerance to both sides.
+
+Examples:
+  bramah compare bench.csv press.csv --map 'pump.b.p=p_bench' --tolerance 0.02
+  bramah compare old.csv new.csv --variables 'cyl.*' --format json
+  bramah compare old.csv new.csv -o difference.svg
+
+Exit status: 0 all signals within tolerance, 1 a violation, 2 the files cannot be compared.")]
+pub(super) struct CompareArgs {
+    /// The reference: CSV or Modelica .mat
+    #[arg(value_name = "A")]
+    reference: PathBuf,
+    /// The result: CSV or Modelica .mat
+    #[arg(value_name = "B")]
+    result: PathBuf,
+    /// Signals to compare [default: those in both files]; may be repeated
+    #[arg(long, value_name = "GLOB,...")]
+    variables: Vec<String>,
+    /// Pairs of different name: signal of B = column of A, with its unit if it is another; may be repeated
+    #[arg(long, value_name = "B=A[UNIT],...")]
+    map: Vec<String>,
+    /// Height of the tube as part of a signal's range
+    #[arg(long, visible_alias = "relative-tolerance", default_value_t = 0.002, value_name = "PART", value_parser = positive)]
+    tolerance: f64,
+    /// Height of the tube in the signal's unit, added to the relative one
+    #[arg(long, default_value_t = 0.0, value_name = "VALUE", value_parser = positive)]
+    absolute_tolerance: f64,
+    /// Width of the tube in seconds [default: the relative tolerance of A's duration]
+    #[arg(long, value_name = "SECONDS", value_parser = positive)]
+    time_tolerance: Option<f64>,
+    /// The time column of CSV files [default: `time`, or the first]
+    #[arg(long, value_name = "NAME")]
+    time_column: Option<String>,
+    /// Unit of signals in a file without units, for both files; may be repeated
+    #[arg(long, value_name = "GLOB=UNIT")]
+    unit: Vec<String>,
+    /// How the numbers are written to stdout
+    #[arg(long, value_enum, default_value_t = TableFormat::Table)]
+    format: TableFormat,
+    /// A picture: .svg, .png or .html
+    #[arg(short = 'o', long = "output-file", visible_aliases = ["output", "plot"], value_name = "FILE")]
+    output: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum TableFormat {
+    /// For people
+    Table,
+    /// For programs
+    Json,
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(v) if v >= 0.0 && v.is_finite() => Ok(v),
+        _ => Err("a number that is not negative is expected".to_owned()),
+    }
+}
+
+pub(super) fn run(args: &CompareArgs, messages: &mut Messages) -> Result<Ending, Failure> {
+    let mut reference = data::result(&args.reference, args.time_column.as_deref(), messages)?;
+    let mut result = data::result(&args.result, args.time_column.as_deref(), messages)?;
+    data::apply_units(&mut reference, &args.unit)?;
+    data::apply_units(&mut result, &args.unit)?;
+    let pairs = pairs(args, &mut reference, &result)?;
+    let tolerance =
+        Tolerance { relative: args.tolerance, absolute: args.absolute_tolerance, time: args.time_tolerance };
+    let comparison = compare(&reference, &result, &pairs, tolerance);
+    let text = match args.format {
+        TableFormat::Table => table(&comparison),
+        TableFormat::Json => {
+            let text = serde_json::to_string_pretty(&comparison).expect("numbers and texts always serialize");
+            format!("{text}\n")
+        }
+    };
+    files::print(&text)?;
+    if let Some(path) = &args.output {
+        let names = (stem(&args.reference), stem(&args.result));
+        let figure = picture(&comparison, &reference, &result, &pairs, &names);
+        let facts = [("reference".to_owned(), names.0.clone()), ("result".to_owned(), names.1.clone())];
+        plot::write(&figure, &facts, path, messages)?;
+    }
+    Ok(if comparison.within { Ending::Fine } else { Ending::Wrong })
+}
+
+/// Indices in reference and result of what is to be compared. Units given in `--map` are written into the reference,
+/// and its values converted to the result's unit.
+fn pairs(args: &CompareArgs, reference: &mut Trajectory, result: &Trajectory) -> Result<Vec<(usize, usize)>, Failure> {
+    let mut pairs = Vec::new();
+    for entry in args.map.iter().flat_map(|m| glob::split_list(m)) {
+        pairs.push(mapped(&entry, args, reference, result)?);
+    }
+    let globs = Globs::new(&args.variables);
+    if args.map.is_empty() || !globs.is_empty() {
+        for (a, signal) in reference.signals.iter().enumerate() {
+            let wanted = globs.is_empty() || globs.matches(&signal.name);
+            match result.index(&signal.name) {
+                Some(b) if wanted && !pairs.contains(&(a, b)) => pairs.push((a, b)),
+                None if wanted && !globs.is_empty() => return Err(missing(&signal.name, &args.result, result)),
+                _ => {}
+            }
+        }
+    }
+    if pairs.is_empty() {
+        let text = format!("`{}` and `{}` have no signal in common", args.reference.display(), args.result.display());
+        return Err(Diagnostic::new(Code::BadMap, text).help("name the pairs with --map 'B=A,...'").into());
+    }
+    for &(a, b) in &pairs {
+        harmonise(reference, a, &result.signals[b].unit);
+    }
+    Ok(pairs)
+}
+
+fn mapped(
+    entry: &str,
+    args: &CompareArgs,
+    reference: &mut Trajectory,
+    result: &Trajectory,
+) -> Result<(usize, usize), Failure> {
+    let Some((ours, theirs)) = entry.split_once('=') else {
+        return Err(Failure::new(Code::BadMap, format!("`--map {entry}`: `B=A` is expected, a signal of each file")));
+    };
+    let b = result.index(ours.trim()).ok_or_else(|| missing(ours.trim(), &args.result, result))?;
+    let theirs = theirs.trim();
+    if let Some(a) = reference.index(theirs) {
+        return Ok((a, b));
+    }
+    let with_unit = theirs.strip_suffix(']').and_then(|t| t.rsplit_once('['));
+    let Some((name, unit)) = with_unit else { return Err(missing(theirs, &args.reference, reference)) };
+    let a = reference.index(name.trim()).ok_or_else(|| missing(name.trim(), &args.reference, reference))?;
+    crate::units::Unit::parse(unit).map_err(|e| Failure::new(Code::BadMap, format!("`--map {entry}`: {e}")))?;
+    reference.signals[a].unit = unit.trim().to_owned();
+    Ok((a, b))
+}
+
+/// Converts a column to a unit where both units are known and of the same kind.
+fn harmonise(trajectory: &mut Trajectory, index: usize, unit: &str) {
+    let signal = &mut trajectory.signals[index];
+    if unit.is_empty() || signal.unit.is_empty() || signal.unit == unit {
+        return;
+    }
+    let previous = std::mem::replace(&mut signal.display_unit, unit.to_owned());
+    let values = shown_values(signal, &trajectory.columns[index]);
+    if values != trajectory.columns[index] {
+        trajectory.columns[index] = values;
+        signal.unit = unit.to_owned();
+    }
+    signal.display_unit = previous;
+}
+
+fn missing(name: &str, path: &std::path::Path, trajectory: &Trajectory) -> Failure {
+    let diagnostic = Diagnostic::new(Code::BadMap, format!("`{}` has no signal `{name}`", path.display()));
+    match nearest(name, trajectory.signals.iter().map(|s| s.name.as_str())) {
+        Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
+        None => diagnostic,
+    }
+    .into()
+}
+
+/// The numbers in columns for people.
+fn table(comparison: &Comparison) -> String {
+    let head = ["signal", "unit", "rmse", "normalised", "maximum", "at s", "delay s", "outside", "verdict"];
+    let mut rows: Vec<Vec<String>> = vec![head.map(str::to_owned).to_vec()];
+    rows.extend(comparison.signals.iter().map(row));
+    let widths: Vec<usize> =
+        (0..head.len()).map(|c| rows.iter().map(|r| r[c].chars().count()).max().unwrap_or(0)).collect();
+    let mut out = String::new();
+    for row in rows {
+        let cells = row.iter().zip(&widths).enumerate().map(|(i, (cell, &width))| {
+            let left = i < 2 || i + 1 == head.len();
+            if left { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
+        });
+        out.push_str(cells.collect::<Vec<_>>().join("  ").trim_end());
+        out.push('\n');
+    }
+    out
+}
+
+fn row(s: &SignalComparison) -> Vec<String> {
+    let shown = |v: Option<f64>| v.map_or("-".to_owned(), |v| number::rounded(v, 4));
+    let name = match &s.other {
+        Some(other) => format!("{} = {other}", s.name),
+        None => s.name.clone(),
+    };
+    let verdict = match (&s.reason, s.within) {
+        (Some(reason), _) => reason.clone(),
+        (None, true) => "ok".to_owned(),
+        (None, false) => format!("outside from {} s", shown(s.first_violation)),
+    };
+    let percent = s.normalised.map_or("-".to_owned(), |v| format!("{} %", number::rounded(100.0 * v, 3)));
+    let outside = format!("{}/{}", s.violations, s.points);
+    vec![
+        name,
+        s.unit.clone(),
+        shown(s.rmse),
+        percent,
+        shown(s.maximum),
+        shown(s.maximum_at),
+        shown(s.delay),
+        outside,
+        verdict,
+    ]
+}
+
+/// One panel a signal: the reference with its tube, and the result.
+fn picture(
+    comparison: &Comparison,
+    reference: &Trajectory,
+    result: &Trajectory,
+    pairs: &[(usize, usize)],
+    names: &(String, String),
+) -> Figure {
+    let panels = comparison.signals.iter().zip(pairs).map(|(s, &(a, b))| {
+        let curve = |t: &Trajectory, i: usize, name: &str, second: bool| Series {
+            name: format!("{} ({name})", t.signals[i].name),
+            x: t.times.clone(),
+            y: t.columns[i].clone(),
+            held: t.signals[i].kind.is_discrete(),
+            colour: usize::from(second),
+            dashed: second,
+        };
+        let (x, low, high) = tube(reference, a, s.tolerance, s.time_tolerance);
+        let unit = if s.unit.is_empty() { String::new() } else { format!(" in {}", s.unit) };
+        Panel {
+            x_label: "time in s".to_owned(),
+            y_label: format!("{}{unit}", s.name),
+            words: Vec::new(),
+            series: vec![curve(reference, a, &names.0, false), curve(result, b, &names.1, true)],
+            bands: vec![Band { x, low, high, colour: 0 }],
+        }
+    });
+    Figure { title: format!("{} and {}", names.0, names.1), panels: panels.collect(), shared_x: true }
+}

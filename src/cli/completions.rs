@@ -1,0 +1,25 @@
+//! `bramah completions`
+
+use clap::{Args, CommandFactory};
+use clap_complete::Shell;
+
+use super::{Cli, Ending, Failure, files};
+
+/// Print completions for a shell
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  bramah completions bash > ~/.local/share/bash-completion/completions/bramah
+  bramah completions zsh  > ~/.zfunc/_bramah
+  bramah completions fish > ~/.config/fish/completions/bramah.fish")]
+pub(super) struct CompletionsArgs {
+    /// The shell
+    shell: Shell,
+}
+
+pub(super) fn run(args: &CompletionsArgs) -> Result<Ending, Failure> {
+    let mut bytes = Vec::new();
+    clap_complete::generate(args.shell, &mut Cli::command(), "bramah", &mut bytes);
+    files::print(&String::from_utf8_lossy(&bytes))?;
+    Ok(Ending::Fine)
+}

@@ -1,0 +1,79 @@
+//! `bramah explain`
+
+use clap::Args;
+use include_dir::{Dir, include_dir};
+
+use super::{Ending, Failure, files};
+use crate::diag::{Code, Diagnostic, nearest};
+
+/// One page a code: cause, smallest example, remedy.
+static PAGES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/docs/errors");
+
+/// Show the page behind a message's code
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  bramah explain E103
+  bramah explain        lists all codes")]
+pub(super) struct ExplainArgs {
+    /// The code, such as E103
+    #[arg(value_name = "CODE")]
+    code: Option<String>,
+}
+
+pub(super) fn run(args: &ExplainArgs) -> Result<Ending, Failure> {
+    let text = match &args.code {
+        None => list(),
+        Some(asked) => page(asked)?,
+    };
+    files::print(&text)?;
+    Ok(Ending::Fine)
+}
+
+fn list() -> String {
+    Code::ALL.iter().map(|code| format!("{}  {}\n", code.id(), code.title())).collect()
+}
+
+fn page(asked: &str) -> Result<String, Failure> {
+    let wanted = asked.trim().to_uppercase();
+    let Some(code) = Code::ALL.iter().find(|c| c.id() == wanted) else {
+        return Err(unknown(asked, &wanted));
+    };
+    let file = PAGES.get_file(format!("{}.md", code.id())).and_then(include_dir::File::contents_utf8);
+    Ok(match file {
+        Some(text) => text.to_owned(),
+        None => format!("# {}: {}\n", code.id(), code.title()),
+    })
+}
+
+fn unknown(asked: &str, wanted: &str) -> Failure {
+    let same_number = |c: &&Code| wanted.len() == 4 && c.id()[1..] == wanted[1..];
+    let near = Code::ALL.iter().find(same_number).map(|c| c.id());
+    let near = near.or_else(|| nearest(wanted, Code::ALL.iter().map(|c| c.id())));
+    let diagnostic = Diagnostic::new(Code::BadArgument, format!("there is no message with the code `{asked}`"));
+    match near {
+        Some(code) => diagnostic.help(format!("did you mean `{code}`? `bramah explain` lists all codes")),
+        None => diagnostic.help("`bramah explain` lists all codes"),
+    }
+    .into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_code_has_a_text() {
+        for code in Code::ALL {
+            assert!(page(&code.id().to_lowercase()).unwrap().contains(code.id()));
+        }
+    }
+
+    #[test]
+    fn unknown_codes() {
+        let helped = |c: &str| page(c).unwrap_err().diagnostics[0].help[0].clone();
+        assert!(helped("E230").contains("W230"));
+        assert!(helped("xyz").contains("lists all"));
+        assert!(page("é103").is_err());
+    }
+}

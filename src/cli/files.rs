@@ -1,0 +1,142 @@
+//! Files written whole or not at all under their final name.
+
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use super::Failure;
+use crate::diag::{Code, Diagnostic};
+
+/// Why a file operation failed, as people say it.
+pub(super) fn reason(error: &io::Error) -> String {
+    match error.kind() {
+        io::ErrorKind::NotFound => "there is no such file".to_owned(),
+        io::ErrorKind::PermissionDenied => "access is not permitted".to_owned(),
+        io::ErrorKind::IsADirectory => "it is a folder".to_owned(),
+        io::ErrorKind::StorageFull => "the disk is full".to_owned(),
+        io::ErrorKind::ReadOnlyFilesystem => "the disk can only be read".to_owned(),
+        _ => error.to_string(),
+    }
+}
+
+/// A file that cannot be read or written.
+pub(super) fn access(path: &Path, verb: &str, error: &io::Error) -> Failure {
+    Diagnostic::new(Code::FileAccess, format!("`{}` cannot be {verb}: {}", path.display(), reason(error))).into()
+}
+
+fn unwritable(path: &Path, error: &io::Error) -> Failure {
+    if error.kind() == io::ErrorKind::NotFound {
+        let text = format!("`{}` cannot be written: there is no such folder", path.display());
+        return Failure::new(Code::FileAccess, text);
+    }
+    access(path, "written", error)
+}
+
+/// A file being written under a temporary name beside its final one.
+///
+/// Dropped before [`NewFile::finish`], it leaves nothing behind.
+#[derive(Debug)]
+pub(super) struct NewFile {
+    out: Option<BufWriter<File>>,
+    temporary: PathBuf,
+    path: PathBuf,
+    direct: bool,
+}
+
+impl NewFile {
+    /// Begins to write; fails at once where the folder is missing or not writable.
+    pub fn create(path: &Path) -> Result<Self, Failure> {
+        if path.is_dir() {
+            return Err(Failure::new(
+                Code::FileAccess,
+                format!("`{}` cannot be written: it is a folder", path.display()),
+            ));
+        }
+        // Devices and pipes such as /dev/stdout or /dev/null cannot be renamed to.
+        let direct = path.exists() && !path.is_file();
+        let temporary = if direct { path.to_owned() } else { beside(path) };
+        let file = File::create(&temporary).map_err(|e| unwritable(path, &e))?;
+        Ok(NewFile { out: Some(BufWriter::with_capacity(1 << 16, file)), temporary, path: path.to_owned(), direct })
+    }
+
+    /// Everything is written: the file gets its name.
+    pub fn finish(mut self) -> Result<(), Failure> {
+        let failed = |e: io::Error| access(&self.path, "written", &e);
+        if let Some(mut out) = self.out.take() {
+            out.flush().map_err(failed)?;
+        }
+        if !self.direct {
+            std::fs::rename(&self.temporary, &self.path).map_err(failed)?;
+        }
+        Ok(())
+    }
+}
+
+impl Write for NewFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.out.as_mut().map_or(Ok(0), |out| out.write(bytes))
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.as_mut().map_or(Ok(()), Write::flush)
+    }
+}
+
+impl Drop for NewFile {
+    fn drop(&mut self) {
+        drop(self.out.take());
+        if !self.direct {
+            // After `finish` there is nothing to remove.
+            let _ = std::fs::remove_file(&self.temporary);
+        }
+    }
+}
+
+/// `out.csv` becomes `.out.csv.1234.part`, in the same folder so that renaming is one step.
+fn beside(path: &Path) -> PathBuf {
+    let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+    path.with_file_name(format!(".{name}.{}.part", std::process::id()))
+}
+
+/// Writes a whole file.
+pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    let mut file = NewFile::create(path)?;
+    file.write_all(bytes).map_err(|e| access(path, "written", &e))?;
+    file.finish()
+}
+
+/// Writes to stdout. A reader that has gone away (`| head`) is no mistake.
+pub(super) fn print(text: &str) -> Result<(), Failure> {
+    let mut out = io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(e) if e.kind() != io::ErrorKind::BrokenPipe => Err(access(Path::new("stdout"), "written", &e)),
+        _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_appears_whole_or_not_at_all() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("out.csv");
+        let mut file = NewFile::create(&path).unwrap();
+        file.write_all(b"half").unwrap();
+        assert!(!path.exists());
+        drop(file);
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+        write(&path, b"whole").unwrap();
+        assert_eq!(std::fs::read(&path).unwrap(), b"whole");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn folders_and_missing_folders_are_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let told = |path: &Path| NewFile::create(path).unwrap_err().diagnostics.remove(0).message;
+        assert!(told(folder.path()).ends_with("it is a folder"));
+        assert!(told(&folder.path().join("no/out.csv")).ends_with("there is no such folder"));
+    }
+}

@@ -1,0 +1,154 @@
+//! The command line: a thin skin around the library, and the only place that touches files, clock and terminal.
+//!
+//! stdout is data, stderr is messages and progress. One file a verb.
+
+mod compare;
+mod completions;
+mod data;
+mod explain;
+mod files;
+mod messages;
+mod plot;
+mod world;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+pub use world::DiskWorld;
+
+use crate::diag::{Code, Diagnostic};
+use messages::{MessageFormat, Messages};
+
+/// Acausal simulator for electro-hydraulic machines: circuits in a strict subset of Modelica, solved by SUNDIALS IDA.
+#[derive(Parser, Debug)]
+#[command(name = "bramah", version, max_term_width = 100, after_help = EXAMPLES)]
+struct Cli {
+    /// How messages are written to stderr
+    #[arg(long, global = true, value_enum, default_value_t, value_name = "FORMAT")]
+    message_format: MessageFormat,
+    #[command(subcommand)]
+    command: Command,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  bramah new press                              a circuit and an experiment to start from
+  bramah check press/Press.mo                   is it complete? no run
+  bramah simulate press/Press.mo -o press.csv   run it
+  bramah plot press.csv -o press.svg            see it
+  bramah compare bench.csv press.csv            put it beside a measurement
+  bramah explain E103                           what a message means
+
+Exit status: 0 fine; 1 the model is wrong, the run did not reach its end, or a comparison failed;
+2 bad arguments or files; 101 a bug of bramah.";
+
+#[derive(Subcommand, Debug)]
+enum Command {
+    Plot(plot::PlotArgs),
+    Compare(compare::CompareArgs),
+    Explain(explain::ExplainArgs),
+    Completions(completions::CompletionsArgs),
+}
+
+/// How a command ended when nothing went wrong with the command itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Ending {
+    /// All is well.
+    Fine,
+    /// The model is wrong, the run stopped early, or a comparison found a violation.
+    Wrong,
+}
+
+/// Why a command could not do its work.
+#[derive(Debug)]
+struct Failure {
+    diagnostics: Vec<Diagnostic>,
+}
+
+impl Failure {
+    /// One diagnostic without place.
+    fn new(code: Code, message: impl Into<String>) -> Self {
+        Diagnostic::new(code, message).into()
+    }
+
+    /// Wrong data, arguments and files give 2, wrong models 1.
+    fn exit_code(&self) -> u8 {
+        let ours = |d: &&Diagnostic| d.is_error();
+        self.diagnostics.iter().find(ours).map_or(2, |d| exit_code(d.code))
+    }
+}
+
+impl From<Diagnostic> for Failure {
+    fn from(diagnostic: Diagnostic) -> Self {
+        Failure { diagnostics: vec![diagnostic] }
+    }
+}
+
+/// The exit status that a diagnostic leads to.
+fn exit_code(code: Code) -> u8 {
+    let outside = matches!(code, Code::BadModel | Code::BadSet);
+    if outside || code.id()[1..].starts_with(['6', '9']) { 2 } else { 1 }
+}
+
+/// Runs the command with the arguments of this process.
+pub fn main() -> ExitCode {
+    std::panic::set_hook(Box::new(report_panic));
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => {
+            // Help and version go to stdout; a reader that has gone away does not matter.
+            let _ = error.print();
+            return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
+        }
+    };
+    let mut messages = Messages::new(cli.message_format);
+    match dispatch(cli.command, &mut messages) {
+        Ok(Ending::Fine) => ExitCode::SUCCESS,
+        Ok(Ending::Wrong) => ExitCode::from(1),
+        Err(failure) => {
+            messages.say(&failure.diagnostics);
+            ExitCode::from(failure.exit_code())
+        }
+    }
+}
+
+fn dispatch(command: Command, messages: &mut Messages) -> Result<Ending, Failure> {
+    match command {
+        Command::Plot(args) => plot::run(&args, messages),
+        Command::Compare(args) => compare::run(&args, messages),
+        Command::Explain(args) => explain::run(&args),
+        Command::Completions(args) => completions::run(&args),
+    }
+}
+
+fn report_panic(info: &std::panic::PanicHookInfo<'_>) {
+    let payload = info.payload();
+    let text = payload.downcast_ref::<&str>().copied().or(payload.downcast_ref::<String>().map(String::as_str));
+    let place = info.location().map(|l| format!(" ({}:{})", l.file(), l.line())).unwrap_or_default();
+    eprintln!(
+        "error: this is a bug of bramah, not of your model: {}{place}\nhelp: please report it with the command and \
+         the files that led to it",
+        text.unwrap_or("unknown panic")
+    );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn arguments_are_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn exit_codes() {
+        assert_eq!(exit_code(Code::OpenPort), 1);
+        assert_eq!(exit_code(Code::StepTooSmall), 1);
+        assert_eq!(exit_code(Code::BadData), 2);
+        assert_eq!(exit_code(Code::FileAccess), 2);
+        assert_eq!(exit_code(Code::BadModel), 2);
+    }
+}

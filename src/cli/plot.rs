@@ -1,0 +1,110 @@
+//! `bramah plot`
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::messages::Messages;
+use super::{Ending, Failure, data, files};
+use crate::diag::{Code, Diagnostic};
+use crate::plot::select::{Choice, Run, figure};
+use crate::plot::{Figure, html, png, svg};
+use crate::results::{Globs, Trajectory};
+
+/// Draw results: SVG, PNG, or a page with zoom and hover
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  bramah plot press.csv -o press.svg
+  bramah plot press.mat --variables 'cyl.*,pump.b.p' -o press.png
+  bramah plot run1.csv run2.csv -o report.html       the same variables of both, together
+  bramah plot press.csv --x cyl.x --variables cyl.v  a phase plot
+  bramah plot press.csv --unit '*.p=Pa:bar'          units for a file that carries none")]
+pub(super) struct PlotArgs {
+    /// Result files: CSV or Modelica .mat
+    #[arg(required = true, value_name = "RESULT")]
+    results: Vec<PathBuf>,
+    /// Variables to draw, such as 'cyl.*,pump.b.p'; may be repeated
+    #[arg(long, value_name = "GLOB,...")]
+    variables: Vec<String>,
+    /// Where to write: .svg, .png or .html; `-` writes SVG to stdout [default: RESULT.svg]
+    #[arg(short = 'o', long = "output-file", visible_alias = "output", value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// The variable on the horizontal axis instead of time
+    #[arg(long, value_name = "NAME")]
+    x: Option<String>,
+    /// Text above the picture
+    #[arg(long, default_value = "")]
+    title: String,
+    /// The time column of CSV files [default: `time`, or the first]
+    #[arg(long, value_name = "NAME")]
+    time_column: Option<String>,
+    /// Unit, and unit shown, of variables in a file without units; may be repeated
+    #[arg(long, value_name = "GLOB=UNIT[:SHOWN]")]
+    unit: Vec<String>,
+}
+
+pub(super) fn run(args: &PlotArgs, messages: &mut Messages) -> Result<Ending, Failure> {
+    let mut trajectories = Vec::new();
+    for path in &args.results {
+        let mut trajectory = data::result(path, args.time_column.as_deref(), messages)?;
+        data::apply_units(&mut trajectory, &args.unit)?;
+        trajectories.push(trajectory);
+    }
+    let labels: Vec<String> = args.results.iter().map(|p| stem(p)).collect();
+    let choice = Choice { variables: Globs::new(&args.variables), x: args.x.clone(), title: args.title.clone() };
+    let runs: Vec<Run<'_>> =
+        labels.iter().zip(&trajectories).map(|(label, trajectory)| Run { label, trajectory }).collect();
+    let selected = figure(&runs, &choice).map_err(|e| not_found(&e, args, &trajectories))?;
+    if selected.left_out > 0 {
+        messages.remark(&format!("{} more variables are not drawn; choose with --variables", selected.left_out));
+    }
+    let output = args.output.clone().unwrap_or_else(|| args.results[0].with_extension("svg"));
+    let facts = [("files".to_owned(), labels.join(", "))];
+    write(&selected.figure, &facts, &output, messages)?;
+    Ok(Ending::Fine)
+}
+
+/// Writes a figure in the format that the file's name asks for.
+pub(super) fn write(
+    figure: &Figure,
+    facts: &[(String, String)],
+    path: &Path,
+    messages: &Messages,
+) -> Result<(), Failure> {
+    if path == Path::new("-") {
+        return files::print(&svg::write(figure));
+    }
+    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let bytes = match extension.as_str() {
+        "svg" => svg::write(figure).into_bytes(),
+        "html" | "htm" => html::write(figure, facts).into_bytes(),
+        "png" => png::write(&svg::write(figure)).map_err(|e| Failure::new(Code::BadArgument, e))?,
+        _ => {
+            let text = format!("a picture is written as .svg, .png or .html, not as `{}`", path.display());
+            return Err(Failure::new(Code::BadArgument, text));
+        }
+    };
+    files::write(path, &bytes)?;
+    messages.remark(&format!("wrote {}", path.display()));
+    Ok(())
+}
+
+/// A file's name without folder and extension.
+pub(super) fn stem(path: &Path) -> String {
+    path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default()
+}
+
+fn not_found(why: &str, args: &PlotArgs, trajectories: &[Trajectory]) -> Failure {
+    let names = || trajectories.iter().flat_map(|t| t.signals.iter().map(|s| s.name.as_str()));
+    let mut diagnostic = Diagnostic::new(Code::BadArgument, why);
+    let asked = Globs::new(&args.variables);
+    let wanted = args.x.as_deref().into_iter().chain(asked.unused(names()));
+    for name in wanted.filter(|n| !names().any(|k| k == *n)) {
+        if let Some(near) = crate::diag::nearest(name, names()) {
+            diagnostic = diagnostic.help(format!("`{name}`: did you mean `{near}`?"));
+        }
+    }
+    let shown: Vec<String> = names().take(10).map(|n| format!("`{n}`")).collect();
+    diagnostic.note(format!("there are {} variables: {} ...", names().count(), shown.join(", "))).into()
+}

@@ -1,0 +1,13 @@
+//! Trajectories drawn: SVG and PNG pictures, and a page with zoom and hover.
+//!
+//! [`select::figure`] chooses what is drawn, [`svg::write`], [`png::write`] and [`html::write`] draw it.
+
+pub mod decimate;
+pub mod figure;
+pub mod html;
+pub mod png;
+pub mod select;
+pub mod svg;
+mod ticks;
+
+pub use figure::{Band, Figure, Panel, Series};

@@ -1,0 +1,243 @@
+//! From trajectories to a figure: which signals, in which panel, in which unit.
+
+use indexmap::IndexMap;
+
+use super::figure::{Figure, Panel, Series};
+use crate::results::{Globs, Kind, Signal, Trajectory};
+use crate::units::Unit;
+
+/// More curves than this do not share a panel: their colours would repeat.
+const CURVES: usize = 7;
+/// Without a choice by the user no more signals than this are drawn.
+const UNASKED: usize = 28;
+
+/// What to draw.
+#[derive(Clone, Debug, Default)]
+pub struct Choice {
+    /// Signals by name; all when empty.
+    pub variables: Globs,
+    /// The signal on the horizontal axis; time when `None`.
+    pub x: Option<String>,
+    /// Stands above the picture.
+    pub title: String,
+}
+
+/// A trajectory with the name that tells its curves from those of others.
+#[derive(Clone, Copy, Debug)]
+pub struct Run<'a> {
+    /// Such as the file name; shown when several runs are drawn.
+    pub label: &'a str,
+    /// The signals.
+    pub trajectory: &'a Trajectory,
+}
+
+/// A figure, and what the user should know about the choice made for him.
+#[derive(Clone, Debug, Default)]
+pub struct Selected {
+    /// What to draw.
+    pub figure: Figure,
+    /// Signals left out because the user did not choose.
+    pub left_out: usize,
+}
+
+/// Chooses and groups signals: Real ones by unit, Booleans together, each enumeration for itself. Values are shown in
+/// their `displayUnit`. Where no unit is known, equal last names share a panel.
+///
+/// # Errors
+/// A sentence when nothing matches or the horizontal signal does not exist.
+pub fn figure(runs: &[Run<'_>], choice: &Choice) -> Result<Selected, String> {
+    let chosen = chosen_names(runs, choice)?;
+    let limit = if choice.variables.is_empty() { UNASKED } else { usize::MAX };
+    let left_out = chosen.len().saturating_sub(limit);
+    let mut groups: IndexMap<String, Vec<&Signal>> = IndexMap::new();
+    for signal in chosen.into_iter().take(limit) {
+        groups.entry(group(signal)).or_default().push(signal);
+    }
+    let mut panels = Vec::new();
+    for signals in groups.values() {
+        for part in signals.chunks((CURVES / runs.len()).max(1)) {
+            panels.push(panel(runs, part, choice.x.as_deref())?);
+        }
+    }
+    let figure = Figure { title: choice.title.clone(), panels, shared_x: choice.x.is_none() };
+    Ok(Selected { figure, left_out })
+}
+
+/// The signals to draw, each name once, in the order of the runs.
+fn chosen_names<'a>(runs: &[Run<'a>], choice: &Choice) -> Result<Vec<&'a Signal>, String> {
+    let mut chosen: IndexMap<&str, &Signal> = IndexMap::new();
+    for run in runs {
+        for signal in &run.trajectory.signals {
+            let wanted = choice.variables.is_empty() || choice.variables.matches(&signal.name);
+            if wanted && choice.x.as_deref() != Some(signal.name.as_str()) {
+                chosen.entry(&signal.name).or_insert(signal);
+            }
+        }
+    }
+    if chosen.is_empty() {
+        return Err("no variable matches".to_owned());
+    }
+    Ok(chosen.into_values().collect())
+}
+
+/// Signals of the same group share a panel.
+fn group(signal: &Signal) -> String {
+    match &signal.kind {
+        Kind::Boolean => "Boolean".to_owned(),
+        Kind::Enumeration(_) => format!("enumeration {}", signal.name),
+        Kind::Real | Kind::Integer if !shown_unit(signal).is_empty() => format!("in {}", shown_unit(signal)),
+        Kind::Real | Kind::Integer => format!("like {}", last_name(&signal.name)),
+    }
+}
+
+/// `p` of `pump.b.p`, `v[3].p` and `p_A`: signals that probably measure the same.
+fn last_name(name: &str) -> &str {
+    let last = name.rsplit('.').next().unwrap_or(name);
+    let end = last.find(['_', '[']).filter(|&i| i > 0).unwrap_or(last.len());
+    &last[..end]
+}
+
+/// The unit for people, where the values can be converted to it.
+fn shown_unit(signal: &Signal) -> &str {
+    if conversion(signal).is_some() { &signal.display_unit } else { &signal.unit }
+}
+
+fn conversion(signal: &Signal) -> Option<(Unit, Unit)> {
+    if signal.display_unit.is_empty() || signal.display_unit == signal.unit {
+        return None;
+    }
+    let (from, to) = (Unit::parse(&signal.unit).ok()?, Unit::parse(&signal.display_unit).ok()?);
+    (from.dimension == to.dimension).then_some((from, to))
+}
+
+/// A column in the unit for people.
+pub fn shown_values(signal: &Signal, column: &[f64]) -> Vec<f64> {
+    match conversion(signal) {
+        Some((from, to)) => column.iter().map(|&v| from.convert(v, &to).unwrap_or(v)).collect(),
+        None => column.to_vec(),
+    }
+}
+
+/// `pump.b.p in bar`, as a label of an axis.
+pub fn axis_label(name: &str, signal: &Signal) -> String {
+    match shown_unit(signal) {
+        "" => name.to_owned(),
+        unit => format!("{name} in {unit}").trim_start().to_owned(),
+    }
+}
+
+fn panel(runs: &[Run<'_>], signals: &[&Signal], x: Option<&str>) -> Result<Panel, String> {
+    let mut panel = Panel { x_label: "time in s".to_owned(), y_label: y_label(signals), ..Panel::default() };
+    panel.words = words(signals[0]);
+    for (r, run) in runs.iter().enumerate() {
+        let horizontal = match x {
+            None => run.trajectory.times.clone(),
+            Some(name) => {
+                let index = run.trajectory.index(name).ok_or_else(|| format!("there is no variable `{name}`"))?;
+                let signal = &run.trajectory.signals[index];
+                panel.x_label = axis_label(&signal.name, signal);
+                shown_values(signal, &run.trajectory.columns[index])
+            }
+        };
+        for (s, signal) in signals.iter().enumerate() {
+            let Some(index) = run.trajectory.index(&signal.name) else { continue };
+            panel.series.push(Series {
+                name: if runs.len() > 1 { format!("{} ({})", signal.name, run.label) } else { signal.name.clone() },
+                x: horizontal.clone(),
+                y: plotted(signal, &run.trajectory.columns[index]),
+                held: signal.kind.is_discrete() && x.is_none(),
+                colour: s * runs.len() + r,
+                dashed: r > 0,
+            });
+        }
+    }
+    Ok(panel)
+}
+
+/// Values as drawn: in the unit for people; literals from 0, where their words stand.
+fn plotted(signal: &Signal, column: &[f64]) -> Vec<f64> {
+    match signal.kind {
+        Kind::Enumeration(_) => column.iter().map(|v| v - 1.0).collect(),
+        _ => shown_values(signal, column),
+    }
+}
+
+fn words(signal: &Signal) -> Vec<String> {
+    match &signal.kind {
+        Kind::Boolean => vec!["false".to_owned(), "true".to_owned()],
+        Kind::Enumeration(literals) => literals.clone(),
+        Kind::Real | Kind::Integer => Vec::new(),
+    }
+}
+
+/// The name of a single curve, the common last name of several, with the unit.
+fn y_label(signals: &[&Signal]) -> String {
+    let first = signals[0];
+    if !words(first).is_empty() {
+        return String::new();
+    }
+    let last = last_name(&first.name);
+    let common = signals.iter().all(|s| last_name(&s.name) == last);
+    let name = if signals.len() == 1 && first.name.len() <= 24 {
+        first.name.as_str()
+    } else if common {
+        last
+    } else {
+        ""
+    };
+    axis_label(name, first)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sample() -> Trajectory {
+        let p = |name: &str| Signal { display_unit: "bar".into(), ..Signal::new(name).unit("Pa") };
+        let mode = Kind::Enumeration(vec!["stick".into(), "slip".into()]);
+        let mut t = Trajectory::new(vec![
+            p("pump.p"),
+            Signal::new("pump.q").unit("m3/s"),
+            p("tank.p"),
+            Signal { kind: Kind::Boolean, ..Signal::new("on") },
+            Signal { kind: mode, ..Signal::new("mode") },
+        ]);
+        t.push(0.0, &[1e5, 1e-4, 2e5, 0.0, 1.0]);
+        t.push(1.0, &[3e5, 1e-4, 2e5, 1.0, 2.0]);
+        t
+    }
+
+    #[test]
+    fn panels_by_unit() {
+        let t = sample();
+        let run = Run { label: "a", trajectory: &t };
+        let figure = figure(&[run], &Choice::default()).unwrap().figure;
+        let labels: Vec<(&str, usize)> = figure.panels.iter().map(|p| (p.y_label.as_str(), p.series.len())).collect();
+        assert_eq!(labels, [("p in bar", 2), ("pump.q in m3/s", 1), ("", 1), ("", 1)]);
+        assert_eq!(figure.panels[0].series[0].y, [1.0, 3.0]);
+        assert_eq!(figure.panels[3].words, ["stick", "slip"]);
+        assert_eq!(figure.panels[3].series[0].y, [0.0, 1.0]);
+    }
+
+    #[test]
+    fn two_runs_against_a_variable() {
+        let t = sample();
+        let runs = [Run { label: "a", trajectory: &t }, Run { label: "b", trajectory: &t }];
+        let choice = Choice { variables: Globs::new(&["tank.p"]), x: Some("pump.p".into()), title: String::new() };
+        let figure = figure(&runs, &choice).unwrap().figure;
+        assert!(!figure.shared_x);
+        assert_eq!(figure.panels[0].x_label, "pump.p in bar");
+        assert_eq!(figure.panels[0].series[1].name, "tank.p (b)");
+        let wrong = Choice { x: Some("nothing".into()), ..choice };
+        assert_eq!(super::figure(&runs, &wrong).unwrap_err(), "there is no variable `nothing`");
+    }
+
+    #[test]
+    fn names_without_units() {
+        assert_eq!(last_name("pump.b.p"), "p");
+        assert_eq!(last_name("v[3].p"), "p");
+        assert_eq!(last_name("p_A"), "p");
+        assert_eq!(last_name("x[2]"), "x");
+        assert_eq!(last_name("_x"), "_x");
+    }
+}

@@ -1,0 +1,354 @@
+//! A figure as SVG.
+
+use std::fmt::Write as _;
+
+use super::decimate::{Points, decimate, staircase};
+use super::figure::{Figure, Panel, Series, colour};
+use super::ticks::{Ticks, ticks};
+
+/// Width of the picture.
+const WIDTH: f64 = 900.0;
+/// Room right of the axes.
+const RIGHT: f64 = 24.0;
+/// Text size, and the width of an average character of it.
+const TEXT: f64 = 13.0;
+const CHARACTER: f64 = 6.6;
+/// Height of a line of the legend.
+const LINE: f64 = 20.0;
+
+/// Where one panel stands.
+struct Frame {
+    left: f64,
+    top: f64,
+    width: f64,
+    height: f64,
+    x: (f64, f64),
+    y: (f64, f64),
+}
+
+impl Frame {
+    fn px(&self, x: f64) -> f64 {
+        self.left + (x - self.x.0) / (self.x.1 - self.x.0) * self.width
+    }
+
+    fn py(&self, y: f64) -> f64 {
+        self.top + self.height - (y - self.y.0) / (self.y.1 - self.y.0) * self.height
+    }
+}
+
+/// Draws a figure. The picture is 900 wide; its height follows the number of panels.
+pub fn write(figure: &Figure) -> String {
+    let plots: Vec<Prepared<'_>> = figure.panels.iter().map(|p| Prepared::new(p, figure)).collect();
+    let left = plots.iter().map(Prepared::label_width).fold(0.0, f64::max) + 44.0;
+    let mut body = String::new();
+    let mut y = if figure.title.is_empty() { 10.0 } else { 40.0 };
+    for (i, plot) in plots.iter().enumerate() {
+        let last = i + 1 == plots.len();
+        y = plot.draw(&mut body, i, y, left, last || !figure.shared_x);
+    }
+    let height = y + 8.0;
+    let mut out = String::new();
+    let title = if figure.title.is_empty() { "Plot" } else { &figure.title };
+    let _ = write!(
+        out,
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{WIDTH}\" height=\"{height}\" viewBox=\"0 0 {WIDTH} {height}\" \
+         role=\"img\" font-family=\"Ubuntu, 'Segoe UI', Helvetica, Arial, sans-serif\" font-size=\"{TEXT}\">\n\
+         <title>{}</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n",
+        escape(title)
+    );
+    if !figure.title.is_empty() {
+        let _ = writeln!(
+            out,
+            "<text x=\"{}\" y=\"25\" font-size=\"16\" text-anchor=\"middle\">{}</text>",
+            WIDTH / 2.0,
+            escape(&figure.title)
+        );
+    }
+    out.push_str(&body);
+    out.push_str("</svg>\n");
+    out
+}
+
+/// Text with the characters escaped that mean something in XML; control characters are dropped.
+pub fn escape(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            c if c.is_control() => {}
+            c => out.push(c),
+        }
+    }
+    out
+}
+
+/// A panel with its ranges and ticks.
+struct Prepared<'a> {
+    panel: &'a Panel,
+    x: (f64, f64),
+    y: (f64, f64),
+    x_ticks: Ticks,
+    y_ticks: Ticks,
+    height: f64,
+}
+
+impl<'a> Prepared<'a> {
+    fn new(panel: &'a Panel, figure: &Figure) -> Self {
+        let own = panel.bounds().unwrap_or((0.0, 1.0, 0.0, 1.0));
+        let shared = || figure.panels.iter().filter_map(Panel::bounds).map(|b| (b.0, b.1));
+        let x = if figure.shared_x {
+            shared().reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or((0.0, 1.0))
+        } else {
+            (own.0, own.1)
+        };
+        let height = match (figure.panels.len(), panel.words.is_empty()) {
+            (1, _) => 400.0,
+            (2, true) => 240.0,
+            (_, true) => 180.0,
+            (_, false) => 30.0 + 24.0 * panel.words.len() as f64,
+        };
+        let phase = !figure.shared_x;
+        let x = if phase { widened(x, 0.05) } else { widened(x, 0.0) };
+        let y =
+            if panel.words.is_empty() { widened((own.2, own.3), 0.06) } else { (-0.3, panel.words.len() as f64 - 0.7) };
+        let y_ticks =
+            if panel.words.is_empty() { ticks(y.0, y.1, (height / 45.0) as usize) } else { words(&panel.words) };
+        Prepared { panel, x, y, x_ticks: ticks(x.0, x.1, 8), y_ticks, height }
+    }
+
+    fn label_width(&self) -> f64 {
+        let longest = self.y_ticks.marks.iter().map(|m| m.1.chars().count()).max().unwrap_or(0);
+        longest as f64 * CHARACTER
+    }
+
+    /// Draws at height `y` and returns where the next panel begins.
+    fn draw(&self, out: &mut String, index: usize, y: f64, left: f64, with_x_label: bool) -> f64 {
+        let legend_height = self.legend(out, y, left);
+        let frame = Frame {
+            left,
+            top: y + legend_height,
+            width: WIDTH - left - RIGHT,
+            height: self.height,
+            x: self.x,
+            y: self.y,
+        };
+        self.axes(out, &frame, with_x_label);
+        let _ = writeln!(
+            out,
+            "<clipPath id=\"c{index}\"><rect x=\"{:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{:.1}\"/></clipPath>\n\
+             <g clip-path=\"url(#c{index})\" fill=\"none\" stroke-width=\"1.6\" stroke-linejoin=\"round\">",
+            frame.left - 1.0,
+            frame.top - 1.0,
+            frame.width + 2.0,
+            frame.height + 2.0
+        );
+        for band in &self.panel.bands {
+            let up = band.x.iter().copied().zip(band.high.iter().copied());
+            let down = band.x.iter().copied().zip(band.low.iter().copied());
+            let columns = frame.width as usize;
+            let mut points = decimate(up.collect(), columns);
+            points.extend(decimate(down.collect(), columns).into_iter().rev());
+            let fill = colour(band.colour);
+            let _ = writeln!(
+                out,
+                "<path stroke=\"none\" fill=\"{fill}\" fill-opacity=\"0.15\" d=\"{}Z\"/>",
+                path(&points, &frame)
+            );
+        }
+        for series in &self.panel.series {
+            curve(out, series, &frame);
+        }
+        out.push_str("</g>\n");
+        frame.top + frame.height + if with_x_label { 52.0 } else { 14.0 }
+    }
+
+    /// The legend above the axes; returns its height.
+    fn legend(&self, out: &mut String, y: f64, left: f64) -> f64 {
+        let mut x = left;
+        let mut line = y + 14.0;
+        for series in &self.panel.series {
+            let width = 34.0 + 16.0 + series.name.chars().count() as f64 * CHARACTER * 1.02;
+            if x + width > WIDTH - RIGHT && x > left {
+                x = left;
+                line += LINE;
+            }
+            let dash = if series.dashed { " stroke-dasharray=\"6 4\"" } else { "" };
+            let _ = writeln!(
+                out,
+                "<path d=\"M{x:.1} {:.1}h26\" stroke=\"{}\" stroke-width=\"2.4\"{dash}/><text x=\"{:.1}\" y=\"{line:.1}\">{}</text>",
+                line - 4.5,
+                colour(series.colour),
+                x + 34.0,
+                escape(&series.name)
+            );
+            x += width;
+        }
+        line - y + 10.0
+    }
+
+    fn axes(&self, out: &mut String, frame: &Frame, with_x_label: bool) {
+        let (l, t, w, h) = (frame.left, frame.top, frame.width, frame.height);
+        let bottom = t + h;
+        let mut grid = String::new();
+        for (place, text) in &self.x_ticks.marks {
+            let x = frame.px(*place);
+            let _ = write!(grid, "M{x:.1} {t:.1}V{bottom:.1}");
+            if with_x_label {
+                let _ =
+                    writeln!(out, "<text x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{text}</text>", bottom + 18.0);
+            }
+        }
+        for (place, text) in &self.y_ticks.marks {
+            let y = frame.py(*place);
+            let _ = write!(grid, "M{l:.1} {y:.1}h{w:.1}");
+            let _ = writeln!(
+                out,
+                "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>",
+                l - 8.0,
+                y + 4.5,
+                escape(text)
+            );
+        }
+        let _ = writeln!(
+            out,
+            "<path d=\"{grid}\" stroke=\"#e2e2e2\" fill=\"none\"/>\n\
+             <rect x=\"{l:.1}\" y=\"{t:.1}\" width=\"{w:.1}\" height=\"{h:.1}\" fill=\"none\" stroke=\"#777777\"/>"
+        );
+        let middle = t + h / 2.0;
+        let _ = writeln!(
+            out,
+            "<text transform=\"translate(18 {middle:.1}) rotate(-90)\" text-anchor=\"middle\">{}</text>",
+            escape(&with_power(&self.panel.y_label, self.y_ticks.power))
+        );
+        if with_x_label {
+            let _ = writeln!(
+                out,
+                "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>",
+                l + w / 2.0,
+                bottom + 38.0,
+                escape(&with_power(&self.panel.x_label, self.x_ticks.power))
+            );
+        }
+    }
+}
+
+/// `p in Pa` with a power of ten becomes `p in 10^6 Pa`.
+fn with_power(label: &str, power: i32) -> String {
+    if power == 0 {
+        return label.to_owned();
+    }
+    match label.rsplit_once(" in ") {
+        Some((name, unit)) => format!("{name} in 1e{power} {unit}"),
+        None => format!("{label} (1e{power})"),
+    }
+}
+
+fn words(words: &[String]) -> Ticks {
+    Ticks { marks: words.iter().enumerate().map(|(i, w)| (i as f64, w.clone())).collect(), power: 0 }
+}
+
+/// The range with a margin of this part on both sides; never empty.
+fn widened(range: (f64, f64), part: f64) -> (f64, f64) {
+    // Beyond this the width itself would overflow.
+    let (low, high) = (range.0.max(-1e300), range.1.min(1e300));
+    let width = high - low;
+    let smallest = 1e-9 * low.abs().max(high.abs());
+    if width <= smallest {
+        let half = if high == 0.0 { 1.0 } else { 0.1 * high.abs() };
+        return (low - half, high + half);
+    }
+    (low - part * width, high + part * width)
+}
+
+fn curve(out: &mut String, series: &Series, frame: &Frame) {
+    let points: Points = if series.held {
+        staircase(&series.x, &series.y)
+    } else {
+        series.x.iter().copied().zip(series.y.iter().copied()).collect()
+    };
+    let points = decimate(points, 2 * frame.width as usize);
+    let dash = if series.dashed { " stroke-dasharray=\"6 4\"" } else { "" };
+    let _ = writeln!(
+        out,
+        "<path stroke=\"{}\"{dash} d=\"{}\"><title>{}</title></path>",
+        colour(series.colour),
+        path(&points, frame),
+        escape(&series.name)
+    );
+}
+
+/// Path data; a gap in the points lifts the pen.
+fn path(points: &[(f64, f64)], frame: &Frame) -> String {
+    let mut data = String::new();
+    let mut pen = 'M';
+    for &(x, y) in points {
+        if !x.is_finite() || !y.is_finite() {
+            pen = 'M';
+            continue;
+        }
+        let _ = write!(data, "{pen}{:.1} {:.1}", frame.px(x), frame.py(y).clamp(-1e5, 1e5));
+        pen = 'L';
+    }
+    data
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::figure::{Band, Panel, Series};
+    use super::*;
+
+    /// Two panels, one of them with words.
+    pub(crate) fn sample() -> Figure {
+        let x: Vec<f64> = (0..=20).map(|i| f64::from(i) * 0.1).collect();
+        let y: Vec<f64> = x.iter().map(|x| 150.0 + 60.0 * (3.0 * x).sin()).collect();
+        let pressure = Series { name: "pump.b.p".into(), x: x.clone(), y: y.clone(), ..Series::default() };
+        let band = Band {
+            x: x.clone(),
+            low: y.iter().map(|v| v - 5.0).collect(),
+            high: y.iter().map(|v| v + 5.0).collect(),
+            colour: 0,
+        };
+        let mode = Series {
+            name: "valve<mode>".into(),
+            x: vec![0.0, 0.7, 2.0],
+            y: vec![0.0, 1.0, 1.0],
+            held: true,
+            ..Series::default()
+        };
+        let first = Panel {
+            x_label: "time in s".into(),
+            y_label: "pressure in bar".into(),
+            series: vec![pressure],
+            bands: vec![band],
+            ..Panel::default()
+        };
+        let second = Panel {
+            x_label: "time in s".into(),
+            y_label: String::new(),
+            words: vec!["closed".into(), "open".into()],
+            series: vec![mode],
+            ..Panel::default()
+        };
+        Figure { title: "Relief & pump".into(), panels: vec![first, second], shared_x: true }
+    }
+
+    #[test]
+    fn structure_of_a_picture() {
+        insta::assert_snapshot!(write(&sample()));
+    }
+
+    #[test]
+    fn empty_constant_and_infinite_curves_are_drawn() {
+        for y in [vec![], vec![5.0; 3], vec![f64::NAN, f64::INFINITY, 1.0], vec![0.0, -1e308, 1e308]] {
+            let x = (0..y.len()).map(|i| i as f64).collect();
+            let series = vec![Series { name: "a".into(), x, y, ..Series::default() }];
+            let figure =
+                Figure { panels: vec![Panel { series, ..Panel::default() }], shared_x: true, ..Figure::default() };
+            let text = write(&figure);
+            assert!(text.starts_with("<svg") && !text.contains("NaN") && !text.contains("inf"), "{text}");
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! Round numbers along an axis.
+
+/// Where the ticks of an axis stand and what is written beside them.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Ticks {
+    /// Places and texts, growing.
+    pub marks: Vec<(f64, String)>,
+    /// The numbers are to be multiplied by ten to this power; said in the axis label.
+    pub power: i32,
+}
+
+/// About `count` ticks at round numbers between `low` and `high`.
+pub(super) fn ticks(low: f64, high: f64, count: usize) -> Ticks {
+    let range = high - low;
+    if !range.is_finite() || range <= 0.0 {
+        return Ticks { marks: Vec::new(), power: 0 };
+    }
+    let step = round_step(range / count.max(1) as f64);
+    let power = common_power(low.abs().max(high.abs()));
+    let unit = 10f64.powi(power);
+    let decimals = usize::try_from(-((step / unit).log10() + 1e-9).floor() as i64).unwrap_or(0).min(15);
+    let (first, last) = ((low / step - 1e-9).ceil(), (high / step + 1e-9).floor());
+    let number = (last - first).clamp(-1.0, 100.0) as i64 + 1;
+    let marks = (0..number).map(|k| {
+        let place = (first + k as f64) * step;
+        let text = format!("{:.decimals$}", place / unit);
+        (place, if text.trim_matches(['-', '0', '.']).is_empty() { "0".to_owned() } else { text })
+    });
+    Ticks { marks: marks.collect(), power }
+}
+
+/// The smallest of 1, 2, 5 times a power of ten that is not below `raw`.
+fn round_step(raw: f64) -> f64 {
+    let base = 10f64.powf(raw.log10().floor());
+    let factor = [1.0, 2.0, 5.0, 10.0].into_iter().find(|f| f * base >= raw * (1.0 - 1e-9)).unwrap_or(10.0);
+    factor * base
+}
+
+/// Numbers from 1e-3 to 1e5 are written as they are, others with a power of ten that is a multiple of three.
+fn common_power(largest: f64) -> i32 {
+    if largest == 0.0 || (1e-2..1e5).contains(&largest) {
+        return 0;
+    }
+    3 * ((largest.log10() / 3.0) + 1e-9).floor() as i32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn texts(low: f64, high: f64) -> (Vec<String>, i32) {
+        let t = ticks(low, high, 5);
+        (t.marks.into_iter().map(|m| m.1).collect(), t.power)
+    }
+
+    #[test]
+    fn round_numbers() {
+        assert_eq!(texts(0.0, 1.0).0, ["0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
+        assert_eq!(texts(-3.0, 211.0).0, ["0", "50", "100", "150", "200"]);
+        assert_eq!(texts(0.0, 2.1e7), (["0", "5", "10", "15", "20"].map(str::to_owned).to_vec(), 6));
+        assert_eq!(texts(0.0, 1e-6).1, -6);
+        assert_eq!(texts(100.0, 100.001).0.len(), 6);
+    }
+
+    #[test]
+    fn odd_ranges_end() {
+        for (low, high) in
+            [(0.0, 0.0), (1.0, 0.0), (f64::NAN, 1.0), (0.0, f64::INFINITY), (-1e308, 1e308), (0.0, 5e-324)]
+        {
+            assert!(ticks(low, high, 5).marks.len() < 110);
+        }
+        assert!(ticks(1e16, 1e16 + 4.0, 5).marks.len() < 110);
+    }
+}

@@ -1,0 +1,113 @@
+//! Patterns that choose variables by name: `*` for any text, `?` for one character, everything else as it stands.
+//!
+//! Brackets are literal, since names contain them: `v[1].p`, `v[*].p`.
+
+/// Patterns of which at least one must match.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Globs {
+    patterns: Vec<String>,
+}
+
+impl Globs {
+    /// Takes lists such as `cyl.*,pump.b.p`; commas inside brackets or quotes do not part patterns.
+    pub fn new<S: AsRef<str>>(lists: &[S]) -> Self {
+        Globs { patterns: lists.iter().flat_map(|list| split_list(list.as_ref())).collect() }
+    }
+
+    /// True when there is no pattern at all.
+    pub fn is_empty(&self) -> bool {
+        self.patterns.is_empty()
+    }
+
+    /// True when a pattern matches the whole name.
+    pub fn matches(&self, name: &str) -> bool {
+        self.patterns.iter().any(|p| matches(p, name))
+    }
+
+    /// The patterns that match none of these names: probably spelling mistakes.
+    pub fn unused<'a>(&self, names: impl Iterator<Item = &'a str> + Clone) -> Vec<&str> {
+        let none = |pattern: &&String| !names.clone().any(|name| matches(pattern, name));
+        self.patterns.iter().filter(none).map(String::as_str).collect()
+    }
+}
+
+/// Parts a list at commas that stand outside brackets, braces and quotes; blanks and quotes around items are removed.
+pub fn split_list(text: &str) -> Vec<String> {
+    let mut items = Vec::new();
+    let mut item = String::new();
+    let (mut depth, mut quoted) = (0i32, false);
+    for c in text.chars() {
+        match c {
+            '"' => quoted = !quoted,
+            ',' if depth <= 0 && !quoted => items.push(std::mem::take(&mut item)),
+            _ => {
+                depth += i32::from(matches!(c, '[' | '{' | '(')) - i32::from(matches!(c, ']' | '}' | ')'));
+                item.push(c);
+            }
+        }
+    }
+    items.push(item);
+    items.into_iter().map(|i| i.trim().to_owned()).filter(|i| !i.is_empty()).collect()
+}
+
+/// Walks both texts and, after a mismatch, returns to the last `*` and lets it take one character more.
+fn matches(pattern: &str, name: &str) -> bool {
+    let (p, n): (Vec<char>, Vec<char>) = (pattern.chars().collect(), name.chars().collect());
+    let (mut i, mut k) = (0, 0);
+    let mut star: Option<(usize, usize)> = None;
+    while k < n.len() {
+        match p.get(i) {
+            Some('*') => {
+                star = Some((i, k));
+                i += 1;
+            }
+            Some(&c) if c == '?' || c == n[k] => {
+                i += 1;
+                k += 1;
+            }
+            _ => {
+                let Some((at, taken)) = star else { return false };
+                star = Some((at, taken + 1));
+                i = at + 1;
+                k = taken + 1;
+            }
+        }
+    }
+    p[i..].iter().all(|&c| c == '*')
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn patterns() {
+        let yes = |p: &str, n: &str| assert!(Globs::new(&[p]).matches(n), "{p} should match {n}");
+        let no = |p: &str, n: &str| assert!(!Globs::new(&[p]).matches(n), "{p} should not match {n}");
+        yes("cyl.*", "cyl.a.p");
+        yes("v[1].p", "v[1].p");
+        no("v[1].p", "v1.p");
+        yes("v[*].p", "v[12].p");
+        yes("v[?].p", "v[1].p");
+        no("v[?].p", "v[12].p");
+        yes("*", "anything");
+        yes("*.p*", "a.b.pump");
+        no("cyl", "cyl.a");
+        yes("x,A[1,2]", "A[1,2]");
+        yes("\"A[1,2]\"", "A[1,2]");
+        yes("A[1,*]", "A[1,7]");
+        no("", "x");
+    }
+
+    #[test]
+    fn unused_patterns() {
+        let globs = Globs::new(&["a.*,b", "c?"]);
+        assert_eq!(globs.unused(["a.x", "cd"].into_iter()), ["b"]);
+    }
+
+    #[test]
+    fn hard_patterns_end() {
+        let name = "a".repeat(2_000);
+        assert!(!matches(&"*a".repeat(30), &format!("{name}b")));
+    }
+}
