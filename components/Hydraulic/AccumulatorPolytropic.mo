@@ -1,0 +1,36 @@
+within Hydraulic;
+model AccumulatorPolytropic "Bladder accumulator, polytropic gas"
+  Interfaces.HydraulicPort port "Port";
+  outer Oil.Fluid oil "Oil of the circuit";
+  parameter SI.Volume V_0(min = 1e-6, max = 1, nominal = 1e-3, displayUnit = "l") = 1e-3 "Volume of the gas at the precharge";
+  parameter SI.Pressure p_pre(min = 1e4, max = 1e8, nominal = 1e6) = 3e5 "Precharge, absolute";
+  parameter SI.Pressure p_start(nominal = 1e6) = 5e5 "Pressure at the start";
+  parameter SI.Pressure p_max(min = 1e4, max = 2e8, nominal = 1e7) = 35e6 "Highest allowed pressure";
+  parameter Real n(unit = "1", min = 1, max = 2) = 1.2 "Polytropic exponent: 1 slow, 1.2 usual, 1.4 fast";
+  parameter Real V_min(unit = "1", min = 0.001, max = 0.5) = 0.02 "Oil left when empty, over V_0";
+  parameter Real w_stop(unit = "1", min = 1e-4, max = 0.1) = 0.01 "Rounding of the empty stop, over V_0";
+  SI.Pressure p(start = p_start, fixed = true, nominal = 1e6, stateSelect = StateSelect.prefer) "Pressure of the oil";
+  SI.Volume V_gas(nominal = 1e-3) "Volume of the gas";
+  SI.Volume V_oil(nominal = 1e-3) "Volume of the oil";
+  SI.Mass mass(nominal = 1) "Mass of the oil";
+protected
+  Real v(unit = "1") "Volume that the gas would take at the pressure of the oil, over V_0";
+  SI.Density rho(nominal = 1000) "Density of the oil";
+  SI.BulkModulus beta(nominal = 1e9) "Tangent bulk modulus of the oil";
+  SI.Pressure p_s(nominal = 1e6) "Pressure, kept positive";
+equation
+  assert(V_0 > 0 and p_pre > 0, "V_0 and the precharge p_pre must be positive");
+  assert(p_pre < p_max, "The precharge p_pre must lie below p_max");
+  assert(p < 1.05*p_max, "The pressure exceeds p_max of the accumulator", AssertionLevel.warning);
+  p = port.p;
+  p_s = max(p, 1e-3*p_pre);
+  v = (p_pre/p_s)^(1/n);
+  V_gas = V_0*(1 - Smooth.ramp(1 - v, w_stop));
+  V_oil = V_0*(1 + V_min) - V_gas;
+  (rho, beta) = oil.density(p);
+  port.q = (V_oil/beta + V_0*min(max((1 - v)/w_stop, 0), 1)*v/(n*p_s))*der(p);
+  mass = rho*V_oil;
+  annotation(Documentation(info = "<html>
+<p><code>p V_gas^n = p_pre V_0^n</code>, with the empty stop and the compression of the oil as in <code>Accumulator</code>. The exponent must be chosen for the speed of the process; where both fast strokes and holding occur,
+<code>Accumulator</code> finds it by itself.</p></html>"));
+end AccumulatorPolytropic;

@@ -1,0 +1,3 @@
+within Hydraulic;
+package Bases "Partial models that components extend"
+end Bases;

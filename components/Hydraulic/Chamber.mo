@@ -1,0 +1,32 @@
+within Hydraulic;
+model Chamber "Chamber of a cylinder: oil behind a moving piston"
+  Interfaces.HydraulicPort port "Port";
+  Interfaces.TranslationalFlange flange "Piston; moving it in the positive direction enlarges the chamber where side is 1";
+  outer Oil.Fluid oil "Oil of the circuit";
+  parameter SI.Area A(min = 1e-8, max = 10, nominal = 1e-3, displayUnit = "cm2") = 1e-3 "Area of the piston";
+  parameter Integer side(min = -1, max = 1) = 1 "1: enlarges with positive motion, -1: shrinks";
+  parameter SI.Volume V_0(min = 1e-9, max = 10, nominal = 1e-4, displayUnit = "ml") = 1e-4 "Volume at s = s_0, with all that is joined rigidly";
+  parameter SI.Position s_0 = 0 "Position of V_0";
+  parameter SI.Volume V_min(min = 1e-12, nominal = 1e-6) = 1e-6 "Least volume";
+  parameter SI.Pressure p_ambient(nominal = 1e5) = 101325 "Pressure on the other side of the piston, absolute";
+  parameter SI.Pressure p_start(nominal = 1e6) = 1e5 "Pressure at the start";
+  SI.Pressure p(start = p_start, fixed = true, nominal = 1e6, stateSelect = StateSelect.prefer) "Pressure";
+  SI.Volume V(nominal = 1e-4) "Volume";
+  SI.Mass mass(nominal = 0.1) "Mass of the oil";
+protected
+  SI.Velocity v(nominal = 0.1) "Velocity of the piston";
+  SI.Density rho(nominal = 1000) "Density";
+  SI.BulkModulus beta(nominal = 1e9) "Tangent bulk modulus";
+equation
+  assert(A > 0, "The area A must be positive");
+  assert(side == 1 or side == -1, "side must be 1 or -1");
+  assert(V > 0, "The piston has passed the end of the chamber: the volume is negative");
+  p = port.p;
+  v = der(flange.s);
+  V = V_0 + side*A*(flange.s - s_0);
+  (rho, beta) = oil.density(p);
+  max(V, V_min)/beta*der(p) = port.q - side*A*v;
+  flange.f = -side*A*(p - p_ambient);
+  mass = rho*max(V, V_min);
+  annotation(Documentation(info = "<html><p><code>V/beta dp/dt = q - A v</code>, force <code>A (p - p_ambient)</code>. Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, section 6.1.</p></html>"));
+end Chamber;

@@ -1,0 +1,10 @@
+within Hydraulic;
+model FlowSensor "Volume flow through a line"
+  Interfaces.HydraulicPort port_a "Port a";
+  Interfaces.HydraulicPort port_b "Port b";
+  Interfaces.RealOutput q(unit = "m3/s", nominal = 1e-4) "Volume flow from a to b, at the pressure there";
+equation
+  port_a.p = port_b.p;
+  port_a.q + port_b.q = 0;
+  q = port_a.q;
+end FlowSensor;

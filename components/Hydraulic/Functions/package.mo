@@ -1,0 +1,3 @@
+within Hydraulic;
+package Functions "Laws of flow"
+end Functions;

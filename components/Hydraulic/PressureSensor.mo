@@ -1,0 +1,8 @@
+within Hydraulic;
+model PressureSensor "Absolute pressure of a node"
+  Interfaces.HydraulicPort port "Port";
+  Interfaces.RealOutput p(unit = "Pa", nominal = 1e6) "Absolute pressure";
+equation
+  p = port.p;
+  port.q = 0;
+end PressureSensor;

@@ -1,0 +1,15 @@
+within Hydraulic;
+model PressureSource "Pressure given by a parameter or a signal"
+  parameter Boolean useInput = false "true: the pressure comes through p_in" annotation(Evaluate = true);
+  parameter SI.Pressure p(nominal = 1e6) = 1e6 "Pressure without signal";
+  Interfaces.HydraulicPort port "Port";
+  Interfaces.RealInput p_in(unit = "Pa") if useInput "Pressure";
+protected
+  Interfaces.RealInput p_used(unit = "Pa");
+equation
+  connect(p_in, p_used);
+  if not useInput then
+    p_used = p;
+  end if;
+  port.p = p_used;
+end PressureSource;

@@ -1,0 +1,6 @@
+within Hydraulic.SealFriction;
+model None "No friction"
+  extends Law;
+equation
+  f = 0;
+end None;

@@ -1,0 +1,3 @@
+within Hydraulic;
+package SealFriction "Friction of cylinder seals, interchangeable"
+end SealFriction;

@@ -1,0 +1,8 @@
+within Hydraulic;
+model Tank "Open or pressurised tank of constant pressure"
+  Interfaces.HydraulicPort port "Port";
+  parameter SI.Pressure p(min = 0, nominal = 1e5) = 101325 "Pressure of the tank";
+equation
+  port.p = p;
+  annotation(Documentation(info = "<html><p>Takes and gives any amount of oil at one pressure. It is what gives a circuit its level of pressure.</p></html>"));
+end Tank;

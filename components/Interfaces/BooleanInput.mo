@@ -1,0 +1,2 @@
+within Interfaces;
+connector BooleanInput = input Boolean "Boolean signal, input";

@@ -1,0 +1,2 @@
+within Interfaces;
+connector BooleanOutput = output Boolean "Boolean signal, output";

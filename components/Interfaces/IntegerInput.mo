@@ -1,0 +1,2 @@
+within Interfaces;
+connector IntegerInput = input Integer "Integer signal, input";

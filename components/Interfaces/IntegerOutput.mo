@@ -1,0 +1,2 @@
+within Interfaces;
+connector IntegerOutput = output Integer "Integer signal, output";

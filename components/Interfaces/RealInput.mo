@@ -1,0 +1,2 @@
+within Interfaces;
+connector RealInput = input Real "Real signal, input";

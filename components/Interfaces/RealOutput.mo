@@ -1,0 +1,2 @@
+within Interfaces;
+connector RealOutput = output Real "Real signal, output";

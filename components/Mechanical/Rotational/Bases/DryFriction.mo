@@ -1,0 +1,47 @@
+within Mechanical.Rotational.Bases;
+partial model DryFriction "Dry friction as an automaton with the states stuck, sliding forward, sliding backward and free"
+  parameter SI.AngularVelocity w_small = 1e10 "Sliding speed above which a reversal counts as a jump; lower it only where reinit changes the speed";
+  constant Integer Backward = -1 "Mode: sliding backward";
+  constant Integer Stuck = 0 "Mode: held, no motion";
+  constant Integer Forward = 1 "Mode: sliding forward";
+  constant Integer Free = 2 "Mode: no contact";
+  constant Integer Unknown = 3 "Mode: before the first event";
+  Integer mode(start = Unknown, fixed = true, min = -1, max = 3) "State of the contact";
+  Boolean locked(start = false) "true: held";
+protected
+  constant SI.AngularAcceleration unit_a = 1;
+  constant SI.Torque unit_f = 1;
+  SI.AngularVelocity w_slide "Sliding speed";
+  SI.AngularAcceleration a_slide "Its rate";
+  SI.Torque tau_hold(min = 0) "Largest torque that the contact holds";
+  SI.Torque tau_0(min = 0) "Torque of sliding at vanishing speed";
+  SI.Torque tau_dry "Magnitude of the dry part while sliding";
+  SI.Torque tau_visc "Viscous part while sliding";
+  SI.Torque tau_fric "Friction torque, against the motion when positive and sliding forward";
+  Boolean free "true: no contact";
+  Real path "Place on the characteristic: torque while stuck, acceleration beyond it while sliding";
+  Boolean startForward(start = false, fixed = true) "true: begins to slide forward";
+  Boolean startBackward(start = false, fixed = true) "true: begins to slide backward";
+  Boolean forward "true: slides forward, or begins to";
+equation
+  startForward = pre(mode) == Stuck and (path > tau_hold/unit_f or pre(startForward) and path > tau_0/unit_f)
+    or pre(mode) == Backward and w_slide > w_small
+    or initial() and w_slide > 0;
+  startBackward = pre(mode) == Stuck and (path < -tau_hold/unit_f or pre(startBackward) and path < -tau_0/unit_f)
+    or pre(mode) == Forward and w_slide < -w_small
+    or initial() and w_slide < 0;
+  locked = not free and not (pre(mode) == Forward or startForward or pre(mode) == Backward or startBackward);
+  forward = startForward or pre(mode) == Forward and not startBackward;
+  a_slide/unit_a = if locked then 0 elseif free then path elseif forward then path - tau_hold/unit_f else path + tau_hold/unit_f;
+  tau_fric = if locked then unit_f*path elseif free then 0 elseif forward then tau_dry + tau_visc else tau_visc - tau_dry;
+  mode = if free then Free
+    elseif (pre(mode) == Forward or pre(mode) == Free or startForward) and w_slide > 0 then Forward
+    elseif (pre(mode) == Backward or pre(mode) == Free or startBackward) and w_slide < 0 then Backward
+    else Stuck;
+  annotation(Documentation(info = "<html>
+<p>A component that extends this gives the sliding speed and its rate, the greatest holding torque <code>tau_hold</code>, the sliding torque at zero speed <code>tau_0</code> and over speed
+(<code>tau_dry</code>, <code>tau_visc</code>), and <code>free</code>.</p>
+<p>Friction torque and acceleration are one curve with the parameter <code>path</code>: stuck, the acceleration is zero and <code>path</code> is the torque; beyond the holding limit the contact slides and <code>path</code> runs on with the
+acceleration. The relations on <code>path</code> and on the speed are events, so that sticking begins and ends exactly, without creep and without chatter, also where several contacts act on each other: the modes and the accelerations are then solved together at the event.</p>
+<p>Source: M. Otter, H. Elmqvist, S. E. Mattsson, Hybrid modeling in Modelica based on the synchronous data flow principle, CACSD 1999.</p></html>"));
+end DryFriction;

@@ -1,0 +1,3 @@
+within Mechanical.Rotational;
+package Bases "Partial models that components extend"
+end Bases;

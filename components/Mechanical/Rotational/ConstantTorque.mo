@@ -1,0 +1,7 @@
+within Mechanical.Rotational;
+model ConstantTorque "Constant torque acting on a flange"
+  Interfaces.RotationalFlange flange "Flange";
+  parameter SI.Torque tau_constant = 1 "Torque that accelerates the component joined";
+equation
+  flange.tau = -tau_constant;
+end ConstantTorque;

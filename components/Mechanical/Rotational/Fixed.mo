@@ -1,0 +1,7 @@
+within Mechanical.Rotational;
+model Fixed "Flange fixed to the housing"
+  parameter SI.Angle phi_0 = 0 "Angle of the housing";
+  Interfaces.RotationalFlange flange "Flange";
+equation
+  flange.phi = phi_0;
+end Fixed;

@@ -1,0 +1,10 @@
+within Mechanical.Rotational;
+model IdealRackAndPinion "Turns rotation into translation: rack and pinion, belt, wheel or screw without loss"
+  Interfaces.RotationalFlange flange_R "Shaft";
+  Interfaces.TranslationalFlange flange_T "Rack";
+  parameter Real ratio(unit = "rad/m") = 100 "Angle of the shaft over the way of the rack";
+equation
+  assert(abs(ratio) > 0, "The ratio must not be zero");
+  flange_R.phi = ratio*flange_T.s;
+  ratio*flange_R.tau + flange_T.f = 0;
+end IdealRackAndPinion;

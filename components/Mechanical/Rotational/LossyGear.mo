@@ -1,0 +1,24 @@
+within Mechanical.Rotational;
+model LossyGear "Gear with an efficiency that holds for both directions of power"
+  Interfaces.RotationalFlange flange_a "Driving shaft";
+  Interfaces.RotationalFlange flange_b "Driven shaft";
+  parameter Real ratio(unit = "1") = 1 "Angle of a over angle of b";
+  parameter Real eta(unit = "1", min = 0.01, max = 1) = 0.97 "Efficiency, power out over power in";
+  parameter SI.Power P_0(min = 1e-9) = 1 "Power over which the direction changes smoothly";
+  SI.AngularVelocity w(nominal = 10) "Speed of the driving shaft";
+  SI.Power lossPower "Power lost";
+protected
+  SI.Power power "Power into flange a";
+  Real eta_ab(unit = "1") "Torque of b over ideal torque";
+equation
+  assert(abs(ratio) > 0, "The ratio of the gear must not be zero");
+  assert(eta > 0 and eta <= 1, "The efficiency eta must lie above 0 and not above 1");
+  flange_a.phi = ratio*flange_b.phi;
+  w = der(flange_a.phi);
+  power = w*flange_a.tau;
+  eta_ab = (eta + 1/eta)/2 + (eta - 1/eta)/2*Smooth.sgn(power, P_0);
+  flange_b.tau = -ratio*eta_ab*flange_a.tau;
+  lossPower = power*(1 - eta_ab);
+  annotation(Documentation(info = "<html><p>Torque at b is <code>eta</code> times the ideal one where a drives and <code>1/eta</code> times where b drives. Around zero power the two
+are blended over <code>P_0</code>; there the loss may be slightly negative, by less than <code>0.3 P_0 (1/eta - eta)</code>.</p></html>"));
+end LossyGear;

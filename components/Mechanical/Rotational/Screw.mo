@@ -1,0 +1,23 @@
+within Mechanical.Rotational;
+model Screw "Screw spindle with efficiency"
+  Interfaces.RotationalFlange flange_R "Spindle";
+  Interfaces.TranslationalFlange flange_T "Nut";
+  parameter SI.Length pitch(min = 1e-6, max = 1, nominal = 1e-2) = 1e-2 "Way of the nut per revolution";
+  parameter Real eta(unit = "1", min = 0.05, max = 1) = 0.9 "Efficiency when the spindle drives";
+  parameter Real eta_back(unit = "1", min = 0, max = 1) = 2 - 1/eta "Efficiency when the nut drives; 0 self-locking";
+  parameter SI.Power P_0(min = 1e-9) = 1 "Power over which the direction changes smoothly";
+  SI.Power lossPower "Power lost";
+protected
+  parameter Real lead(unit = "m/rad") = pitch/(2*Modelica.Constants.pi) "Way per radian";
+  SI.Power power "Power out of the nut";
+  Real k(unit = "1") "Torque over ideal torque";
+equation
+  assert(pitch > 0, "The pitch must be positive");
+  assert(eta > 0 and eta <= 1 and eta_back >= 0 and eta_back <= 1, "The efficiencies must lie from 0 to 1");
+  flange_T.s = lead*flange_R.phi;
+  power = -flange_T.f*der(flange_T.s);
+  k = (1/eta + eta_back)/2 + (1/eta - eta_back)/2*Smooth.sgn(power, P_0);
+  flange_R.tau = -lead*k*flange_T.f;
+  lossPower = (k - 1)*power;
+  annotation(Documentation(info = "<html><p>Ideal where <code>eta = 1</code>. The efficiency of back driving follows for equal friction from that of driving, <code>2 - 1/eta</code>.</p></html>"));
+end Screw;

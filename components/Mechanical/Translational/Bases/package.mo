@@ -1,0 +1,3 @@
+within Mechanical.Translational;
+package Bases "Partial models that components extend"
+end Bases;

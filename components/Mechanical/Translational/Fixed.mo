@@ -1,0 +1,7 @@
+within Mechanical.Translational;
+model Fixed "Flange fixed to the housing"
+  parameter SI.Position s_0 = 0 "Position of the housing";
+  Interfaces.TranslationalFlange flange "Flange";
+equation
+  flange.s = s_0;
+end Fixed;

@@ -1,0 +1,9 @@
+within Oil.Compression;
+partial function Law "What a law of density takes and gives"
+  input SI.Pressure p "Absolute pressure";
+  input SI.Density rho_0 = 860 "Density of the air-free oil at p_0";
+  input SI.Pressure p_0 = 101325 "Reference pressure";
+  input Real x_u(unit = "1") = 0.2 "Share of the air that is not dissolved";
+  output SI.Density rho(nominal = 1000) "Density";
+  output SI.BulkModulus beta(nominal = 1e9) "Tangent bulk modulus rho/(d rho/d p)";
+end Law;

@@ -1,0 +1,3 @@
+within Oil;
+package Compression "Laws of density and bulk modulus over pressure"
+end Compression;

@@ -1,0 +1,8 @@
+within Oil;
+model ISOVG68 "Mineral oil of ISO VG 68: 68 mm2/s at 40 degC, 8.7 mm2/s at 100 degC"
+  extends Oil.Fluid(
+    rho_0 = 880*(1 - 7e-4*(T_0 - 288.15)),
+    redeclare function viscosity = Oil.Viscosity.astmD341(rho = rho_0, nu_1 = 68e-6, nu_2 = 8.7e-6));
+  annotation(defaultComponentName = "oil", defaultComponentPrefixes = "inner",
+    Documentation(info = "<html><p>Viscosity class of ISO 3448 with a viscosity index of about 100, density 880 kg/m3 at 15 degC, expansion 7e-4 1/K.</p></html>"));
+end ISOVG68;

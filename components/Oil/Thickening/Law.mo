@@ -1,0 +1,6 @@
+within Oil.Thickening;
+partial function Law "What a law of thickening takes and gives"
+  input SI.DynamicViscosity mu_0 "Dynamic viscosity at low pressure";
+  input SI.Pressure p "Pressure above the surroundings; in a gap the mean pressure of the film";
+  output SI.DynamicViscosity mu(nominal = 0.03) "Dynamic viscosity at that pressure";
+end Law;

@@ -1,0 +1,3 @@
+within Oil;
+package Thickening "Laws of viscosity over pressure"
+end Thickening;

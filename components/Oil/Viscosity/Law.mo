@@ -1,0 +1,5 @@
+within Oil.Viscosity;
+partial function Law "What a law of viscosity takes and gives"
+  input SI.Temperature T "Temperature";
+  output SI.DynamicViscosity mu(nominal = 0.03) "Dynamic viscosity at low pressure";
+end Law;

@@ -1,0 +1,3 @@
+within Signal;
+package Bases "Partial blocks"
+end Bases;

@@ -1,0 +1,3 @@
+within Signal;
+package Functions "Functions behind the blocks"
+end Functions;

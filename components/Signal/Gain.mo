@@ -1,0 +1,7 @@
+within Signal;
+block Gain "Product with a constant"
+  extends Bases.OneToOne;
+  parameter Real k = 1 "Gain";
+equation
+  y = k*u;
+end Gain;

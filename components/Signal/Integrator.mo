@@ -1,0 +1,10 @@
+within Signal;
+block Integrator "Integrator"
+  extends Bases.OneToOne;
+  parameter Real k = 1 "Gain";
+  parameter Real y_start = 0 "Output at the start";
+initial equation
+  y = y_start;
+equation
+  der(y) = k*u;
+end Integrator;

@@ -1,0 +1,8 @@
+within Signal;
+block VariableLimiter "Limits given by signals"
+  extends Bases.OneToOne;
+  Interfaces.RealInput limit1 "Upper limit";
+  Interfaces.RealInput limit2 "Lower limit";
+equation
+  y = smooth(0, if u > limit1 then limit1 elseif u < limit2 then limit2 else u);
+end VariableLimiter;

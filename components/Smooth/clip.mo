@@ -1,0 +1,9 @@
+within Smooth;
+function clip "Opening that rises from 0 at u = 0 to 1 at u = 1 + w, corners rounded by parabolas"
+  input Real u "Argument";
+  input Real w(min = 0) = 0.1 "Length of the rounded corners";
+  output Real y "Between 0 and 1, continuous first derivative, exactly 0 for u <= 0";
+algorithm
+  y := Smooth.ramp(u, w) - Smooth.ramp(u - 1, w);
+  annotation(Inline = true);
+end clip;

@@ -1,0 +1,9 @@
+within Smooth;
+function sgn "Sign of x, rounded over the width w: tanh(x/w)"
+  input Real x "Argument";
+  input Real w(min = 0) "Width, in the unit of x";
+  output Real y "Between -1 and 1";
+algorithm
+  y := tanh(x/w);
+  annotation(Inline = true);
+end sgn;
