@@ -55,7 +55,7 @@ fn build(p: &mut Exprs, tree: &Tree) -> ExprId {
         }
         Tree::If(rel, a, b, c) => {
             let (a, b, c) = (build(p, a), build(p, b), build(p, c));
-            let holds = p.rel(*rel, a, b);
+            let holds = p.event_rel(*rel, a, b);
             p.if_(holds, b, c)
         }
     }
@@ -123,6 +123,16 @@ proptest! {
         let exact = at(&p, derivative, &x);
         prop_assume!(exact.is_finite());
         prop_assert!(close(exact, fine, 1e-4), "{} against {}", exact, fine);
+    }
+
+    #[test]
+    fn printed_text_reads_back_the_same(tree in tree()) {
+        let mut p = Exprs::default();
+        let e = build(&mut p, &tree);
+        let text = p.print(e, &|v| format!("x{}", v.0));
+        let find = |name: &str| VarId(name[1..].parse().expect("a number"));
+        let again = crate::expr::from_text::read(&mut p, &text, &find);
+        prop_assert_eq!(again, e, "{}", text);
     }
 
     #[test]

@@ -8,6 +8,8 @@ pub mod affine;
 pub mod build;
 pub mod differentiate;
 pub mod eval;
+#[cfg(test)]
+pub(crate) mod from_text;
 pub mod function;
 pub mod interpret;
 pub mod math;

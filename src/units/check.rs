@@ -15,16 +15,16 @@ const MOST_TERMS: usize = 8;
 /// sides of different dimension, W231 for sides of one dimension in different units. A place in the text is reported once,
 /// however many instances its class has. What is not known is not reported.
 pub fn check(model: &FlatModel) -> Vec<Diagnostic> {
-    let (mut units, unreadable) = Units::declared(model);
     let relations = infer::relations(model);
+    let (mut units, unreadable) = Units::declared(model, &relations);
     let mut found = unreadable_units(model, &unreadable);
     found.extend(display_units(model));
     units.infer(&relations);
     let mut seen = FxHashSet::default();
     let mut mismatches = Vec::new();
-    for relation in &relations {
+    for (number, relation) in relations.iter().enumerate() {
         mismatches.clear();
-        units.evaluate(relation, |units, e| mismatches.extend(inner_mismatch(units, e)));
+        units.evaluate(number, |units, e| mismatches.extend(inner_mismatch(units, e)));
         mismatches.extend(outer_mismatch(&units, relation));
         for mismatch in &mismatches {
             // A part shared by several relations is reported with the first of them.

@@ -3,9 +3,8 @@
 
 use super::*;
 use crate::diag::FileId;
-use crate::expr::{Exprs, Rel, Unary};
+use crate::expr::Exprs;
 use crate::flat::{Equation, InstanceInfo, Origin, OriginKind, StateSelect, Type, Variability, Variable};
-use crate::syntax::ast::{self, BinaryOp, ExprKind, UnaryOp};
 
 fn span(at: usize) -> Span {
     let at = u32::try_from(at).expect("a short text");
@@ -59,80 +58,12 @@ fn model(declarations: &str, equations: &str) -> FlatModel {
 }
 
 fn expression(model: &mut FlatModel, text: &str) -> ExprId {
-    let tree = crate::syntax::parse_expression(FileId(0), text).value.expect("an expression");
-    build(model, &tree)
-}
-
-fn build(model: &mut FlatModel, tree: &ast::Expr) -> ExprId {
-    match &tree.kind {
-        #[allow(clippy::cast_precision_loss, reason = "small numbers")]
-        ExprKind::Integer(value) => model.exprs.num(*value as f64),
-        ExprKind::Real(value) => model.exprs.num(*value),
-        ExprKind::Reference(reference) => match reference.parts[0].name.name.as_str() {
-            "time" => model.exprs.time(),
-            "pi" => model.exprs.num(std::f64::consts::PI),
-            name => {
-                let v = find(model, name);
-                model.exprs.var(v)
-            }
-        },
-        ExprKind::Unary(UnaryOp::Minus, a) => {
-            let a = build(model, a);
-            model.exprs.neg(a)
-        }
-        ExprKind::Binary(op, a, b) => {
-            let (a, b) = (build(model, a), build(model, b));
-            binary(&mut model.exprs, *op, a, b)
-        }
-        ExprKind::If { branches, otherwise } => {
-            let (c, a) = (build(model, &branches[0].0), build(model, &branches[0].1));
-            let b = build(model, otherwise);
-            model.exprs.if_(c, a, b)
-        }
-        ExprKind::Tuple(parts) => build(model, parts[0].as_ref().expect("a part")),
-        ExprKind::Call { function, args, .. } => call(model, function.parts[0].name.name.as_str(), args),
-        other => panic!("not in these tests: {other:?}"),
-    }
-}
-
-fn find(model: &FlatModel, name: &str) -> VarId {
-    let found = model.variables.iter().position(|v| v.name == name);
-    VarId(u32::try_from(found.unwrap_or_else(|| panic!("no {name}"))).expect("few"))
-}
-
-fn binary(pool: &mut Exprs, op: BinaryOp, a: ExprId, b: ExprId) -> ExprId {
-    match op {
-        BinaryOp::Add => pool.add(a, b),
-        BinaryOp::Sub => pool.sub(a, b),
-        BinaryOp::Mul => pool.mul(a, b),
-        BinaryOp::Div => pool.div(a, b),
-        BinaryOp::Pow => pool.pow(a, b),
-        BinaryOp::Lt => pool.event_rel(Rel::Lt, a, b),
-        BinaryOp::Gt => pool.event_rel(Rel::Gt, a, b),
-        other => panic!("not in these tests: {other:?}"),
-    }
-}
-
-fn call(model: &mut FlatModel, name: &str, args: &[ast::Expr]) -> ExprId {
-    if let ("der", ExprKind::Reference(reference)) = (name, &args[0].kind) {
-        let v = find(model, reference.parts[0].name.name.as_str());
-        return model.exprs.der(v);
-    }
-    let args: Vec<ExprId> = args.iter().map(|arg| build(model, arg)).collect();
-    let op = match name {
-        "sin" => Unary::Sin,
-        "exp" => Unary::Exp,
-        "log" => Unary::Log,
-        "tanh" => Unary::Tanh,
-        "sqrt" => Unary::Sqrt,
-        "abs" => Unary::Abs,
-        "sign" => Unary::Sign,
-        "min" => return model.exprs.min(args[0], args[1]),
-        "max" => return model.exprs.max(args[0], args[1]),
-        "atan2" => return model.exprs.atan2(args[0], args[1]),
-        other => panic!("not in these tests: {other}"),
+    let FlatModel { variables, exprs, .. } = model;
+    let find = |name: &str| {
+        let found = variables.iter().position(|v| v.name == name);
+        VarId(u32::try_from(found.unwrap_or_else(|| panic!("no {name}"))).expect("few"))
     };
-    model.exprs.unary(op, args[0])
+    crate::expr::from_text::read(exprs, text, &find)
 }
 
 fn warnings(declarations: &str, equations: &str) -> Vec<String> {
@@ -201,7 +132,7 @@ const WRONG: &[(&str, &str, &[&str])] = &[
         &["W230: `q = A*sqrt(2*dp*rho)`: the left side is in m3/s, the right side in kg/s"],
     ),
     // Through intermediate variables without unit.
-    ("y ?, u ?, p Pa, F N", "F = y; y = 2*u; u = p", &["W230: `y = 2*u`: the left side is in N, the right side in Pa"]),
+    ("y ?, u ?, p Pa, F N", "F = y; y = 2*u; u = p", &["W230: `u = p`: the left side is in N, the right side in Pa"]),
     ("v ?, x m, p Pa", "der(x) = v; p = v", &["W230: `p = v`: the left side is in Pa, the right side in m/s"]),
     (
         "a foo, b Pa, c N/bar/q",

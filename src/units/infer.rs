@@ -72,8 +72,10 @@ pub(super) struct Units<'a> {
     pub found_in: FxHashMap<VarId, u32>,
     /// By node, as of the last time that it was worked through.
     nodes: Vec<Measure>,
-    walk: Walk,
+    /// The nodes of all relations, each in an order of evaluation.
     order: Vec<ExprId>,
+    /// Where each relation's nodes begin in `order`, and one more for the end.
+    starts: Vec<usize>,
     /// Variables whose unit the last relation gave.
     fresh: Vec<VarId>,
 }
@@ -83,7 +85,7 @@ pub(super) type Unreadable = (VarId, UnitError);
 
 impl<'a> Units<'a> {
     /// The declared units; those that cannot be read are unknown.
-    pub fn declared(model: &'a FlatModel) -> (Self, Vec<Unreadable>) {
+    pub fn declared(model: &'a FlatModel, relations: &[Relation]) -> (Self, Vec<Unreadable>) {
         let mut cache: FxHashMap<&str, Result<Unit, UnitError>> = FxHashMap::default();
         let mut unreadable = Vec::new();
         let mut variables = Vec::with_capacity(model.variables.len());
@@ -103,8 +105,8 @@ impl<'a> Units<'a> {
         }
         let nodes = vec![Measure::Unknown; model.exprs.len()];
         let found_in = FxHashMap::default();
-        let units =
-            Units { model, variables, found_in, nodes, walk: Walk::default(), order: Vec::new(), fresh: Vec::new() };
+        let (order, starts) = orders(&model.exprs, relations);
+        let units = Units { model, variables, found_in, nodes, order, starts, fresh: Vec::new() };
         (units, unreadable)
     }
 
@@ -121,7 +123,7 @@ impl<'a> Units<'a> {
             let i = next as usize;
             waiting[i] = false;
             visits[i] += 1;
-            self.work_through(&relations[i]);
+            self.work_through(i, &relations[i]);
             for v in std::mem::take(&mut self.fresh) {
                 self.found_in.insert(v, next);
                 for &user in uses.of(v) {
@@ -136,39 +138,34 @@ impl<'a> Units<'a> {
     }
 
     /// In which relations each undeclared variable occurs.
-    fn uses(&mut self, relations: &[Relation]) -> Uses {
+    fn uses(&self, relations: &[Relation]) -> Uses {
         let mut pairs: Vec<(VarId, u32)> = Vec::new();
+        let unknown = |v: VarId| matches!(self.variables[v.index()], Measure::Unknown);
         for (i, relation) in (0..).zip(relations) {
-            self.collect(relation);
-            let mentioned = self.order.iter().filter_map(|&e| match self.model.exprs.node(e) {
-                Node::Var(v) | Node::Der(v) | Node::Pre(v) => Some(v),
-                _ => None,
-            });
-            let side = relation.lhs.and_then(|side| if let Side::Var(v) = side { Some(v) } else { None });
-            let unknown = |v: &VarId| matches!(self.variables[v.index()], Measure::Unknown);
-            pairs.extend(mentioned.chain(side).filter(unknown).map(|v| (v, i)));
+            for &e in &self.order[self.nodes_of(i as usize)] {
+                if let Node::Var(v) | Node::Der(v) | Node::Pre(v) = self.model.exprs.node(e)
+                    && unknown(v)
+                {
+                    pairs.push((v, i));
+                }
+            }
+            if let Some(Side::Var(v)) = relation.lhs
+                && unknown(v)
+            {
+                pairs.push((v, i));
+            }
         }
         pairs.sort_unstable();
         Uses { pairs }
     }
 
-    /// The nodes of a relation in an order of evaluation, into `order`.
-    fn collect(&mut self, relation: &Relation) {
-        let left = match relation.lhs {
-            Some(Side::Expr(e)) => e,
-            _ => relation.rhs,
-        };
-        self.order.clear();
-        let order = &mut self.order;
-        self.walk.each(&self.model.exprs, &[left, relation.rhs], |e, _| {
-            order.push(e);
-            true
-        });
-        order.sort_unstable();
+    /// Where the nodes of a relation are in `order`.
+    fn nodes_of(&self, relation: usize) -> std::ops::Range<usize> {
+        self.starts[relation]..self.starts[relation + 1]
     }
 
-    fn work_through(&mut self, relation: &Relation) {
-        self.evaluate(relation, |_, _| {});
+    fn work_through(&mut self, number: usize, relation: &Relation) {
+        self.evaluate(number, |_, _| {});
         let (left, right) = (self.side(relation.lhs), self.nodes[relation.rhs.index()]);
         if let Some(quantity) = right.known() {
             match relation.lhs {
@@ -180,15 +177,15 @@ impl<'a> Units<'a> {
         if let Some(quantity) = left.known() {
             self.expect(relation.rhs, quantity);
         }
-        for i in (0..self.order.len()).rev() {
+        for i in self.nodes_of(number).rev() {
             self.push_down(self.order[i]);
         }
     }
 
-    /// Bottom-up: the unit of each node, after `look` has seen the node with those of its arguments.
-    pub fn evaluate(&mut self, relation: &Relation, mut look: impl FnMut(&Self, ExprId)) {
-        self.collect(relation);
-        for i in 0..self.order.len() {
+    /// Bottom-up through a relation, by its number: the unit of each node, after `look` has seen the node with those of
+    /// its arguments.
+    pub fn evaluate(&mut self, relation: usize, mut look: impl FnMut(&Self, ExprId)) {
+        for i in self.nodes_of(relation) {
             let e = self.order[i];
             look(self, e);
             self.nodes[e.index()] = self.combine(e);
@@ -341,6 +338,26 @@ fn unary(op: Unary, a: Measure) -> Measure {
         Unary::Sqrt => a.power(0.5),
         _ => Measure::Number,
     }
+}
+
+/// The nodes of each relation in an order of evaluation, and where those of each begin.
+fn orders(pool: &Exprs, relations: &[Relation]) -> (Vec<ExprId>, Vec<usize>) {
+    let mut walk = Walk::default();
+    let (mut order, mut starts) = (Vec::new(), vec![0]);
+    for relation in relations {
+        let left = match relation.lhs {
+            Some(Side::Expr(e)) => e,
+            _ => relation.rhs,
+        };
+        walk.each(pool, &[left, relation.rhs], |e, _| {
+            order.push(e);
+            true
+        });
+        let start = starts[starts.len() - 1];
+        order[start..].sort_unstable();
+        starts.push(order.len());
+    }
+    (order, starts)
 }
 
 /// Sorted pairs of variable and relation.
