@@ -46,7 +46,7 @@ macro_rules! codes {
 codes! {
     // 00x text
     Syntax = "E001", Error, "the text is not Modelica";
-    UnterminatedText = "E002", Error, "a string, comment or bracket is not closed";
+    UnterminatedText = "E002", Error, "a string, comment, bracket or block is not closed";
     WrongEnd = "E003", Error, "the name after `end` is not the class's name";
     TooDeep = "E004", Error, "the text is nested too deeply";
     NotText = "E005", Error, "the file is not text";

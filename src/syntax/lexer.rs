@@ -143,10 +143,10 @@ impl Lexer<'_> {
     }
 
     /// One past the closing mark that ends what was opened at `start`, or `None`.
-    fn closing(bytes: &[u8], start: usize, mark: u8) -> Option<usize> {
+    fn closing(&self, start: usize, mark: u8) -> Option<usize> {
         let mut at = start + 1;
         loop {
-            match *bytes.get(at)? {
+            match *self.bytes.get(at)? {
                 b'\\' => at += 2,
                 b if b == mark => return Some(at + 1),
                 _ => at += 1,
@@ -154,21 +154,13 @@ impl Lexer<'_> {
         }
     }
 
-    fn line_end(&self, start: usize) -> usize {
-        let end = self.find_from(start, b'\n').unwrap_or(self.bytes.len());
-        if end > start && self.bytes[end - 1] == b'\r' { end - 1 } else { end }
-    }
-
     fn string(&mut self) {
         let start = self.at;
-        let line_end = self.line_end(start);
-        match Self::closing(self.bytes, start, b'"') {
-            Some(end) if end <= line_end || !self.ends_strangely(start, end) => {
-                self.push(TokenKind::String, start, end);
-            }
+        match self.closing(start, b'"') {
+            Some(end) if !self.ends_strangely(start, end) => self.push(TokenKind::String, start, end),
             Some(_) => {
                 self.unclosed("the string is not closed on its line", start, start + 1);
-                self.push(TokenKind::String, start, line_end);
+                self.push(TokenKind::String, start, self.before_semicolon(start));
                 self.give_up_if_hopeless();
             }
             None => {
@@ -192,17 +184,27 @@ impl Lexer<'_> {
     /// Texts in HTML are left alone: there it is more likely a quotation mark without backslash.
     fn ends_strangely(&self, start: usize, end: usize) -> bool {
         let follows = self.bytes.get(end).is_some_and(|b| b.is_ascii_alphanumeric() || *b == b'_' || *b >= 0x80);
-        follows && !self.bytes[start + 1..].starts_with(b"<html") && !self.bytes[start + 1..].starts_with(b"<HTML")
+        follows
+            && self.bytes[start..end].contains(&b'\n')
+            && !self.bytes[start + 1..].starts_with(b"<html")
+            && !self.bytes[start + 1..].starts_with(b"<HTML")
+    }
+
+    /// The end of a line without its semicolon, which is likely none of what is not closed.
+    fn before_semicolon(&self, start: usize) -> usize {
+        let line_end = self.find_from(start, b'\n').unwrap_or(self.bytes.len());
+        let line = self.text[start..line_end].trim_ascii_end();
+        start + line.strip_suffix(';').unwrap_or(line).len()
     }
 
     fn quoted_name(&mut self) {
         let start = self.at;
-        let line_end = self.line_end(start);
-        match Self::closing(&self.bytes[..line_end], start, b'\'') {
-            Some(end) => self.push(TokenKind::Ident, start, end),
-            None => {
+        match self.closing(start, b'\'') {
+            Some(end) if !self.bytes[start..end].contains(&b'\n') => self.push(TokenKind::Ident, start, end),
+            _ => {
                 self.unclosed("the quoted name is not closed on its line: expected `'`", start, start + 1);
-                self.push(TokenKind::Ident, start, line_end);
+                self.push(TokenKind::Ident, start, self.before_semicolon(start));
+                self.give_up_if_hopeless();
             }
         }
     }

@@ -3,6 +3,7 @@
 pub mod ast;
 mod lexer;
 mod parser;
+mod print;
 pub mod symbol;
 mod token;
 
@@ -63,3 +64,6 @@ fn not_text(file: FileId, text: &str) -> Option<Diagnostic> {
     let message = format!("the file is not text: it has a control character (byte {:#04x})", text.as_bytes()[at]);
     Some(Diagnostic::new(Code::NotText, message).at(place, "here").help("is this a Modelica file?"))
 }
+
+#[cfg(test)]
+mod tests;

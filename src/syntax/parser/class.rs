@@ -35,7 +35,7 @@ impl Parser<'_> {
         while !self.at(TokenKind::Eof) {
             let before = self.at;
             match self.top_level_class() {
-                Ok(class) => file.classes.push(class),
+                Ok(class) => file.classes.push(*class),
                 Err(Stop) => self.recover_to_class(),
             }
             if self.at == before {
@@ -56,11 +56,11 @@ impl Parser<'_> {
         Ok(path)
     }
 
-    fn top_level_class(&mut self) -> Parse<Class> {
+    fn top_level_class(&mut self) -> Parse<Box<Class>> {
         let start = self.span();
         let final_ = self.eat(TokenKind::Final);
         if !is_class_keyword(self.kind()) {
-            return Err(self.unexpected("a class such as `model` or `package`"));
+            return Err(self.no_class());
         }
         let mut class = self.class(Prefixes { final_, ..Prefixes::default() })?;
         class.span = class.span.to(start);
@@ -73,7 +73,7 @@ impl Parser<'_> {
     /// Skips to the next class; what lies between has no place in a file.
     fn recover_to_class(&mut self) {
         self.guessed = false;
-        while !self.at(TokenKind::Eof) && !(is_class_keyword(self.kind()) && self.starts_class()) {
+        while !(self.at(TokenKind::Eof) || is_class_keyword(self.kind()) && self.starts_class()) {
             self.bump();
         }
     }
@@ -81,23 +81,24 @@ impl Parser<'_> {
     // Heads.
 
     /// A class from `encapsulated`, `partial` or its keyword on.
-    pub(super) fn class(&mut self, prefixes: Prefixes) -> Parse<Class> {
+    pub(super) fn class(&mut self, prefixes: Prefixes) -> Parse<Box<Class>> {
         self.nested(|p| p.class_definition(prefixes))
     }
 
     /// A class with what may follow it when it is replaceable.
-    pub(super) fn replaceable_class(&mut self, start: Span, prefixes: Prefixes) -> Parse<Class> {
+    pub(super) fn replaceable_class(&mut self, start: Span, prefixes: Prefixes) -> Parse<Box<Class>> {
         let mut class = self.class(prefixes)?;
         if self.at(TokenKind::Constrainedby) {
             class.constraint = self.constraint()?;
-            let description = self.comment()?.0;
+            let (description, annotation) = self.comment()?;
             class.description = class.description.or(description);
+            class.annotation = class.annotation.or(annotation);
         }
         class.span = class.span.to(start);
         Ok(class)
     }
 
-    fn class_definition(&mut self, mut prefixes: Prefixes) -> Parse<Class> {
+    fn class_definition(&mut self, mut prefixes: Prefixes) -> Parse<Box<Class>> {
         let start = self.span();
         prefixes.encapsulated = self.eat(TokenKind::Encapsulated);
         prefixes.partial = self.eat(TokenKind::Partial);
@@ -107,11 +108,18 @@ impl Parser<'_> {
             let modification = self.optional_class_modification(Place::Extends)?;
             return self.long_class(start, kind, prefixes, name, Some(modification));
         }
-        let name = self.ident(&format!("the name of the {keyword}"))?;
+        let name = self.class_name(keyword)?;
         if self.eat(TokenKind::Equal) {
             return self.short_class(start, kind, prefixes, name);
         }
         self.long_class(start, kind, prefixes, name, None)
+    }
+
+    /// The name of a class, which is missing when the next line begins with two names.
+    fn class_name(&mut self, keyword: &str) -> Parse<Ident> {
+        let what = format!("the name of the {keyword}");
+        let is_missing = self.is_on_new_line() && self.at(TokenKind::Ident) && self.peek_kind(1) == TokenKind::Ident;
+        if is_missing { Err(self.unexpected(&what)) } else { self.ident(&what) }
     }
 
     /// The specialised class, with its main keyword.
@@ -147,7 +155,7 @@ impl Parser<'_> {
 
     // The short forms.
 
-    fn short_class(&mut self, start: Span, kind: ClassKind, prefixes: Prefixes, name: Ident) -> Parse<Class> {
+    fn short_class(&mut self, start: Span, kind: ClassKind, prefixes: Prefixes, name: Ident) -> Parse<Box<Class>> {
         let body = match self.kind() {
             TokenKind::Enumeration => self.enumeration()?,
             TokenKind::Der => self.derivative()?,
@@ -155,7 +163,7 @@ impl Parser<'_> {
         };
         let (description, annotation) = self.comment()?;
         let span = self.since(start);
-        Ok(Class { name, kind, prefixes, constraint: None, body, description, annotation, span })
+        Ok(Box::new(Class { name, kind, prefixes, constraint: None, body, description, annotation, span }))
     }
 
     fn short_body(&mut self) -> Parse<ClassBody> {
@@ -213,7 +221,7 @@ impl Parser<'_> {
         prefixes: Prefixes,
         name: Ident,
         class_extends: Option<Option<Modification>>,
-    ) -> Parse<Class> {
+    ) -> Parse<Box<Class>> {
         let description = self.description();
         let open = Open { kind: OpenKind::Class(name.name), span: name.span, else_if: None };
         let out = LongBody { class_extends, ..LongBody::default() };
@@ -232,7 +240,7 @@ impl Parser<'_> {
         self.class_end(open, name);
         let span = self.since(start);
         let annotation = body.annotation;
-        Ok(Class {
+        Ok(Box::new(Class {
             name,
             kind,
             prefixes,
@@ -241,7 +249,7 @@ impl Parser<'_> {
             description,
             annotation,
             span,
-        })
+        }))
     }
 
     /// At an `end` that is not a stray `end if` or the like.
@@ -303,22 +311,22 @@ impl Parser<'_> {
     }
 
     fn item(&mut self, body: &mut Body) -> Parse<()> {
-        self.check_stray_word()?;
+        if self.stray_word() || self.stray_semicolon() {
+            return Ok(());
+        }
         if body.section != Section::Elements && self.begins_declaration() {
             self.slip(
                 "a declaration stands before the first `equation` or `algorithm`, or after `public` or `protected`",
                 "a declaration in an equation section",
                 "move it up, or write `public` before it",
             );
-            body.section = Section::Elements;
-        } else if body.section == Section::Elements {
+            return self.element_item(body);
+        }
+        if body.section == Section::Elements {
             body.section = self.forgotten_section().unwrap_or(Section::Elements);
         }
         match body.section {
-            Section::Elements => {
-                self.element(body.protected, &mut body.out.elements)?;
-                self.semicolon()?;
-            }
+            Section::Elements => self.element_item(body)?,
             Section::Equations { initial } => {
                 let equations = self.list(Self::equation);
                 let all = if initial { &mut body.out.initial_equations } else { &mut body.out.equations };
@@ -336,24 +344,35 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// Reports `end if`, `else` and the like where nothing of the kind is open.
-    fn check_stray_word(&mut self) -> Parse<()> {
+    fn element_item(&mut self, body: &mut Body) -> Parse<()> {
+        self.element(body.protected, &mut body.out.elements)?;
+        self.semicolon()
+    }
+
+    /// Reports and passes over `end if`, `else` and the like where nothing of the kind is open.
+    fn stray_word(&mut self) -> bool {
         use TokenKind as T;
         let block = match self.kind() {
             T::End => self.word(self.peek(1)),
             T::Else | T::Elseif | T::Then => "if",
             T::Elsewhen => "when",
             T::Loop => "for` or `while",
-            _ => return Ok(()),
+            _ => return false,
         };
+        let is_end = self.at(T::End);
         let word = self.word(self.token());
-        let word = if self.at(T::End) { format!("{word} {block}") } else { word.to_owned() };
+        let word = if is_end { format!("{word} {block}") } else { word.to_owned() };
         self.slip(
             format!("`{word}` without `{block}`"),
             "nothing of the kind is open here",
             format!("leave out `{word}`, or look for an `end {block}` too many above"),
         );
-        Err(Stop)
+        self.bump();
+        if is_end {
+            self.bump();
+            self.eat(T::Semicolon);
+        }
+        true
     }
 
     fn begins_declaration(&self) -> bool {

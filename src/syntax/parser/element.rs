@@ -4,7 +4,7 @@ use super::modification::Place;
 use super::{Parse, Parser, is_class_keyword};
 use crate::diag::Span;
 use crate::syntax::ast::{
-    Causality, Component, Constraint, Element, ElementKind, Expr, Extends, Ident, Import, Modification, Path, Prefixes,
+    Causality, Component, Constraint, Element, ElementKind, Extends, Ident, Import, Modification, Path, Prefixes,
     Subscript, TypePrefix, Variability,
 };
 use crate::syntax::token::TokenKind;
@@ -30,7 +30,7 @@ impl Parser<'_> {
                 if !is_class_keyword(self.kind()) {
                     return self.component_clause(start, prefixes, protected, elements);
                 }
-                ElementKind::Class(Box::new(self.replaceable_class(start, prefixes)?))
+                ElementKind::Class(self.replaceable_class(start, prefixes)?)
             }
         };
         elements.push(Element { protected, kind, span: self.since(start) });
@@ -171,8 +171,8 @@ impl Parser<'_> {
             }
         }
         if let Some(constraint) = self.constraint()? {
-            let description = self.comment()?.0;
-            constrain(&mut elements[first..], &constraint, description.as_deref());
+            let (description, annotation) = self.comment()?;
+            constrain(&mut elements[first..], &constraint, description.as_deref(), annotation.as_ref());
         }
         Ok(())
     }
@@ -195,21 +195,7 @@ impl Parser<'_> {
         let modification = self.modification()?;
         let condition = if self.eat(TokenKind::If) { Some(self.expression()?) } else { None };
         let (description, annotation) = self.comment()?;
-        Ok(self.assemble(clause, name, subscripts, modification, condition, description, annotation))
-    }
-
-    #[allow(clippy::too_many_arguments, reason = "the parts of a declaration in their order")]
-    fn assemble(
-        &self,
-        clause: &Clause,
-        name: Ident,
-        subscripts: Vec<Subscript>,
-        modification: Option<Modification>,
-        condition: Option<Expr>,
-        description: Option<Box<str>>,
-        annotation: Option<Modification>,
-    ) -> Component {
-        Component {
+        Ok(Component {
             name,
             prefixes: clause.prefixes,
             prefix: clause.prefix,
@@ -220,7 +206,7 @@ impl Parser<'_> {
             constraint: None,
             description,
             annotation,
-        }
+        })
     }
 
     fn component_name(&mut self) -> Parse<Ident> {
@@ -253,13 +239,21 @@ fn set_prefix(prefix: &mut TypePrefix, kind: TokenKind) {
     }
 }
 
-/// Gives the components of a clause its constraint, and its description to those without one.
-fn constrain(elements: &mut [Element], constraint: &Constraint, description: Option<&str>) {
+/// Gives the components of a clause its constraint, and its description and annotation to those without one.
+fn constrain(
+    elements: &mut [Element],
+    constraint: &Constraint,
+    description: Option<&str>,
+    annotation: Option<&Modification>,
+) {
     for element in elements {
         if let ElementKind::Component(component) = &mut element.kind {
             component.constraint = Some(constraint.clone());
             if component.description.is_none() {
                 component.description = description.map(Into::into);
+            }
+            if component.annotation.is_none() {
+                component.annotation = annotation.cloned();
             }
         }
     }

@@ -1,6 +1,6 @@
 //! Equations, and the blocks `if`, `for` and `when` that equations and statements share.
 
-use super::{Open, OpenKind, Parse, Parser};
+use super::{Open, OpenKind, Parse, Parser, Stop};
 use crate::diag::Span;
 use crate::syntax::ast::{BinaryOp, Equation, EquationKind, Expr, ExprKind, Iterator};
 use crate::syntax::token::TokenKind;
@@ -56,7 +56,12 @@ impl Parser<'_> {
                 self.blame_comparison(a.span, b.span, "=", "`==` compares; an equation has a single `=`");
                 Ok(EquationKind::Equal(*a, *b))
             }
-            _ => Err(self.unexpected_in_item("`=`", self.advice_on_equation(&left))),
+            _ => {
+                if let Some(arrow) = self.arrow(&left) {
+                    return Err(self.blame_arrow(arrow, "=", "an equation has `=`"));
+                }
+                Err(self.unexpected_in_item("`=`", self.advice_on_equation(&left)))
+            }
         }
     }
 
@@ -75,17 +80,22 @@ impl Parser<'_> {
     }
 
     fn advice_on_equation(&self, left: &Expr) -> Option<&'static str> {
-        if self.at(TokenKind::Ident) && matches!(left.kind, ExprKind::Reference(_)) {
-            return Some("declarations stand before the keyword `equation`");
-        }
-        self.has_arrow(left).then_some("`<-` is read as \"less than minus\"; an equation has `=`")
+        let is_declaration = self.at(TokenKind::Ident) && matches!(left.kind, ExprKind::Reference(_));
+        is_declaration.then_some("declarations stand before the keyword `equation`")
     }
 
-    /// Whether `x <- y` was written, which is a comparison with `-y`.
-    pub(super) fn has_arrow(&self, expr: &Expr) -> bool {
-        let ExprKind::Binary(BinaryOp::Lt, left, right) = &expr.kind else { return false };
-        let gap = self.text.get(left.span.end as usize..right.span.end as usize).unwrap_or("");
-        gap.trim_start().starts_with("<-")
+    /// Where `x <- y` was written, which is a comparison with `-y`.
+    pub(super) fn arrow(&self, expr: &Expr) -> Option<Span> {
+        let ExprKind::Binary(BinaryOp::Lt, left, right) = &expr.kind else { return None };
+        let gap = self.text.get(left.span.end as usize..right.span.end as usize)?;
+        let sign = gap.trim_start();
+        let start = left.span.end + (gap.len() - sign.len()) as u32;
+        sign.starts_with("<-").then_some(Span { start, end: start + 2, ..left.span })
+    }
+
+    pub(super) fn blame_arrow(&mut self, arrow: Span, due: &str, rule: &str) -> Stop {
+        let help = format!("`<-` is read as \"less than minus\"; {rule}");
+        self.slip_at(arrow, format!("expected `{due}`, found `<-`"), &format!("expected `{due}`"), help)
     }
 
     // Blocks. The cursor is on the first keyword.

@@ -1,21 +1,9 @@
-//! Expressions: Pratt's method for the operators, recursive descent for the rest.
+//! Expressions by recursive descent, but for what stands between operators.
 
-use super::report::shortened;
-use super::{MAX_HEIGHT, Parse, Parser};
+use super::{Parse, Parser};
 use crate::diag::{Code, Diagnostic, Span};
-use crate::syntax::ast::{
-    BinaryOp, Expr, ExprKind, Ident, Iterator, Path, Reference, ReferencePart, Subscript, UnaryOp,
-};
+use crate::syntax::ast::{Expr, ExprKind, Ident, Iterator, Path, Reference, ReferencePart, Subscript};
 use crate::syntax::token::TokenKind;
-
-// Binding strength. Relations and powers do not chain; a sign stands only before a whole sum.
-const OR: u8 = 1;
-const AND: u8 = 2;
-const NOT: u8 = 3;
-const RELATION: u8 = 4;
-const SUM: u8 = 5;
-const PRODUCT: u8 = 6;
-const POWER: u8 = 7;
 
 /// Positional and named arguments of a call.
 type Arguments = (Vec<Expr>, Vec<(Ident, Expr)>);
@@ -47,13 +35,13 @@ impl Parser<'_> {
     }
 
     fn range_or_value(&mut self) -> Parse<Expr> {
-        let from = self.binary(OR)?;
+        let from = self.operators()?;
         if !self.eat(TokenKind::Colon) {
             return Ok(from);
         }
-        let second = self.binary(OR)?;
+        let second = self.operators()?;
         let (step, to) =
-            if self.eat(TokenKind::Colon) { (Some(Box::new(second)), self.binary(OR)?) } else { (None, second) };
+            if self.eat(TokenKind::Colon) { (Some(Box::new(second)), self.operators()?) } else { (None, second) };
         let span = from.span.to(to.span);
         Ok(Expr { kind: ExprKind::Range { from: Box::new(from), step, to: Box::new(to) }, span })
     }
@@ -86,87 +74,9 @@ impl Parser<'_> {
         Err(self.unexpected_with("`then`", help))
     }
 
-    // Operators.
+    // Operands of operators.
 
-    /// Operands joined by operators that bind at least as strongly as `least`.
-    fn binary(&mut self, least: u8) -> Parse<Expr> {
-        let mut left = self.prefix(least)?;
-        let mut last = 0;
-        while let Some((op, strength)) = infix(self.kind()).filter(|(_, strength)| *strength >= least) {
-            self.check_operator(strength == last);
-            self.bump();
-            last = if matches!(strength, RELATION | POWER) { strength } else { 0 };
-            left = self.join(left, op, strength)?;
-        }
-        Ok(left)
-    }
-
-    fn join(&mut self, left: Expr, op: BinaryOp, strength: u8) -> Parse<Expr> {
-        let height = self.height;
-        let right = self.binary(strength + 1)?;
-        self.height = self.height.max(height) + 1;
-        if self.height > MAX_HEIGHT {
-            return Err(self.too_deep(&format!("an expression with more than {MAX_HEIGHT} operators in a row")));
-        }
-        let span = left.span.to(right.span);
-        Ok(Expr { kind: ExprKind::Binary(op, Box::new(left), Box::new(right)), span })
-    }
-
-    /// Reports an operator of other languages, or one that does not chain.
-    fn check_operator(&mut self, chained: bool) {
-        let word = self.word(self.token());
-        let right = match self.kind() {
-            TokenKind::AndAnd => "and",
-            TokenKind::OrOr => "or",
-            TokenKind::BangEqual => "<>",
-            TokenKind::StarStar => "^",
-            _ if !chained => return,
-            TokenKind::Caret | TokenKind::DotCaret => {
-                let help = "write `(a^b)^c` or `a^(b^c)`";
-                return self.slip(format!("a second `{word}` needs brackets"), "no order is defined here", help);
-            }
-            _ => {
-                let help = "join two comparisons by `and`: `a < b and b < c`";
-                return self.slip(format!("a comparison cannot be compared by `{word}`"), "second comparison", help);
-            }
-        };
-        self.slip(format!("expected `{right}`, found `{word}`"), "not a Modelica operator", format!("write `{right}`"));
-    }
-
-    fn prefix(&mut self, least: u8) -> Parse<Expr> {
-        let (op, operand) = match self.kind() {
-            TokenKind::Plus => (UnaryOp::Plus, PRODUCT),
-            TokenKind::Minus => (UnaryOp::Minus, PRODUCT),
-            TokenKind::DotPlus => (UnaryOp::ElementPlus, PRODUCT),
-            TokenKind::DotMinus => (UnaryOp::ElementMinus, PRODUCT),
-            TokenKind::Not | TokenKind::Bang => (UnaryOp::Not, RELATION),
-            _ => return self.primary(),
-        };
-        let (start, before) = (self.span(), self.word(self.previous()));
-        if self.at(TokenKind::Bang) {
-            self.slip("expected `not`, found `!`", "not a Modelica operator", "write `not`");
-        }
-        self.bump();
-        let operand = Box::new(self.nested(|p| p.binary(operand.max(least)))?);
-        self.height += 1;
-        if least > if op == UnaryOp::Not { NOT } else { SUM } {
-            self.blame_prefix(before, start, operand.span);
-        }
-        Ok(Expr { kind: ExprKind::Unary(op, operand), span: self.since(start) })
-    }
-
-    /// Reports a sign or `not` directly after an operator that binds more strongly.
-    fn blame_prefix(&mut self, before: &str, sign: Span, operand: Span) {
-        let words = |from: Span, to: Span| self.text.get(from.start as usize..to.end as usize).unwrap_or("");
-        let sign_word = words(sign, sign);
-        let message = format!("`{sign_word}` directly after `{before}` needs brackets");
-        let help = format!("write `{before} ({})`", shortened(words(sign, operand)));
-        self.slip_at(sign, message, "brackets are needed here", help);
-    }
-
-    // Operands.
-
-    fn primary(&mut self) -> Parse<Expr> {
+    pub(super) fn primary(&mut self) -> Parse<Expr> {
         self.height = 0;
         let span = self.span();
         let kind = match self.kind() {
@@ -187,6 +97,9 @@ impl Parser<'_> {
             _ => return Err(self.unexpected("an expression")),
         };
         self.bump();
+        if matches!(kind, ExprKind::String(_)) {
+            self.skip_rest_of_string();
+        }
         Ok(Expr { kind, span })
     }
 
@@ -310,12 +223,22 @@ impl Parser<'_> {
             if !self.eat(TokenKind::Semicolon) {
                 break;
             }
-            if self.is_boundary() {
+            if self.is_boundary() || self.looks_like_equation() {
                 break;
             }
         }
         self.close(TokenKind::RightBracket, opened, "`,`, `;` or `]`")?;
         Ok(Expr { kind: ExprKind::Matrix(rows), span: self.since(opened) })
+    }
+
+    /// A line that begins like an equation: the matrix before it is not closed.
+    pub(super) fn looks_like_equation(&self) -> bool {
+        use TokenKind::{Assign, Connect, Equal, For, Ident, If, When};
+        let begins = match self.kind() {
+            Ident => matches!(self.peek_kind(1), Equal | Assign),
+            kind => matches!(kind, Connect | For | If | When),
+        };
+        begins && self.is_on_new_line()
     }
 
     /// Expressions separated by commas, at least one.
@@ -479,30 +402,6 @@ impl Parser<'_> {
             }
         }
     }
-}
-
-fn infix(kind: TokenKind) -> Option<(BinaryOp, u8)> {
-    Some(match kind {
-        TokenKind::Or | TokenKind::OrOr => (BinaryOp::Or, OR),
-        TokenKind::And | TokenKind::AndAnd => (BinaryOp::And, AND),
-        TokenKind::Less => (BinaryOp::Lt, RELATION),
-        TokenKind::LessEqual => (BinaryOp::Le, RELATION),
-        TokenKind::Greater => (BinaryOp::Gt, RELATION),
-        TokenKind::GreaterEqual => (BinaryOp::Ge, RELATION),
-        TokenKind::EqualEqual => (BinaryOp::Eq, RELATION),
-        TokenKind::NotEqual | TokenKind::BangEqual => (BinaryOp::Ne, RELATION),
-        TokenKind::Plus => (BinaryOp::Add, SUM),
-        TokenKind::Minus => (BinaryOp::Sub, SUM),
-        TokenKind::DotPlus => (BinaryOp::ElementAdd, SUM),
-        TokenKind::DotMinus => (BinaryOp::ElementSub, SUM),
-        TokenKind::Star => (BinaryOp::Mul, PRODUCT),
-        TokenKind::Slash => (BinaryOp::Div, PRODUCT),
-        TokenKind::DotStar => (BinaryOp::ElementMul, PRODUCT),
-        TokenKind::DotSlash => (BinaryOp::ElementDiv, PRODUCT),
-        TokenKind::Caret | TokenKind::StarStar => (BinaryOp::Pow, POWER),
-        TokenKind::DotCaret => (BinaryOp::ElementPow, POWER),
-        _ => return None,
-    })
 }
 
 /// The character that a backslash and a letter stand for.

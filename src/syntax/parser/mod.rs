@@ -8,6 +8,7 @@ mod element;
 mod equation;
 mod expr;
 mod modification;
+mod operator;
 mod report;
 mod statement;
 
@@ -16,6 +17,7 @@ use super::lexer::{Lexed, lex};
 use super::symbol::Symbol;
 use super::token::{Token, TokenKind};
 use crate::diag::{Code, Diagnostic, FileId, Span};
+use operator::{Operand, Pending};
 
 /// Deepest nesting of brackets, blocks and classes.
 const MAX_DEPTH: u32 = 200;
@@ -71,6 +73,9 @@ pub(super) struct Parser<'a> {
     /// How many subscripts we are in, where `end` is a value.
     subscripts: u32,
     open: Vec<Open>,
+    /// Operators and operands of the expressions at hand.
+    pending: Vec<Pending>,
+    operands: Vec<Operand>,
 }
 
 impl<'a> Parser<'a> {
@@ -91,6 +96,8 @@ impl<'a> Parser<'a> {
             height: 0,
             subscripts: 0,
             open: Vec::new(),
+            pending: Vec::new(),
+            operands: Vec::new(),
         }
     }
 
@@ -220,6 +227,7 @@ impl<'a> Parser<'a> {
 
     fn too_deep(&mut self, message: &str) -> Stop {
         let diagnostic = Diagnostic::new(Code::TooDeep, message).at(self.span(), "the limit is reached here");
+        self.blamed = None;
         self.report(diagnostic);
         self.halted = true;
         self.at = self.tokens.len() - 1;
@@ -231,7 +239,9 @@ impl<'a> Parser<'a> {
     /// The keywords that begin or end a section, a class or a declaration, and so never stand inside an equation.
     fn is_boundary(&self) -> bool {
         match self.kind() {
-            TokenKind::End => self.is_closing_end(),
+            TokenKind::End => {
+                self.is_closing_end() && (self.is_on_new_line() || self.peek_kind(1) != TokenKind::Semicolon)
+            }
             TokenKind::Initial => matches!(self.peek_kind(1), TokenKind::Equation | TokenKind::Algorithm),
             TokenKind::Eof
             | TokenKind::Public
@@ -300,6 +310,9 @@ impl<'a> Parser<'a> {
         let mut items = Vec::new();
         while !self.is_list_end() {
             let before = self.at;
+            if self.stray_semicolon() {
+                continue;
+            }
             match item(self) {
                 Ok(found) => {
                     items.push(found);

@@ -44,9 +44,9 @@ impl Parser<'_> {
         self.bump();
         let mut arguments = Vec::new();
         if !self.at(TokenKind::RightParen) {
-            arguments.push(self.nested(|p| p.argument_of_modification(place))?);
+            arguments.push(self.argument_of_modification(place)?);
             while self.eat(TokenKind::Comma) {
-                arguments.push(self.nested(|p| p.argument_of_modification(place))?);
+                arguments.push(self.argument_of_modification(place)?);
             }
         }
         self.close(TokenKind::RightParen, opened, "`,` or `)`")?;
@@ -54,14 +54,20 @@ impl Parser<'_> {
     }
 
     fn argument_of_modification(&mut self, place: Place) -> Parse<Argument> {
+        // Counts twice, as it takes more stack than other nesting.
+        self.nested(|p| p.nested(|p| p.bare_argument(place)))
+    }
+
+    fn bare_argument(&mut self, place: Place) -> Parse<Argument> {
         let start = self.span();
         if self.at(TokenKind::Break) {
             let kind = self.break_argument(place)?;
             return Ok(Argument { each: false, final_: false, kind, span: self.since(start) });
         }
-        let redeclare = self.eat(TokenKind::Redeclare);
+        let mut redeclare = self.eat(TokenKind::Redeclare);
         let each = self.eat(TokenKind::Each);
         let final_ = self.eat(TokenKind::Final);
+        redeclare |= self.late_redeclare();
         let replaceable = self.eat(TokenKind::Replaceable);
         let kind = if redeclare || replaceable {
             self.redeclaration(Prefixes { redeclare, replaceable, ..Prefixes::default() })?
@@ -69,6 +75,18 @@ impl Parser<'_> {
             self.element_modification()?
         };
         Ok(Argument { each, final_, kind, span: self.since(start) })
+    }
+
+    /// Reports `each redeclare`, where `redeclare` comes too late.
+    fn late_redeclare(&mut self) -> bool {
+        let is_late = self.at(TokenKind::Redeclare);
+        if is_late {
+            let before = self.word(self.previous());
+            let message = format!("`redeclare` stands before `{before}`");
+            self.slip(message, "in the wrong order", format!("write `redeclare {before}`"));
+            self.bump();
+        }
+        is_late
     }
 
     /// `break name` or `break connect(a, b)`.
@@ -118,12 +136,12 @@ impl Parser<'_> {
     /// What stands after `redeclare` or `replaceable` in a modification.
     fn redeclaration(&mut self, prefixes: Prefixes) -> Parse<ArgumentKind> {
         if is_class_keyword(self.kind()) {
-            return Ok(ArgumentKind::Class(Box::new(self.redeclared_class(prefixes)?)));
+            return Ok(ArgumentKind::Class(self.redeclared_class(prefixes)?));
         }
-        Ok(ArgumentKind::Component(Box::new(self.redeclared_component(prefixes)?)))
+        Ok(ArgumentKind::Component(self.redeclared_component(prefixes)?))
     }
 
-    fn redeclared_class(&mut self, prefixes: Prefixes) -> Parse<Class> {
+    fn redeclared_class(&mut self, prefixes: Prefixes) -> Parse<Box<Class>> {
         let start = self.token();
         let mut class = self.class(prefixes)?;
         if matches!(class.body, ClassBody::Long(_)) {
@@ -141,7 +159,7 @@ impl Parser<'_> {
         Ok(class)
     }
 
-    fn redeclared_component(&mut self, prefixes: Prefixes) -> Parse<Component> {
+    fn redeclared_component(&mut self, prefixes: Prefixes) -> Parse<Box<Component>> {
         let prefix = self.type_prefix();
         let class = self.path("a type")?;
         let of_type = self.optional_subscripts()?;
@@ -152,7 +170,7 @@ impl Parser<'_> {
         let (description, annotation) = self.comment()?;
         let constraint = if prefixes.replaceable { self.constraint()? } else { None };
         let condition = None;
-        Ok(Component {
+        Ok(Box::new(Component {
             name,
             prefixes,
             prefix,
@@ -163,7 +181,7 @@ impl Parser<'_> {
             constraint,
             description,
             annotation,
-        })
+        }))
     }
 
     /// `constrainedby T(...)`, if there.
@@ -196,6 +214,7 @@ impl Parser<'_> {
             text = [text, self.string_value()].concat().into();
             self.bump();
         }
+        self.skip_rest_of_string();
         Some(text)
     }
 

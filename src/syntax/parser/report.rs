@@ -7,6 +7,10 @@ use crate::syntax::token::{Token, TokenKind};
 /// No more errors than this are reported for one file.
 const MAX_ERRORS: usize = 100;
 
+/// The keywords that begin most files.
+const CLASS_WORDS: &[&str] =
+    &["model", "package", "block", "connector", "record", "function", "type", "class", "within", "partial"];
+
 /// The longest word quoted in a message, in characters.
 const MAX_QUOTED: usize = 40;
 
@@ -89,10 +93,7 @@ impl Parser<'_> {
         let previous = self.previous().kind;
         let advice = match token.kind {
             TokenKind::Unknown => return advice_on_character(self.word(token)),
-            TokenKind::Ident if previous == TokenKind::String && self.is_adjacent(0) => {
-                "a quotation mark inside a string is written `\\\"`"
-            }
-            TokenKind::Ident if is_number(previous) && self.is_adjacent(0) => {
+            TokenKind::Ident if is_number(previous) && !self.is_on_new_line() => {
                 "a product is written with `*`; a unit belongs into the attribute `unit`, not behind the number"
             }
             TokenKind::Equal if self.blames_comparison() => "equality is tested with `==`",
@@ -123,6 +124,44 @@ impl Parser<'_> {
         let message = format!("expected {what}, found the keyword `{word}`");
         self.slip(message, "a keyword cannot be a name", help);
         true
+    }
+
+    /// Reports and passes over a semicolon where an item could begin.
+    pub(super) fn stray_semicolon(&mut self) -> bool {
+        let is_stray = self.at(TokenKind::Semicolon);
+        if is_stray {
+            self.slip("a `;` with nothing before it", "one `;` too many", "leave it out");
+            self.bump();
+        }
+        is_stray
+    }
+
+    /// Reports a quotation mark in the middle of a string, whose rest is read as words and further strings.
+    pub(super) fn skip_rest_of_string(&mut self) {
+        while self.previous().kind == TokenKind::String && self.is_adjacent(0) && self.is_word() {
+            let help = "a quotation mark inside a string is written `\\\"`";
+            let end = self.previous().end;
+            let place = Span { file: self.file, start: end - 1, end };
+            self.slip_at(place, "the string ends in the middle of its text", "it ends here", help);
+            while !self.at(TokenKind::String) && !self.at(TokenKind::Eof) && !self.is_on_new_line() {
+                self.bump();
+            }
+            if !self.eat(TokenKind::String) {
+                return;
+            }
+        }
+    }
+
+    fn is_word(&self) -> bool {
+        matches!(self.kind(), TokenKind::Ident | TokenKind::Integer | TokenKind::Real) || self.kind().is_keyword()
+    }
+
+    /// Reports something at the top of a file that is no class, perhaps for a misspelt keyword.
+    pub(super) fn no_class(&mut self) -> Stop {
+        let word = self.word(self.token());
+        let near = CLASS_WORDS.iter().find(|keyword| strsim::damerau_levenshtein(keyword, &shortened(word)) <= 2);
+        let help = near.map(|keyword| format!("did you mean `{keyword}`?"));
+        self.unexpected_with("a class such as `model` or `package`", help.as_deref())
     }
 
     /// What stands after a complete element, equation or statement on the same line.
@@ -171,7 +210,7 @@ impl Parser<'_> {
     fn ends_brackets(&self) -> bool {
         use TokenKind as T;
         let closing = matches!(self.kind(), T::Semicolon | T::RightParen | T::RightBracket | T::RightBrace);
-        closing || self.is_boundary() || matches!(self.kind(), T::Then | T::Loop)
+        closing || self.is_boundary() || self.looks_like_equation() || matches!(self.kind(), T::Then | T::Loop)
     }
 
     /// Reports a class or block whose `end` is missing at the current token.
@@ -194,7 +233,9 @@ impl Parser<'_> {
     fn found_at_end(&self) -> String {
         let next = self.peek(1);
         match self.kind() {
-            TokenKind::End if next.kind != TokenKind::Eof => format!("`end {}`", shortened(self.word(next))),
+            TokenKind::End if next.kind == TokenKind::Ident || next.kind.is_keyword() => {
+                format!("`end {}`", shortened(self.word(next)))
+            }
             _ => self.describe(self.token()),
         }
     }

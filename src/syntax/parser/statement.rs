@@ -79,9 +79,8 @@ impl Parser<'_> {
         if matches!(left.kind, ExprKind::Reference(_)) {
             return Ok(());
         }
-        if self.has_arrow(left) {
-            let help = "`<-` is read as \"less than minus\"; an assignment has `:=`";
-            return Err(self.unexpected_with("`:=`", Some(help)));
+        if let Some(arrow) = self.arrow(left) {
+            return Err(self.blame_arrow(arrow, ":=", "an assignment has `:=`"));
         }
         if self.at_assignment_sign() {
             let help = "an assignment has a single variable on its left";

@@ -1,0 +1,88 @@
+//! Syntax tree back to Modelica text, which reads back as the same tree.
+//!
+//! Comments, annotations other than those of classes and components, and the order of the sections of a class are not
+//! in the tree and so not in the text. Numbers that are not finite have no Modelica text.
+
+mod class;
+mod equation;
+mod expr;
+
+use super::ast::{
+    Argument, Class, Component, Equation, Expr, Modification, Path, Reference, Statement, StoredDefinition,
+};
+use std::fmt;
+
+/// A text under construction.
+#[derive(Default)]
+struct Printer {
+    out: String,
+    /// Depth of indentation, two blanks each.
+    depth: usize,
+}
+
+impl Printer {
+    fn word(&mut self, text: &str) {
+        self.out.push_str(text);
+    }
+
+    /// A word and a blank, if asked for.
+    fn prefix(&mut self, is_there: bool, text: &str) {
+        if is_there {
+            self.word(text);
+            self.word(" ");
+        }
+    }
+
+    /// Begins a line at the present depth.
+    fn begin(&mut self) {
+        for _ in 0..self.depth {
+            self.out.push_str("  ");
+        }
+    }
+
+    fn end(&mut self, text: &str) {
+        self.word(text);
+        self.word("\n");
+    }
+
+    fn line(&mut self, text: &str) {
+        self.begin();
+        self.end(text);
+    }
+
+    /// Items with a separator between them.
+    fn separated<T>(&mut self, items: &[T], separator: &str, mut item: impl FnMut(&mut Self, &T)) {
+        for (i, x) in items.iter().enumerate() {
+            if i > 0 {
+                self.word(separator);
+            }
+            item(self, x);
+        }
+    }
+}
+
+/// Implements `Display` by a method of the printer.
+macro_rules! display {
+    ($($node:ty, $method:ident;)*) => {
+        $(impl fmt::Display for $node {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                let mut printer = Printer::default();
+                printer.$method(self);
+                f.write_str(&printer.out)
+            }
+        })*
+    };
+}
+
+display! {
+    StoredDefinition, file;
+    Class, class;
+    Component, component;
+    Modification, modification;
+    Argument, argument;
+    Equation, equation;
+    Statement, statement;
+    Expr, expression;
+    Reference, reference;
+    Path, path;
+}
