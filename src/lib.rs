@@ -20,4 +20,6 @@ pub mod solve;
 
 pub mod plot;
 
+pub mod experiment;
+
 pub mod cli;
