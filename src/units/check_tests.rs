@@ -107,6 +107,13 @@ const QUIET: &[(&str, &str)] = &[
     ("P W, p Pa, q m3/s, eta %, e 1", "P = p*q; P*e = p*q"),
     ("dp Pa, Re 1, lambda 1, L m, d m, rho kg/m3, v m/s", "dp = lambda*L/d*rho/2*v^2; lambda = 0.3164/Re^0.25"),
     ("q m3/s, k ?, dp Pa", "q = k*sqrt(dp)"),
+    ("mu Pa.s, m Pa.s, p Pa, Z 1", "mu = m*exp((log(m) + 9.67)*((1 + 5.1e-9*p)^Z - 1))"),
+    ("t Pa, A m2, rho kg/m3, Re 1, mu Pa.s, C 1", "t = max(pi/(8*A*rho)*(Re*mu/C)^2, 500)"),
+    (
+        "n Hz, w rad/s, V m3, D m3/rad, T N.m, dp Pa, b Hz",
+        "n = w/(2*pi); D = V/(2*pi); T = D*dp; b = sqrt(n*n + 1e-6) - 1e-3",
+    ),
+    ("path ?, tau N.m, a rad/s2, one_a rad/s2, one_f N.m", "a/one_a = path - tau/one_f; tau = one_f*path"),
 ];
 
 /// Mistakes: declarations, equations, warnings.

@@ -372,10 +372,11 @@ impl Uses {
     }
 }
 
-/// Whether an argument of this function must be a plain number.
+/// Whether an argument of this function must be a plain number. Of a logarithm it need not: `log(x) + C` is `log(x/c)`,
+/// and empirical laws are written so.
 pub(super) fn takes_numbers(op: Unary) -> bool {
-    use Unary::{Acos, Asin, Atan, Cos, Cosh, Exp, Log, Log10, Sin, Sinh, Tan, Tanh};
-    matches!(op, Sin | Cos | Tan | Asin | Acos | Atan | Sinh | Cosh | Tanh | Exp | Log | Log10)
+    use Unary::{Acos, Asin, Atan, Cos, Cosh, Exp, Sin, Sinh, Tan, Tanh};
+    matches!(op, Sin | Cos | Tan | Asin | Acos | Atan | Sinh | Cosh | Tanh | Exp)
 }
 
 /// The name under which messages print a variable.

@@ -395,6 +395,29 @@ mod tests {
         assert!(matches!(quantity("3 quux"), Err(UnitError::Unknown { .. })));
     }
 
+    #[test]
+    fn units_of_shipped_classes() {
+        let units = [
+            "A.s/rad",
+            "J/(mol.K)",
+            "kW.h",
+            "m3/(kg.s2)",
+            "rev/(min.s)",
+            "W/(m2.K4)",
+            "N.m.s/rad",
+            "km/h",
+            "g/cm3",
+            "mPa.s",
+            "kg/mol",
+            "V.s/m",
+            "N/A2",
+            "1/mol",
+        ];
+        for text in units {
+            assert!(Unit::parse(text).is_ok(), "{text}");
+        }
+    }
+
     proptest::proptest! {
         #[test]
         fn nothing_panics(text in "[a-zA-Z0-9./()\u{b0}\u{b2}^ -]{0,20}") {
