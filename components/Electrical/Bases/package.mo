@@ -1,0 +1,3 @@
+within Electrical;
+package Bases "Partial models that components extend"
+end Bases;

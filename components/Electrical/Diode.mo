@@ -1,0 +1,16 @@
+within Electrical;
+model Diode "Ideal diode with knee voltage, exact switching"
+  extends Bases.OnePort;
+  parameter SI.Resistance R_on(min = 0) = 1e-5 "Resistance in forward direction";
+  parameter SI.Conductance G_off(min = 0) = 1e-5 "Conductance in backward direction";
+  parameter SI.Voltage V_knee(min = 0) = 0 "Knee voltage";
+  Boolean off(start = true) "true: blocks";
+protected
+  Real s "Place on the characteristic";
+  constant SI.Voltage unit_v = 1;
+  constant SI.Current unit_i = 1;
+equation
+  off = s < 0;
+  v = s*unit_v*(if off then 1 else R_on*unit_i/unit_v) + V_knee;
+  i = s*unit_i*(if off then G_off*unit_v/unit_i else 1) + G_off*V_knee;
+end Diode;

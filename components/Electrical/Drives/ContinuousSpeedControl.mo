@@ -1,0 +1,12 @@
+within Electrical.Drives;
+block ContinuousSpeedControl "Continuous PI speed controller with torque limit and back calculation"
+  extends SpeedControl;
+  SI.Torque x(start = 0, fixed = true) "Integral part";
+protected
+  SI.Torque v "Torque before the limit";
+equation
+  assert(K_p > 0 and K_i >= 0 and T_max > 0, "K_p and T_max must be positive, K_i not negative");
+  v = K_p*(w_ref - w) + x;
+  T = min(max(v, -T_max), T_max);
+  der(x) = K_i*(w_ref - w) + K_i/K_p*(T - v);
+end ContinuousSpeedControl;

@@ -1,0 +1,8 @@
+within Electrical.Drives;
+model IdealEncoder "Exact speed of a shaft"
+  Interfaces.RotationalFlange flange "Shaft";
+  Interfaces.RealOutput w(unit = "rad/s") "Speed";
+equation
+  flange.tau = 0;
+  w = der(flange.phi);
+end IdealEncoder;

@@ -1,0 +1,24 @@
+within Electrical.Drives;
+model SensorlessVectorDrive "Induction motor under sensorless flux vector control, reduced: torque lag, estimated speed with lag, PI controller"
+  Interfaces.RealInput w_ref(unit = "rad/s") "Command of speed";
+  Interfaces.RotationalFlange flange "Shaft";
+  parameter Real K_p(unit = "N.m.s/rad", min = 0) = 20 "Gain";
+  parameter Real K_i(unit = "N.m/rad", min = 0) = 150 "Integral gain";
+  parameter SI.Time tau_T(min = 1e-6) = 10e-3 "Time constant of the torque";
+  parameter SI.Time tau_w(min = 1e-6) = 50e-3 "Time constant of the estimated speed";
+  parameter SI.Torque T_max(min = 0) = 300 "Greatest torque";
+  parameter SI.AngularVelocity w_start = 0 "Estimated speed at the start";
+  SI.AngularVelocity w(nominal = 100) "Speed";
+  SI.AngularVelocity w_est(start = w_start, fixed = true, nominal = 100) "Estimated speed";
+  SI.AngularVelocity e(nominal = 1) "Control error";
+  SI.Torque x(start = 0, fixed = true, nominal = 100) "Integral part";
+  SI.Torque T_e(start = 0, fixed = true, nominal = 100) "Torque of the motor";
+equation
+  assert(K_p > 0 and tau_T > 0 and tau_w > 0 and T_max > 0, "K_p, time constants and T_max must be positive");
+  w = der(flange.phi);
+  e = w_ref - w_est;
+  tau_w*der(w_est) = w - w_est;
+  tau_T*der(T_e) = min(max(K_p*e + x, -T_max), T_max) - T_e;
+  der(x) = K_i*e + K_i/K_p*(min(max(K_p*e + x, -T_max), T_max) - (K_p*e + x));
+  flange.tau = -T_e;
+end SensorlessVectorDrive;

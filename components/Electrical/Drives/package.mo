@@ -1,0 +1,3 @@
+within Electrical;
+package Drives "Converters, controllers and encoders of electric drives"
+end Drives;

@@ -1,0 +1,20 @@
+within Electrical.Machines;
+model DCMotor "DC motor with permanent magnets"
+  Interfaces.Pin p "Positive pin";
+  Interfaces.Pin n "Negative pin";
+  Interfaces.RotationalFlange flange "Shaft; the inertia of the rotor is a component of its own";
+  parameter SI.Resistance R(min = 0) = 1 "Armature resistance";
+  parameter SI.Inductance L(min = 0) = 1e-3 "Armature inductance";
+  parameter SI.ElectricalTorqueConstant k(min = 0) = 0.1 "Torque constant";
+  SI.Current i(start = 0, fixed = true) "Current";
+  SI.Torque T_e "Torque";
+  SI.AngularVelocity w "Speed";
+equation
+  assert(R > 0 and L > 0, "Resistance R and inductance L must be positive");
+  w = der(flange.phi);
+  p.i = i;
+  n.i = -i;
+  p.v - n.v = R*i + L*der(i) + k*w;
+  T_e = k*i;
+  flange.tau = -T_e;
+end DCMotor;

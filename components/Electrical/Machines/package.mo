@@ -1,0 +1,3 @@
+within Electrical;
+package Machines "Electric motors"
+end Machines;

@@ -1,0 +1,84 @@
+within Hydraulic.Bases;
+partial model Machine "Displacement machine in four quadrants: delivery and torque; leakage and friction are given by who extends it"
+  Interfaces.HydraulicPort port_a "Port A; the high side when pumping with positive speed";
+  Interfaces.HydraulicPort port_b "Port B";
+  Interfaces.RotationalFlange flange "Shaft";
+  outer Oil.Fluid oil "Oil of the circuit";
+  parameter SI.Volume V(min = 1e-9, max = 1e-2, nominal = 1e-5, displayUnit = "ml") = 1e-5 "Displacement per revolution";
+  parameter SI.DynamicViscosity mu_G(min = 1e-4, max = 10, nominal = 0.03) = 0.04 "Viscosity at which given conductances hold";
+  parameter Boolean followViscosity = true "false: given conductances are taken as they are" annotation(Evaluate = true);
+  parameter Boolean compression = true "true: oil compressed in the chambers is lost for delivery" annotation(Evaluate = true);
+  parameter Boolean tangentModulus = false "true: compression with the tangent modulus of the high side instead of the densities" annotation(Evaluate = true);
+  parameter Real deadVolume(unit = "1", min = 0, max = 5) = 0.4 "Dead volume of the chambers over the swept volume";
+  parameter Boolean starvation = true "true: delivery falls where the inlet pressure is too low" annotation(Evaluate = true);
+  parameter SI.Pressure p_cav(min = 0, max = 1e6, nominal = 1e4) = 2e4 "Inlet pressure at which nothing is drawn in any more";
+  parameter SI.Pressure p_fill(min = 100, max = 1e6, nominal = 1e4) = 3e4 "Inlet pressure above p_cav from which on the chambers fill";
+  parameter SI.Pressure p_film0(nominal = 1e5) = oil.p_0 "Pressure above which the mean pressure of the gaps thickens the oil";
+  parameter Boolean useHeatPort = false "true: losses heat what is joined to heatPort" annotation(Evaluate = true);
+  Interfaces.HeatPort heatPort(Q_flow = -lossPower) if useHeatPort "Heat of the losses";
+  SI.AngularVelocity w(nominal = 100) "Speed of the shaft";
+  SI.Pressure dp(nominal = 1e6) "Pressure of A above B";
+  SI.VolumeFlowRate Q_A(nominal = 1e-4) "Volume flow out of port A";
+  SI.VolumeFlowRate Q_leak(nominal = 1e-7) "Internal leakage from A to B, at the density of the high side";
+  SI.Torque T_sh(nominal = 1) "Torque that the shaft gives to the machine";
+  SI.Torque T_loss(nominal = 0.1) "Part of it that is lost";
+  SI.Power lossPower(nominal = 10) "Power lost: shaft power less dp*Q_A";
+protected
+  constant Real pi = Modelica.Constants.pi;
+  parameter Real D(unit = "m3/rad") = V/(2*pi) "Displacement per radian";
+  Real n(unit = "Hz") "Revolutions per second";
+  Real n_abs(unit = "Hz") "Its magnitude, rounded over 1e-3 rev/s";
+  Real side(unit = "1") "1: A is the high side, 0: B is";
+  Real fill(unit = "1") "Filling of the chambers";
+  SI.DynamicViscosity mu(nominal = 0.03) "Viscosity in the gaps";
+  Real thin(unit = "1") "Leakage over that at mu_G";
+  SI.Density rho_a(nominal = 1000) "Density at A";
+  SI.Density rho_b(nominal = 1000) "Density at B";
+  SI.Density rho_high(nominal = 1000) "Density at the high side";
+  SI.Density rho_mean(nominal = 1000) "Mean density of the two sides";
+  SI.Density drho(nominal = 10) "Density at A less that at B";
+  SI.MassFlowRate m_ideal(nominal = 0.1) "Mass flow from B to A by displacement";
+equation
+  assert(V > 0, "The displacement V must be positive");
+  assert(deadVolume >= 0, "The dead volume must not be negative");
+  w = der(flange.phi);
+  dp = port_a.p - port_b.p;
+  n = w/(2*pi);
+  n_abs = Smooth.mag(n, 1e-3);
+  rho_a = oil.density(port_a.p);
+  rho_b = oil.density(port_b.p);
+  side = (1 + Smooth.sgn(dp, 2e4))/2;
+  rho_high = side*rho_a + (1 - side)*rho_b;
+  mu = oil.thickening(oil.mu, (port_a.p + port_b.p)/2 - p_film0);
+  thin = if followViscosity then mu_G/mu else 1;
+  if starvation then
+    fill = Smooth.step(((port_a.p + port_b.p)/2 - Smooth.sgn(n, 1e-2)*dp/2 - p_cav)/p_fill);
+  else
+    fill = 1;
+  end if;
+  if tangentModulus then
+    drho = rho_high*dp/Functions.modulus(max(port_a.p, port_b.p), oil.p_0, oil.beta_0, oil.m, oil.alpha_0*oil.x_u, oil.n_g);
+    rho_mean = rho_high - (2*side - 1)*drho/2;
+  else
+    drho = rho_a - rho_b;
+    rho_mean = (rho_a + rho_b)/2;
+  end if;
+  if compression then
+    m_ideal = fill*V*(n*rho_mean - n_abs*(0.5 + deadVolume)*drho);
+  else
+    m_ideal = fill*V*n*rho_high;
+  end if;
+  rho_a*Q_A = m_ideal - rho_high*Q_leak;
+  port_a.q = -Q_A;
+  rho_a*port_a.q + rho_b*port_b.q = 0;
+  T_sh = D*dp + T_loss;
+  flange.tau = T_sh;
+  lossPower = T_sh*w - dp*Q_A;
+  annotation(Documentation(info = "<html>
+<p>Positive speed pushes oil from B to A. With <code>dp = p_A - p_B</code>, dp and speed of equal sign are pumping, of opposite sign motoring; a motor is the same machine.</p>
+<p><b>Delivery.</b> A chamber closes at the inlet with the density there and its dead volume returns what it holds at the outlet, so that a revolution carries the mass
+<code>rho_in (V + V_d) - rho_out V_d</code>. In one formula for both directions of rotation: <code>V (n (rho_A + rho_B)/2 - |n| (1/2 + V_d/V)(rho_A - rho_B))</code>. Pumping this is the known compression loss
+<code>n (V + V_d) dp/beta</code>, motoring <code>n V_d dp/beta</code>; mass is conserved exactly. Without <code>compression</code> the displacement counts at the high side.</p>
+<p><b>Starvation</b>: delivery falls smoothly between <code>p_cav + p_fill</code> and <code>p_cav</code> of inlet pressure.</p>
+<p>Sources: J. Ivantysyn and M. Ivantysynova, Hydrostatic Pumps and Motors, 2001; compression: D. McCandlish and R. E. Dorey, Proc. IMechE B 198 (1984) 165.</p></html>"));
+end Machine;

@@ -1,0 +1,9 @@
+within Hydraulic;
+model PipeResistance "Short pipe as a resistance: laminar and turbulent friction, no inertia"
+  extends Bases.TwoPort;
+  parameter SI.Length L(min = 1e-3, max = 1e4, nominal = 1) = 1 "Length";
+  parameter SI.Diameter d(min = 1e-4, max = 1, nominal = 1e-2) = 1e-2 "Inner diameter";
+equation
+  assert(L > 0 and d > 0, "Length L and diameter d must be positive");
+  dp = Functions.pipeFriction(m_flow, L, d, rho, oil.mu);
+end PipeResistance;

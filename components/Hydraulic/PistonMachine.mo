@@ -1,0 +1,85 @@
+within Hydraulic;
+model PistonMachine "Axial piston machine, chamber by chamber: port timing, compression, bore leakage, ripple"
+  Interfaces.HydraulicPort port_a "Port A; the high side when pumping with positive speed";
+  Interfaces.HydraulicPort port_b "Port B";
+  Interfaces.HydraulicPort port_case "Case";
+  Interfaces.RotationalFlange flange "Shaft";
+  outer Oil.Fluid oil "Oil of the circuit";
+  parameter Integer z(min = 1, max = 15) = 7 "Number of pistons";
+  parameter SI.Diameter d(min = 1e-3, max = 0.2, nominal = 1e-2) = 6.1e-3 "Diameter of the pistons";
+  parameter SI.Length H(min = 1e-4, max = 1, nominal = 1e-2) = 4*0.8e-6/(7*Modelica.Constants.pi*6.1e-3^2) "Stroke at full displacement";
+  parameter SI.Volume V_d(min = 1e-10, nominal = 1e-7) = 0.4*Modelica.Constants.pi*d^2/4*H "Dead volume of a chamber";
+  parameter SI.Length h(min = 1e-7, max = 1e-3, nominal = 1e-5) = 7.5e-6 "Gap between piston and bore";
+  parameter Real eps(unit = "1", min = 0, max = 1) = 0 "Eccentricity of the pistons";
+  parameter SI.Length L(min = 1e-4, max = 1, nominal = 1e-2) = 15.2e-3 "Length of contact";
+  parameter Boolean drag = false "true: with the oil dragged through the bore gap by the piston" annotation(Evaluate = true);
+  parameter SI.Area A_port(min = 1e-9, max = 1e-2, nominal = 1e-5, displayUnit = "mm2") = 22e-6 "Greatest cross section between chamber and kidney";
+  parameter SI.Area A_leak(min = 1e-16, max = 1e-6, nominal = 1e-12) = 1e-12 "Cross section of a closed port";
+  parameter SI.Angle opening(min = 1e-3, max = 0.5) = 3*Modelica.Constants.pi/180 "Angle over which a port opens";
+  parameter SI.Angle timing_a(min = -0.5, max = 0.5) = 0 "Delay of port A against the dead centres";
+  parameter SI.Angle timing_b(min = -0.5, max = 0.5) = 0 "Delay of port B against the dead centres";
+  parameter Real C_d(unit = "1", min = 0.1, max = 1) = 0.65 "Discharge coefficient";
+  parameter SI.Pressure t(min = 100, max = 1e6, nominal = 1e3) = 2e3 "Width of the laminar transition of the ports";
+  parameter SI.Pressure p_start(nominal = 1e6) = 5e5 "Pressure of the chambers at the start";
+  parameter SI.Torque T_c(min = 0, max = 1e3, nominal = 1) = 0 "Dry friction independent of pressure, smooth";
+  parameter Real k_p(unit = "1", min = 0, max = 0.5) = 0 "Dry friction over the ideal torque";
+  parameter SI.RotationalDampingConstant b(min = 0, max = 10, nominal = 1e-3) = 0 "Viscous friction";
+  parameter SI.AngularVelocity w_s(min = 1e-3, max = 100, nominal = 1) = 1 "Width of the sign of speed in the dry friction";
+  parameter Boolean useInput = false "true: the displacement follows u, -1 to 1" annotation(Evaluate = true);
+  Interfaces.RealInput u if useInput "Displacement over the greatest one";
+  SI.AngularVelocity w(nominal = 100) "Speed of the shaft";
+  SI.Pressure dp(nominal = 1e6) "Pressure of A above B";
+  SI.VolumeFlowRate Q_A(nominal = 1e-4) "Volume flow out of port A";
+  SI.Pressure p[z](each start = p_start, each fixed = true, each nominal = 1e6) "Pressures of the chambers";
+  SI.Volume V[z](each nominal = 1e-7) "Volumes of the chambers";
+  SI.VolumeFlowRate q_a[z](each nominal = 1e-5) "Flows from the chambers to port A, at mean density";
+  SI.VolumeFlowRate q_b[z](each nominal = 1e-5) "Flows from port B to the chambers, at mean density";
+  SI.VolumeFlowRate q_l[z](each nominal = 1e-8) "Leakages of the chambers to the case";
+  SI.Torque T_sh(nominal = 1) "Torque that the shaft gives to the machine";
+  SI.Torque T_loss "Friction torque";
+protected
+  constant Real pi = Modelica.Constants.pi;
+  parameter SI.Area A_p = pi*d^2/4 "Area of a piston";
+  parameter Real s_o = sin(opening) "Sine of the opening angle";
+  Interfaces.RealInput u_used "Displacement";
+  SI.Angle phi[z] "Angles of the pistons, 0 at the outer dead centre";
+  SI.Velocity v[z](each nominal = 0.1) "Velocities of the pistons inward";
+  SI.Density rho[z](each nominal = 1000) "Densities of the chambers";
+  SI.BulkModulus beta[z](each nominal = 1e9) "Moduli of the chambers";
+  SI.Density rho_a(nominal = 1000) "Density at A";
+  SI.Density rho_b(nominal = 1000) "Density at B";
+  SI.Density rho_c(nominal = 1000) "Density in the case";
+equation
+  assert(H > 0 and d > 0 and V_d > 0, "Stroke, diameter and dead volume must be positive");
+  assert(h > 0 and A_port > 0, "Gap and port area must be positive");
+  connect(u, u_used);
+  if not useInput then
+    u_used = 1;
+  end if;
+  w = der(flange.phi);
+  dp = port_a.p - port_b.p;
+  rho_a = oil.density(port_a.p);
+  rho_b = oil.density(port_b.p);
+  rho_c = oil.density(port_case.p);
+  for i in 1:z loop
+    phi[i] = flange.phi + 2*pi*i/z;
+    V[i] = V_d + A_p*(H/2)*(1 + u_used*cos(phi[i]));
+    v[i] = H/2*u_used*w*sin(phi[i]);
+    (rho[i], beta[i]) = oil.density(p[i]);
+    q_a[i] = C_d*(A_leak + A_port*Smooth.step(sin(phi[i] - timing_a)/s_o))*sqrt(4/(rho[i] + rho_a))*Smooth.root(p[i] - port_a.p, t);
+    q_b[i] = C_d*(A_leak + A_port*Smooth.step(-sin(phi[i] - timing_b)/s_o))*sqrt(4/(rho[i] + rho_b))*Smooth.root(port_b.p - p[i], t);
+    q_l[i] = pi*d*h^3*(1 + 1.5*eps^2)/(12*oil.thickening(oil.mu, (p[i] + port_case.p)/2 - oil.p_0)*L)*(p[i] - port_case.p) - (if drag then pi*d*h*v[i]/2 else 0);
+    rho[i]*V[i]/beta[i]*der(p[i]) = rho[i]*A_p*v[i] - (rho[i] + rho_c)/2*q_l[i] - (rho[i] + rho_a)/2*q_a[i] + (rho[i] + rho_b)/2*q_b[i];
+  end for;
+  rho_a*Q_A = sum((rho[i] + rho_a)/2*q_a[i] for i in 1:z);
+  port_a.q = -Q_A;
+  rho_b*port_b.q = sum((rho[i] + rho_b)/2*q_b[i] for i in 1:z);
+  rho_c*port_case.q = -sum((rho[i] + rho_c)/2*q_l[i] for i in 1:z);
+  T_loss = (T_c + k_p*z*A_p*H/(2*pi)*Smooth.mag(dp, 1e4))*Smooth.sgn(w, w_s) + b*w;
+  T_sh = sum((p[i] - port_case.p)*A_p*(H/2)*u_used*sin(phi[i]) for i in 1:z) + T_loss;
+  flange.tau = T_sh;
+  annotation(Documentation(info = "<html>
+<p>Piston i at <code>phi_i = theta + 2 pi i/z</code>, chamber <code>V_d + A_p H/2 (1 + cos phi_i)</code>; <code>V_i/beta dp_i/dt = A_p v_i - q_leak - q_A + q_B</code> in masses. The ports open over the angle <code>opening</code> from the dead centres on, with flow in both directions,
+so that compression, backflow at opening and the ripple of flow and torque come out of the equations: averaged, the loss per stroke is <code>(V_s + V_d) dp/beta</code>. The kinematic ripple for an odd number of pistons is <code>pi/(2 z) tan(pi/(4 z))</code> of the mean, peak to peak; 2.5 % for seven.</p>
+<p>The input <code>u</code> scales the stroke about its middle (variable displacement, over centre when negative). Very stiff: nanoseconds at open ports. Source: Zhang et al., Processes 2021, 9, 814, equations of section 4.2.2, with a port that lets oil back and with drag in the bore.</p></html>"));
+end PistonMachine;

@@ -1,0 +1,10 @@
+within Hydraulic.Spool;
+block FirstOrder "Lag of first order"
+  extends Law;
+  parameter SI.Time tau(min = 1e-6, max = 10, nominal = 1e-2) = 0.02 "Time constant";
+initial equation
+  y = 0;
+equation
+  assert(tau > 0, "The time constant tau must be positive");
+  tau*der(y) = min(max(u, -1), 1) - y;
+end FirstOrder;

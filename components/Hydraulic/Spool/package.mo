@@ -1,0 +1,3 @@
+within Hydraulic;
+package Spool "Motion of valve spools, interchangeable"
+end Spool;

@@ -1,0 +1,7 @@
+within Thermal;
+model HeatSource "Constant heat flow into what is joined"
+  Interfaces.HeatPort port "Port";
+  parameter SI.HeatFlowRate Q_flow = 100 "Heat flow";
+equation
+  port.Q_flow = -Q_flow;
+end HeatSource;

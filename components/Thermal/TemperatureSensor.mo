@@ -1,0 +1,8 @@
+within Thermal;
+model TemperatureSensor "Temperature of a node"
+  Interfaces.HeatPort port "Port";
+  Interfaces.RealOutput T(unit = "K") "Temperature";
+equation
+  T = port.T;
+  port.Q_flow = 0;
+end TemperatureSensor;
