@@ -3,6 +3,7 @@
 //! A function that cannot go on has reported an error and returns [`Stop`]; lists of elements, equations, statements
 //! and arguments catch it, skip to where the next item may begin, and go on.
 
+mod body;
 mod class;
 mod element;
 mod equation;
@@ -65,6 +66,8 @@ pub(super) struct Parser<'a> {
     guessed: bool,
     /// True when the end of the text means nothing (see [`Lexed::truncated`]).
     truncated: bool,
+    /// Set when an `end` was missing or wrong in the class at hand: others that do not fit follow from it.
+    misnested: bool,
     /// Set by the nesting limit: the rest is not read.
     halted: bool,
     depth: u32,
@@ -91,6 +94,7 @@ impl<'a> Parser<'a> {
             blamed: None,
             guessed: false,
             truncated,
+            misnested: false,
             halted: false,
             depth: 0,
             height: 0,
@@ -239,9 +243,7 @@ impl<'a> Parser<'a> {
     /// The keywords that begin or end a section, a class or a declaration, and so never stand inside an equation.
     fn is_boundary(&self) -> bool {
         match self.kind() {
-            TokenKind::End => {
-                self.is_closing_end() && (self.is_on_new_line() || self.peek_kind(1) != TokenKind::Semicolon)
-            }
+            TokenKind::End => self.is_closing_end(),
             TokenKind::Initial => matches!(self.peek_kind(1), TokenKind::Equation | TokenKind::Algorithm),
             TokenKind::Eof
             | TokenKind::Public
@@ -252,14 +254,28 @@ impl<'a> Parser<'a> {
             | TokenKind::Extends
             | TokenKind::Parameter
             | TokenKind::Constant => true,
-            kind => is_class_keyword(kind) && self.starts_class(),
+            kind => is_class_keyword(kind) && self.starts_class() && !self.is_redeclared(),
         }
+    }
+
+    /// After a word that may stand before a class inside a modification.
+    fn is_redeclared(&self) -> bool {
+        matches!(self.previous().kind, TokenKind::Redeclare | TokenKind::Replaceable)
     }
 
     /// `end` that closes something, not the last index of an array.
     fn is_closing_end(&self) -> bool {
         use TokenKind::{Eof, For, Ident, If, Semicolon, When, While};
-        matches!(self.peek_kind(1), If | For | When | While | Ident | Semicolon | Eof)
+        match self.peek_kind(1) {
+            If | For | When | While | Eof => true,
+            Semicolon => self.is_on_new_line(),
+            Ident => matches!(self.peek_kind(2), Semicolon | Eof) || self.is_open_class(self.word(self.peek(1))),
+            _ => false,
+        }
+    }
+
+    fn is_open_class(&self, name: &str) -> bool {
+        self.open.iter().any(|open| matches!(open.kind, OpenKind::Class(class) if class.as_str() == name))
     }
 
     /// A class keyword with what follows it in a class; `function` may also stand in an argument, `pure` in a call.
@@ -330,8 +346,8 @@ impl<'a> Parser<'a> {
     }
 
     fn is_list_end(&self) -> bool {
-        use TokenKind::{Annotation, Else, Elseif, Elsewhen, End, External};
-        matches!(self.kind(), End | Else | Elseif | Elsewhen | External | Annotation)
+        use TokenKind::{Annotation, Else, Elseif, Elsewhen, External};
+        matches!(self.kind(), Else | Elseif | Elsewhen | External | Annotation)
             || self.is_boundary()
             || self.misspelt_block_word().is_some()
     }
@@ -340,6 +356,10 @@ impl<'a> Parser<'a> {
     fn semicolon(&mut self) -> Parse<()> {
         if self.eat(TokenKind::Semicolon) {
             self.guessed = false;
+            return Ok(());
+        }
+        if self.previous().kind == TokenKind::Semicolon {
+            // The item itself lacked its end, which was reported.
             return Ok(());
         }
         if !self.is_on_new_line() && !self.is_list_end() {

@@ -1,7 +1,7 @@
 //! The messages of the parser: what was expected, what was found, and the slip it probably is.
 
 use super::{Open, OpenKind, Parse, Parser, Stop};
-use crate::diag::{Code, Diagnostic, Span};
+use crate::diag::{Code, Diagnostic, Span, nearest};
 use crate::syntax::token::{Token, TokenKind};
 
 /// No more errors than this are reported for one file.
@@ -25,6 +25,14 @@ impl Parser<'_> {
         if !follows {
             self.diagnostics.push(diagnostic);
         }
+    }
+
+    /// Keeps an error about an `end`, unless another one in the same class came before.
+    pub(super) fn report_end(&mut self, diagnostic: Diagnostic) {
+        if !self.misnested {
+            self.report(diagnostic);
+        }
+        self.misnested = true;
     }
 
     /// Reports a slip at the current token, after which the parser knows how to go on.
@@ -158,8 +166,10 @@ impl Parser<'_> {
 
     /// Reports something at the top of a file that is no class, perhaps for a misspelt keyword.
     pub(super) fn no_class(&mut self) -> Stop {
-        let word = self.word(self.token());
-        let near = CLASS_WORDS.iter().find(|keyword| strsim::damerau_levenshtein(keyword, &shortened(word)) <= 2);
+        if self.at(TokenKind::End) && !self.diagnostics.is_empty() {
+            return Stop;
+        }
+        let near = nearest(self.word(self.token()), CLASS_WORDS.iter().copied());
         let help = near.map(|keyword| format!("did you mean `{keyword}`?"));
         self.unexpected_with("a class such as `model` or `package`", help.as_deref())
     }
@@ -226,7 +236,7 @@ impl Parser<'_> {
                 .at(span, "this opens a second `if`")
                 .help("a further branch of the same `if` is written `elseif`, one word");
         }
-        self.report(diagnostic);
+        self.report_end(diagnostic);
     }
 
     /// The current token, with the word after it if it is `end`.
@@ -252,7 +262,7 @@ impl Parser<'_> {
             .at(place, format!("{what} ends here"))
             .at(open.span, "it begins here")
             .help(format!("write `{closing}`"));
-        self.report(diagnostic);
+        self.report_end(diagnostic);
     }
 
     /// A word of other languages at the beginning of an item, with the Modelica word meant.

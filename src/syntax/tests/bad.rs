@@ -30,6 +30,9 @@ const TEXTS: &[&str] = &[
     "model A\nequation\n  if a then x = 1; else x = 2; else x = 3; end if;\nend A;",
     "model A\nequation\n  x = 1;\nend A;\n  y = 2;\nend A;",
     "model A\n  Real x;\nequation\n  x = 1;\nend A;\n\nRealy y;",
+    "model A\n  end Real x;\n  Real y;\nequation\n  end x = 1;\nend A;",
+    "package P\n  model A\n  equation\n    if a then\n      for i in 1:2 loop\n        x = 1;\n  end A;\n  model B\n    Real;\n  end C;\nend P;",
+    "model A\nequation\n  parameter Real x;\n  parameter Real y;\n  z = 1;\nend A;",
     // Brackets, strings, comments.
     "model A\n  Real x(start = 1;\n  Real y;\nend A;",
     "model A\nequation\n  x = (a + b;\n  y = f(1, 2;\n  z = {1, 2;\n  w = a[1;\nend A;",

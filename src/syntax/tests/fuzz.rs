@@ -253,6 +253,15 @@ fn the_model_that_is_mutated_is_good() {
     assert_eq!(messages(MODEL), "");
 }
 
+#[test]
+fn one_missing_word_gives_few_errors() {
+    let words: Vec<&str> = MODEL.split_inclusive([' ', '\n', '(', ')', ',', ';']).collect();
+    let errors = |i: usize| read(&[&words[..i], &words[i + 1..]].concat().concat()).diagnostics.len();
+    let counts: Vec<usize> = (0..words.len()).map(errors).collect();
+    assert!(counts.iter().all(|&n| n <= 5), "{counts:?}");
+    assert!(counts.iter().sum::<usize>() < 2 * words.len(), "{counts:?}");
+}
+
 // Random expressions.
 
 const NOWHERE: Span = Span { file: FILE, start: 0, end: 0 };
