@@ -70,6 +70,21 @@ impl NewFile {
         }
         Ok(())
     }
+
+    /// A second handle for a writer that wants to own one; nothing may be written to both.
+    pub fn handle(&self) -> io::Result<BufWriter<File>> {
+        let file = self.out.as_ref().map(|out| out.get_ref().try_clone());
+        file.unwrap_or_else(|| Err(io::ErrorKind::BrokenPipe.into())).map(|f| BufWriter::with_capacity(1 << 16, f))
+    }
+
+    /// Leaves what has been written as `NAME.part`, for someone who wants to rescue it.
+    pub fn keep_part(mut self) -> Option<PathBuf> {
+        drop(self.out.take());
+        let mut name = self.path.clone().into_os_string();
+        name.push(".part");
+        let kept = PathBuf::from(name);
+        (!self.direct && std::fs::rename(&self.temporary, &kept).is_ok()).then_some(kept)
+    }
 }
 
 impl Write for NewFile {

@@ -8,7 +8,12 @@ mod data;
 mod explain;
 mod files;
 mod messages;
+mod new;
 mod plot;
+mod progress;
+mod recorder;
+mod request;
+mod statistics;
 mod world;
 
 use std::process::ExitCode;
@@ -45,6 +50,7 @@ Exit status: 0 fine; 1 the model is wrong, the run did not reach its end, or a c
 
 #[derive(Subcommand, Debug)]
 enum Command {
+    New(new::NewArgs),
     Plot(plot::PlotArgs),
     Compare(compare::CompareArgs),
     Explain(explain::ExplainArgs),
@@ -115,6 +121,7 @@ pub fn main() -> ExitCode {
 
 fn dispatch(command: Command, messages: &mut Messages) -> Result<Ending, Failure> {
     match command {
+        Command::New(args) => new::run(&args, messages),
         Command::Plot(args) => plot::run(&args, messages),
         Command::Compare(args) => compare::run(&args, messages),
         Command::Explain(args) => explain::run(&args),

@@ -11,6 +11,7 @@ use super::cells::{Cell, Rows};
 use super::number;
 use super::trajectory::{Kind, Signal, Trajectory};
 use crate::diag::{Checked, Code, Diagnostic, FileId, Sources, Span};
+use crate::units::Unit;
 
 /// What is asked of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -330,7 +331,7 @@ impl Reader {
 
     fn cell(&mut self, i: usize, cell: &Cell<'_>, name: &str) {
         let column = &mut self.columns[i];
-        let value = number::parse(&cell.text, self.decimal_comma);
+        let value = number::parse(&cell.text, self.decimal_comma).or_else(|| self.strict.then(|| truth(&cell.text))?);
         let (index, complete) = (column.index, column.complete);
         match value {
             Some(value) if column.words.is_empty() => {
@@ -399,6 +400,7 @@ impl Reader {
         if !diagnostics.is_empty() {
             return Checked::failed(diagnostics);
         }
+        in_seconds(&mut self.times, &head.units[self.time]);
         let mut trajectory = Trajectory { times: self.times, ..Trajectory::default() };
         for (column, w) in self.columns.into_iter().zip(wanted) {
             let mut signal = Signal::new(&head.names[w.index]).unit(&head.units[w.index]);
@@ -411,20 +413,30 @@ impl Reader {
     }
 }
 
+/// Times in another unit become seconds; a unit that is none of time is taken as a remark.
+fn in_seconds(times: &mut [f64], unit: &str) {
+    if let (Ok(unit), Ok(second)) = (Unit::parse(unit), Unit::parse("s"))
+        && !unit.dimension.is_none()
+    {
+        times.iter_mut().for_each(|t| *t = unit.convert(*t, &second).unwrap_or(*t));
+    }
+}
+
+/// The value of a Boolean word.
+fn truth(word: &str) -> Option<f64> {
+    match word.to_ascii_lowercase().as_str() {
+        "true" => Some(1.0),
+        "false" => Some(0.0),
+        _ => None,
+    }
+}
+
 /// Columns of words are Booleans or enumerations.
 fn typed(mut column: Column) -> (Kind, Vec<f64>) {
     if column.words.is_empty() {
         return (Kind::Real, column.values);
     }
-    let truth: Option<Vec<f64>> = column
-        .words
-        .keys()
-        .map(|w| match w.to_ascii_lowercase().as_str() {
-            "true" => Some(1.0),
-            "false" => Some(0.0),
-            _ => None,
-        })
-        .collect();
+    let truth: Option<Vec<f64>> = column.words.keys().map(|w| truth(w)).collect();
     match truth {
         Some(truth) => {
             for value in column.values.iter_mut().filter(|v| !v.is_nan()) {

@@ -31,6 +31,14 @@ fn a_german_recording_with_units_and_remarks() {
 }
 
 #[test]
+fn times_in_milliseconds_and_words_for_truth() {
+    let (t, said) = read("t [ms],u\n0,true\n1.5,FALSE\n", &["u"], &[]);
+    assert_eq!(said, "");
+    assert_eq!(t.as_ref().unwrap().times, [0.0, 0.0015]);
+    assert_eq!(t.unwrap().columns[0], [1.0, 0.0]);
+}
+
+#[test]
 fn units_in_the_names() {
     let t = result("t_s,tau [N],v[3]\n0,1,2\n");
     assert_eq!(t.signals, [Signal::new("tau").unit("N"), Signal::new("v[3]")]);

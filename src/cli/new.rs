@@ -1,0 +1,83 @@
+//! `bramah new`
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::files::{access, write};
+use super::messages::Messages;
+use super::{Ending, Failure};
+use crate::diag::{Code, Diagnostic};
+
+const CIRCUIT: &str = include_str!("new/circuit.mo");
+const EXPERIMENT: &str = include_str!("new/experiment.toml");
+
+/// Begin a new circuit: a commented model and an experiment file
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  bramah new press         writes press/Press.mo and press/press.toml
+  cd press && bramah simulate press.toml")]
+pub(super) struct NewArgs {
+    /// The folder to write into; it is made if it does not exist
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+}
+
+pub(super) fn run(args: &NewArgs, messages: &Messages) -> Result<Ending, Failure> {
+    let class = class_name(&args.folder)?;
+    let name = class.to_lowercase();
+    let files =
+        [(args.folder.join(format!("{class}.mo")), CIRCUIT), (args.folder.join(format!("{name}.toml")), EXPERIMENT)];
+    for (path, _) in &files {
+        if path.exists() {
+            let text = format!("`{}` is already there; nothing was written", path.display());
+            return Err(Failure::new(Code::FileAccess, text));
+        }
+    }
+    std::fs::create_dir_all(&args.folder).map_err(|e| access(&args.folder, "made", &e))?;
+    for (path, text) in &files {
+        write(path, text.replace("{{Name}}", &class).replace("{{name}}", &name).as_bytes())?;
+        messages.remark(&format!("wrote {}", path.display()));
+    }
+    let folder = args.folder.display();
+    messages.remark(&format!(
+        "next:\n  bramah check {folder}/{class}.mo\n  bramah simulate {folder}/{name}.toml\n  \
+         bramah plot {folder}/{name}.csv -o {folder}/report.html"
+    ));
+    Ok(Ending::Fine)
+}
+
+/// `my-press` becomes `MyPress`: the folder's name as the name of a class.
+fn class_name(folder: &Path) -> Result<String, Failure> {
+    let absolute = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
+    let last = absolute.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+    let words = last.split(|c: char| !c.is_ascii_alphanumeric()).filter(|w| !w.is_empty());
+    let name: String = words.map(|w| w[..1].to_uppercase() + &w[1..]).collect();
+    if name.starts_with(|c: char| c.is_ascii_alphabetic()) {
+        return Ok(name);
+    }
+    let text = format!("`{}` gives no name for a class", folder.display());
+    Err(Diagnostic::new(Code::BadArgument, text).help("choose a folder name that begins with a letter").into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names() {
+        assert_eq!(class_name(Path::new("a/my-press_2")).unwrap(), "MyPress2");
+        assert_eq!(class_name(Path::new("press/")).unwrap(), "Press");
+        assert!(class_name(Path::new("9")).is_err());
+        assert!(class_name(Path::new("/")).is_err());
+    }
+
+    #[test]
+    fn the_experiment_can_be_read() {
+        let mut sources = crate::diag::Sources::default();
+        let file = sources.add("x.toml", EXPERIMENT.replace("{{Name}}", "X").replace("{{name}}", "x"));
+        let checked = crate::experiment::parse(&sources, file);
+        assert_eq!(checked.diagnostics, []);
+    }
+}

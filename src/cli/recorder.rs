@@ -1,0 +1,234 @@
+//! Rows of a run on their way into files.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use super::Failure;
+use super::files::{NewFile, access, print};
+use crate::diag::{Code, Diagnostic};
+use crate::results::{CsvWriter, Signal, Trajectory, csv_bytes_per_row, mat};
+
+/// Rows wait in memory until they take this much, so that writing hardly disturbs the run.
+const BUFFER_BYTES: usize = 32 << 20;
+/// Results larger than this are announced before the run.
+const LARGE: u64 = 1_000_000_000;
+
+/// Where a result goes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Target {
+    /// A CSV file.
+    Csv(PathBuf),
+    /// CSV on stdout.
+    Stdout,
+    /// A Modelica `.mat` file.
+    Mat(PathBuf),
+}
+
+impl Target {
+    /// The format follows from the file's name.
+    pub fn new(name: &str) -> Result<Target, Failure> {
+        let path = PathBuf::from(name);
+        let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+        match extension.as_str() {
+            _ if name == "-" => Ok(Target::Stdout),
+            "mat" => Ok(Target::Mat(path)),
+            "html" | "svg" | "png" => Err(Diagnostic::new(Code::BadArgument, format!("`{name}` is no result file"))
+                .help("a picture is written by `--plot`, or by `bramah plot` afterwards")
+                .into()),
+            _ => Ok(Target::Csv(path)),
+        }
+    }
+
+    /// The name for messages.
+    pub fn name(&self) -> String {
+        match self {
+            Target::Csv(path) | Target::Mat(path) => path.display().to_string(),
+            Target::Stdout => "stdout".to_owned(),
+        }
+    }
+}
+
+/// Takes the rows of a run.
+pub(super) struct Recorder {
+    target: Target,
+    csv: Option<CsvWriter<Box<dyn Write>>>,
+    file: Option<NewFile>,
+    rows: Trajectory,
+    keep: bool,
+    failure: Option<Failure>,
+    writing: Duration,
+    written: usize,
+}
+
+impl Recorder {
+    /// Opens the file at once, so that a run is not lost to a wrong name. `keep`: all rows are wanted after the run.
+    pub fn new(target: Target, signals: Vec<Signal>, keep: bool) -> Result<Self, Failure> {
+        let keep = keep || matches!(target, Target::Mat(_));
+        let file = match &target {
+            Target::Csv(path) | Target::Mat(path) => Some(NewFile::create(path)?),
+            Target::Stdout => None,
+        };
+        let rows = Trajectory::new(signals);
+        let mut recorder =
+            Recorder { target, csv: None, file, rows, keep, failure: None, writing: Duration::ZERO, written: 0 };
+        recorder.open_csv();
+        Ok(recorder)
+    }
+
+    fn open_csv(&mut self) {
+        let out: Box<dyn Write> = match (&self.target, &self.file) {
+            (Target::Csv(_), Some(file)) => match file.handle() {
+                Ok(handle) => Box::new(handle),
+                Err(error) => return self.fail(&error),
+            },
+            (Target::Stdout, _) => Box::new(std::io::BufWriter::new(std::io::stdout())),
+            _ => return,
+        };
+        match CsvWriter::new(out, &self.rows.signals) {
+            Ok(csv) => self.csv = Some(csv),
+            Err(error) => self.fail(&error),
+        }
+    }
+
+    fn fail(&mut self, error: &std::io::Error) {
+        if error.kind() != std::io::ErrorKind::BrokenPipe {
+            let path = PathBuf::from(self.target.name());
+            self.failure = Some(access(&path, "written", error));
+        }
+        self.csv = None;
+    }
+
+    /// Takes a row; false when it makes no sense to go on because nothing can be written any more.
+    pub fn row(&mut self, time: f64, values: &[f64]) -> bool {
+        self.rows.push(time, values);
+        let waiting = (self.rows.len() - self.written) * 8 * (self.rows.columns.len() + 1);
+        if waiting > BUFFER_BYTES {
+            self.flush();
+        }
+        self.failure.is_none()
+    }
+
+    /// Writes what waits.
+    fn flush(&mut self) {
+        let begun = Instant::now();
+        if let Some(csv) = &mut self.csv {
+            let mut outcome = Ok(());
+            for row in self.written..self.rows.len() {
+                outcome = csv.row(self.rows.times[row], self.rows.columns.iter().map(|c| c[row]));
+                if outcome.is_err() {
+                    break;
+                }
+            }
+            if let Err(error) = outcome {
+                self.fail(&error);
+            }
+        }
+        if self.keep {
+            self.written = self.rows.len();
+        } else {
+            self.rows.times.clear();
+            self.rows.columns.iter_mut().for_each(Vec::clear);
+        }
+        self.writing += begun.elapsed();
+    }
+
+    /// How long writing took during the run.
+    pub fn writing(&self) -> Duration {
+        self.writing
+    }
+
+    /// Writes the rest and gives the file its name; hands out the rows where they were to be kept.
+    pub fn finish(mut self) -> Result<Trajectory, Failure> {
+        self.flush();
+        if let Some(csv) = self.csv.take()
+            && let Err(error) = csv.finish()
+        {
+            self.fail(&error);
+        }
+        if let (Target::Mat(path), Some(file)) = (&self.target, &mut self.file) {
+            mat::write(file, &self.rows).map_err(|e| access(path, "written", &e))?;
+        }
+        match (self.failure.take(), self.file.take()) {
+            (None, Some(file)) => file.finish()?,
+            (Some(failure), file) => return Err(kept(failure, file)),
+            (None, None) => {}
+        }
+        Ok(std::mem::take(&mut self.rows))
+    }
+}
+
+/// The part of a result that could be written is kept under another name.
+fn kept(mut failure: Failure, file: Option<NewFile>) -> Failure {
+    if let (Some(path), Some(first)) = (file.and_then(NewFile::keep_part), failure.diagnostics.first_mut()) {
+        first.notes.push(format!("what could be written is in `{}`", path.display()));
+    }
+    failure
+}
+
+/// A note about a result that will be large.
+pub(super) fn announcement(signals: &[Signal], intervals: f64, target: &Target) -> Option<Diagnostic> {
+    let row = match target {
+        Target::Mat(_) => 8 * (signals.len() as u64 + 1),
+        _ => csv_bytes_per_row(signals),
+    };
+    let bytes = row as f64 * (intervals + 1.0);
+    (bytes > LARGE as f64).then(|| {
+        let text = format!("the result will take about {:.1} GB in `{}`", bytes / 1e9, target.name());
+        Diagnostic::new(Code::LargeResult, text)
+            .note(format!("{} variables, about {intervals:.0} rows", signals.len()))
+            .help("choose variables with --variables, or a longer --output-interval")
+    })
+}
+
+/// Writes a text to a file, or to stdout for `-`.
+pub(super) fn write_text(name: &str, text: &str) -> Result<(), Failure> {
+    if name == "-" { print(text) } else { super::files::write(Path::new(name), text.as_bytes()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_reach_the_file_when_all_is_done() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("out.csv");
+        let target = Target::new(path.to_str().unwrap()).unwrap();
+        let mut recorder = Recorder::new(target, vec![Signal::new("x")], false).unwrap();
+        assert!(recorder.row(0.0, &[1.0]));
+        recorder.flush();
+        assert!(recorder.row(0.5, &[2.0]));
+        assert!(!path.exists());
+        recorder.finish().unwrap();
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "time,x\n0,1\n0.5,2\n");
+    }
+
+    #[test]
+    fn a_mat_file_and_kept_rows() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("out.mat");
+        let mut recorder = Recorder::new(Target::Mat(path.clone()), vec![Signal::new("x")], false).unwrap();
+        recorder.row(0.0, &[1.0]);
+        recorder.row(1.0, &[2.0]);
+        let rows = recorder.finish().unwrap();
+        assert_eq!(mat::read(&std::fs::read(path).unwrap()).unwrap(), rows);
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_full_disk_is_told() {
+        let mut recorder = Recorder::new(Target::Csv("/dev/full".into()), vec![Signal::new("x")], false).unwrap();
+        recorder.row(0.0, &[1.0]);
+        let failure = recorder.finish().unwrap_err();
+        assert!(failure.diagnostics[0].message.contains("the disk is full"), "{failure:?}");
+    }
+
+    #[test]
+    fn large_results_are_announced() {
+        let signals = vec![Signal::new("x"); 1000];
+        let target = Target::Stdout;
+        assert!(announcement(&signals, 500.0, &target).is_none());
+        assert!(announcement(&signals, 1e5, &target).unwrap().message.contains("GB"));
+    }
+}

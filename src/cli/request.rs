@@ -1,0 +1,174 @@
+//! The flags of `simulate` and the experiment file, made one.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::Failure;
+use super::files::access;
+use super::messages::Messages;
+use crate::diag::{Code, Diagnostic};
+use crate::experiment::{self, Experiment, Hold, InputMap, seconds, tolerance};
+use crate::results::glob::split_list;
+
+/// What to compile: shared by `check` and `simulate`.
+#[derive(Args, Debug)]
+pub(super) struct ModelArgs {
+    /// A .mo file, a folder that is a package, an experiment file (.toml), or a class that ships with bramah
+    #[arg(value_name = "FILE")]
+    pub file: String,
+    /// The class to use [default: the one that can run]
+    #[arg(short, long, value_name = "CLASS")]
+    pub model: Option<String>,
+    /// Value of a parameter, with or without unit: --set pump.V="0.8 ml"; may be repeated
+    #[arg(short, long = "set", value_name = "NAME=VALUE", value_parser = assignment, allow_hyphen_values = true)]
+    pub set: Vec<(String, String)>,
+    /// A folder with further packages; may be repeated. MODELICAPATH is searched after them
+    #[arg(short = 'L', long, value_name = "DIR")]
+    pub library: Vec<String>,
+    /// Warnings are errors
+    #[arg(long)]
+    pub deny_warnings: bool,
+}
+
+/// How to run it.
+#[derive(Args, Debug)]
+pub(super) struct RunArgs {
+    /// Seconds, or a time with a unit
+    #[arg(long, value_name = "TIME", value_parser = seconds, allow_hyphen_values = true)]
+    start_time: Option<f64>,
+    /// Seconds, or a time with a unit
+    #[arg(long, value_name = "TIME", value_parser = seconds, allow_hyphen_values = true)]
+    stop_time: Option<f64>,
+    /// Time between two rows of the result
+    #[arg(long, value_name = "TIME", value_parser = seconds, allow_hyphen_values = true)]
+    output_interval: Option<f64>,
+    /// Relative tolerance; the absolute one is this times a variable's nominal value
+    #[arg(long, value_name = "NUMBER", value_parser = tolerance)]
+    relative_tolerance: Option<f64>,
+    /// Variables to write, such as 'cyl.*,v[1].p'; brackets are literal; may be repeated
+    #[arg(long, value_name = "GLOB,...")]
+    variables: Vec<String>,
+    /// The result: .csv, Modelica .mat, or `-` for CSV on stdout [default: CLASS.csv]
+    #[arg(short, long, value_name = "FILE")]
+    output_file: Option<String>,
+    /// Also draw the result: .svg, .png or .html
+    #[arg(long, value_name = "FILE")]
+    plot: Option<String>,
+    /// A recording that drives the model's inputs
+    #[arg(short, long, value_name = "CSV")]
+    input: Option<String>,
+    /// The recording's time column [default: `time`, or the first]
+    #[arg(long, value_name = "NAME")]
+    time_column: Option<String>,
+    /// Which column drives which input: 'F=tau_N[N],u=u:linear'; may be repeated [default: by equal name]
+    #[arg(long, value_name = "INPUT=COLUMN[UNIT],...")]
+    map: Vec<String>,
+    /// Between samples, where --map does not say: `held` (each step is an event) or `linear` [default: held]
+    #[arg(long, value_name = "held|linear", value_parser = hold)]
+    interpolation: Option<Hold>,
+    /// Write what the run cost
+    #[arg(long, value_name = "JSON")]
+    statistics: Option<String>,
+}
+
+fn assignment(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((name, value)) if !name.trim().is_empty() && !value.trim().is_empty() => {
+            Ok((name.trim().to_owned(), value.trim().to_owned()))
+        }
+        _ => Err("NAME=VALUE is expected".to_owned()),
+    }
+}
+
+fn hold(text: &str) -> Result<Hold, String> {
+    Hold::parse(text).ok_or_else(|| "`held` or `linear` is expected".to_owned())
+}
+
+impl ModelArgs {
+    /// What the flags say, over what the experiment file says where FILE is one.
+    pub fn experiment(&self, run: Option<&RunArgs>, messages: &mut Messages) -> Result<Experiment, Failure> {
+        let mut flags = run.map_or_else(|| Ok(Experiment::default()), RunArgs::experiment)?;
+        flags.model = self.model.clone();
+        flags.set = self.set.clone();
+        flags.library = self.library.clone();
+        flags.deny_warnings = self.deny_warnings.then_some(true);
+        if !is_experiment(&self.file) {
+            flags.file = Some(self.file.clone());
+            return Ok(flags);
+        }
+        let file = read_experiment(Path::new(&self.file), messages)?;
+        if file.file.is_none() {
+            let text = format!("`{}` does not say which `file` to use", self.file);
+            return Err(Diagnostic::new(Code::BadExperiment, text).help("add `file = \"Circuit.mo\"`").into());
+        }
+        Ok(flags.over(file))
+    }
+}
+
+impl RunArgs {
+    fn experiment(&self) -> Result<Experiment, Failure> {
+        let entries = self.map.iter().flat_map(|m| split_list(m));
+        let map: Result<Vec<InputMap>, String> = entries.map(|e| InputMap::parse(&e)).collect();
+        Ok(Experiment {
+            start_time: self.start_time,
+            stop_time: self.stop_time,
+            output_interval: self.output_interval,
+            relative_tolerance: self.relative_tolerance,
+            variables: self.variables.clone(),
+            output_file: self.output_file.clone(),
+            plot: self.plot.clone(),
+            input: self.input.clone(),
+            time_column: self.time_column.clone(),
+            map: map.map_err(|e| Failure::new(Code::BadMap, format!("`--map`: {e}")))?,
+            interpolation: self.interpolation,
+            statistics: self.statistics.clone(),
+            ..Experiment::default()
+        })
+    }
+}
+
+fn is_experiment(file: &str) -> bool {
+    Path::new(file).extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"))
+}
+
+/// Reads an experiment file; its paths become relative to the working directory.
+fn read_experiment(path: &Path, messages: &mut Messages) -> Result<Experiment, Failure> {
+    let bytes = std::fs::read(path).map_err(|e| access(path, "read", &e))?;
+    let text = String::from_utf8(bytes)
+        .map_err(|_| Failure::new(Code::BadExperiment, format!("`{}` is not a text in UTF-8", path.display())))?;
+    let file = messages.sources.add(path.display().to_string(), text);
+    let checked = experiment::parse(&messages.sources, file);
+    let mut experiment = checked.value.ok_or(Failure { diagnostics: checked.diagnostics })?;
+    let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+    let beside = |file: &mut String| *file = relative(&folder, file);
+    // A class that ships with bramah is named, not a path: only what exists as a file is moved.
+    experiment.file.iter_mut().filter(|f| folder.join(&**f).exists()).for_each(beside);
+    for file in [&mut experiment.output_file, &mut experiment.plot, &mut experiment.input, &mut experiment.statistics] {
+        file.iter_mut().filter(|f| *f != "-").for_each(beside);
+    }
+    experiment.library.iter_mut().for_each(beside);
+    Ok(experiment)
+}
+
+fn relative(folder: &Path, file: &str) -> String {
+    folder.join(file).display().to_string()
+}
+
+/// The folders of `--library`, then those of MODELICAPATH.
+///
+/// # Errors
+/// When a folder of `--library` does not exist.
+pub(super) fn library_folders(experiment: &Experiment) -> Result<Vec<PathBuf>, Failure> {
+    let mut folders: Vec<PathBuf> = Vec::new();
+    for folder in &experiment.library {
+        if !Path::new(folder).is_dir() {
+            return Err(Failure::new(Code::FileAccess, format!("`--library {folder}`: there is no such folder")));
+        }
+        folders.push(PathBuf::from(folder));
+    }
+    if let Some(path) = std::env::var_os("MODELICAPATH") {
+        folders.extend(std::env::split_paths(&path).filter(|p| p.is_dir()));
+    }
+    Ok(folders)
+}
