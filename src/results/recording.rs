@@ -68,6 +68,13 @@ pub fn read_csv(
     reader.finish(&head, &wanted)
 }
 
+/// The names of the columns of a CSV text, without units.
+pub fn column_names(text: &str) -> Vec<String> {
+    let mut cells = Vec::new();
+    Rows::new(text).next_row(&mut cells);
+    cells.iter().map(|c| split_unit(&c.text).0.to_owned()).collect()
+}
+
 /// A column that is read.
 #[derive(Clone, Copy, Debug)]
 struct Wanted {
