@@ -1,5 +1,7 @@
 //! The `bramah` command. See `bramah::cli`.
 
+#![allow(clippy::print_stderr, reason = "the one place beside `cli` that may")]
+
 /// Deeply nested models recurse; the main thread's stack is too small for the deepest that are accepted.
 const STACK: usize = 1 << 28;
 

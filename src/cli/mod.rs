@@ -2,6 +2,8 @@
 //!
 //! stdout is data, stderr is messages and progress. One file a verb.
 
+#![allow(clippy::disallowed_methods, clippy::print_stderr, reason = "the one place that may")]
+
 mod compare;
 mod completions;
 mod data;

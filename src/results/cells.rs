@@ -89,7 +89,7 @@ impl<'a> Rows<'a> {
 
     fn end_of_plain(&self, from: usize) -> usize {
         let stop = |&b: &u8| b == self.delimiter || b == b'\n' || b == b'\r';
-        self.text.as_bytes()[from..].iter().position(|b| stop(b)).map_or(self.text.len(), |i| from + i)
+        self.text.as_bytes()[from..].iter().position(stop).map_or(self.text.len(), |i| from + i)
     }
 
     /// A cell in quotes; doubled quotes inside stand for one. A quote that is never closed ends with the text.

@@ -182,9 +182,9 @@ unsafe extern "C" fn on_jacobian<E: Equations>(
     _r: s::N_Vector,
     matrix: s::SUNMatrix,
     user: *mut c_void,
-    _1: s::N_Vector,
-    _2: s::N_Vector,
-    _3: s::N_Vector,
+    _tmp1: s::N_Vector,
+    _tmp2: s::N_Vector,
+    _tmp3: s::N_Vector,
 ) -> c_int {
     // SAFETY: as above; the matrix is the one made by `new_matrix`
     let (context, y, yp, val) = unsafe {

@@ -90,8 +90,8 @@ fn survives_units_that_differ_by_1e16() {
     // rows in Pa (1e7) and m3/s (1e-9), columns likewise, shuffled
     for n in [12, 90] {
         let (p, mut val) = random(n, 3, 77);
-        let row = |i: usize| if i % 2 == 0 { 1e7 } else { 1e-9 };
-        let column = |j: usize| if j % 3 == 0 { 1e8 } else { 1e-8 };
+        let row = |i: usize| if i.is_multiple_of(2) { 1e7 } else { 1e-9 };
+        let column = |j: usize| if j.is_multiple_of(3) { 1e8 } else { 1e-8 };
         for j in 0..n {
             for k in p.colptr[j]..p.colptr[j + 1] {
                 val[k] *= row(p.rowidx[k]) / column(j);

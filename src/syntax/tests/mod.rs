@@ -1,5 +1,7 @@
 //! Tests of the parser: texts that are Modelica, texts that are not, and random ones.
 
+#![allow(clippy::disallowed_methods, clippy::print_stdout, reason = "reads models that lie beside the project")]
+
 mod bad;
 mod fuzz;
 mod good;
