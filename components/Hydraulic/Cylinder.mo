@@ -23,8 +23,7 @@ model Cylinder "Double-acting cylinder: two chambers, seal friction, leakage, en
   LaminarGap leak(G = C_i, mu_G = mu_C, followViscosity = followViscosity) "Leakage past the piston";
   Mechanical.Translational.Mass piston(m = m, s(start = s_start), v(start = v_start)) "Piston and rod";
   Mechanical.Translational.EndStops stops(s_min = 0, s_max = stroke) "End stops";
-  replaceable SealFriction.Stribeck seal constrainedby SealFriction.Law(
-    p_1 = chamber_1.p - p_ambient, p_2 = chamber_2.p - p_ambient) "Friction of the seals";
+  replaceable SealFriction.Stribeck seal constrainedby SealFriction.Law "Friction of the seals";
   SI.Position s(nominal = 0.1) "Position of the rod, 0 retracted";
   SI.Velocity v(nominal = 0.1) "Velocity of the rod";
   SI.Pressure p_1(nominal = 1e6) "Pressure of chamber 1";
@@ -40,6 +39,8 @@ equation
   connect(seal.flange, piston.flange_a);
   connect(stops.flange, piston.flange_a);
   connect(piston.flange_b, flange);
+  seal.p_1 = chamber_1.p - p_ambient;
+  seal.p_2 = chamber_2.p - p_ambient;
   s = piston.s;
   v = piston.v;
   p_1 = chamber_1.p;

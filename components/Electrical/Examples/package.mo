@@ -1,0 +1,3 @@
+within Electrical;
+package Examples "A small circuit for each component"
+end Examples;

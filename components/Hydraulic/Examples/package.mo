@@ -1,0 +1,3 @@
+within Hydraulic;
+package Examples "A small circuit for each component"
+end Examples;

@@ -1,0 +1,18 @@
+within Mechanical.Rotational.Examples;
+model FrictionExample "Two of them coupled by dry friction, sticking and sliding"
+  Signal.Sine sine(amplitude = 10, f = 1);
+  Torque drive;
+  Inertia mass(J = 1);
+  Friction contact(tau_c = 3, tau_s = 4, w_s = 0.1);
+  Inertia load(J = 2);
+  Fixed wall;
+  SpringDamper spring(c = 50, d = 1);
+equation
+  connect(sine.y, drive.tau);
+  connect(drive.flange, mass.flange_a);
+  connect(mass.flange_b, contact.flange_a);
+  connect(contact.flange_b, load.flange_a);
+  connect(load.flange_b, spring.flange_a);
+  connect(spring.flange_b, wall.flange);
+  annotation(experiment(StartTime = 0, StopTime = 5, Interval = 0.01, Tolerance = 1e-6));
+end FrictionExample;

@@ -1,0 +1,12 @@
+within Mechanical.Rotational.Examples;
+model IdealRackAndPinionExample "A motor moves a carriage"
+  ConstantTorque drive(tau_constant = 1);
+  Inertia mass(J = 1e-3);
+  IdealRackAndPinion rack(ratio = 100);
+  Mechanical.Translational.Mass carriage(m = 10, s(fixed = false), v(fixed = false));
+equation
+  connect(drive.flange, mass.flange_a);
+  connect(mass.flange_b, rack.flange_R);
+  connect(rack.flange_T, carriage.flange_a);
+  annotation(experiment(StartTime = 0, StopTime = 1, Interval = 0.002, Tolerance = 1e-6));
+end IdealRackAndPinionExample;

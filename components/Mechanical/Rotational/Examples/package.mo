@@ -1,0 +1,3 @@
+within Mechanical.Rotational;
+package Examples "A small circuit for each component"
+end Examples;

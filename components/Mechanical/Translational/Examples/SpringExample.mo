@@ -1,0 +1,10 @@
+within Mechanical.Translational.Examples;
+model SpringExample "Two of them joined by a spring"
+  Mass mass(m = 1, s(start = 0.1));
+  Spring spring(c = 100);
+  Mass other(m = 2);
+equation
+  connect(mass.flange_b, spring.flange_a);
+  connect(spring.flange_b, other.flange_a);
+  annotation(experiment(StartTime = 0, StopTime = 5, Interval = 0.01, Tolerance = 1e-6));
+end SpringExample;

@@ -1,0 +1,3 @@
+within Mechanical.Translational;
+package Examples "A small circuit for each component"
+end Examples;

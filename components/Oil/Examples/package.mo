@@ -1,0 +1,3 @@
+within Oil;
+package Examples "A small circuit for each component"
+end Examples;

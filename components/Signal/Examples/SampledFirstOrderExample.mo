@@ -1,0 +1,8 @@
+within Signal.Examples;
+model SampledFirstOrderExample "Answer to a sine"
+  Sine source(f = 2);
+  SampledFirstOrder block1(samplePeriod = 0.05, T = 0.1);
+equation
+  connect(source.y, block1.u);
+  annotation(experiment(StartTime = 0, StopTime = 1, Interval = 0.002, Tolerance = 1e-6));
+end SampledFirstOrderExample;

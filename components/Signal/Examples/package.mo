@@ -1,0 +1,3 @@
+within Signal;
+package Examples "A small circuit for each component"
+end Examples;

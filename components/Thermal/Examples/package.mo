@@ -1,0 +1,3 @@
+within Thermal;
+package Examples "A small circuit for each component"
+end Examples;
