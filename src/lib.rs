@@ -6,13 +6,25 @@ pub mod diag;
 pub mod units;
 pub mod world;
 
+pub mod shipped;
+
 pub mod syntax;
+
+pub mod resolve;
+
+pub mod instance;
+
+pub mod network;
 
 pub mod expr;
 pub mod flat;
 pub mod structure;
 
 pub mod lower;
+
+mod compile;
+
+pub use compile::{Flattened, Outcome, Request, flatten, flatten_text};
 
 pub mod results;
 

@@ -1,5 +1,10 @@
 //! The flat model: scalar variables and equations, each with its origin.
 
+mod equations;
+mod flatten;
+
+pub use flatten::flatten;
+
 use crate::diag::Span;
 use crate::expr::{ExprId, Exprs, VarId};
 

@@ -1,0 +1,222 @@
+//! The pipeline: from files to a flat model, a DAE and a system ready to run. Every command and test goes this way.
+
+use crate::diag::{Code, Diagnostic, Sources};
+use crate::flat::{self, FlatModel};
+use crate::instance::{self, ModelRequest, Override};
+use crate::network::{self, Graph};
+use crate::resolve::{ClassId, Library, Trees, nested_classes};
+use crate::shipped::Shipped;
+use crate::syntax::ast::{self, ClassBody, ClassKind};
+use crate::world::World;
+use std::path::{Path, PathBuf};
+
+/// What to compile.
+#[derive(Clone, Debug, Default)]
+pub struct Request {
+    /// A file, a folder that is a package, or the dotted name of a class that ships with bramah.
+    pub source: PathBuf,
+    /// The class to run; may be left out where only one can run.
+    pub model: Option<String>,
+    /// Values given from outside.
+    pub overrides: Vec<Override>,
+    /// Folders that hold further packages, in order of precedence.
+    pub libraries: Vec<PathBuf>,
+}
+
+/// What became of a [`Request`]: texts for messages, messages, and the value if there were no errors.
+#[derive(Debug)]
+pub struct Outcome<T> {
+    /// All texts read.
+    pub sources: Sources,
+    /// Errors, warnings and notes.
+    pub diagnostics: Vec<Diagnostic>,
+    /// The result.
+    pub value: Option<T>,
+}
+
+/// A model after the front half of the pipeline.
+#[derive(Clone, Debug)]
+pub struct Flattened {
+    /// Scalar variables and equations.
+    pub flat: FlatModel,
+    /// Components and connections of the top level.
+    pub graph: Graph,
+}
+
+/// The pipeline up to the flat model.
+pub fn flatten(world: &dyn World, request: &Request) -> Outcome<Flattened> {
+    let trees = Trees::new();
+    let shipped = Shipped;
+    let mut roots: Vec<(&dyn World, PathBuf)> = request.libraries.iter().map(|l| (world, l.clone())).collect();
+    roots.extend(Shipped::roots().map(|r| (&shipped as &dyn World, r)));
+    let mut library = Library::new(&trees, roots);
+    let mut diagnostics = Vec::new();
+    let value = find_model(world, &mut library, request)
+        .map_err(|d| diagnostics.push(*d))
+        .ok()
+        .filter(|_| !library.diagnostics.iter().any(Diagnostic::is_error))
+        .and_then(|class| flatten_class(&mut library, class, request, &mut diagnostics));
+    let mut all = std::mem::take(&mut library.diagnostics);
+    all.extend(diagnostics);
+    let failed = all.iter().any(Diagnostic::is_error);
+    Outcome { sources: std::mem::take(&mut library.sources), diagnostics: all, value: value.filter(|_| !failed) }
+}
+
+fn flatten_class(
+    library: &mut Library<'_>,
+    class: ClassId,
+    request: &Request,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> Option<Flattened> {
+    let wanted = ModelRequest { class, overrides: request.overrides.clone() };
+    let mut instance = instance::instantiate(library, &wanted);
+    let network = network::network(&mut instance);
+    if instance.diagnostics.iter().any(Diagnostic::is_error) {
+        diagnostics.append(&mut instance.diagnostics);
+        return None;
+    }
+    let graph = network.graph(&instance);
+    let flat = flat::flatten(&mut instance, &network).sink(diagnostics)?;
+    Some(Flattened { flat, graph })
+}
+
+/// The class that the request means.
+fn find_model<'a>(
+    world: &'a dyn World,
+    library: &mut Library<'a>,
+    request: &Request,
+) -> Result<ClassId, Box<Diagnostic>> {
+    let source = &request.source;
+    let exists = world.list(source).is_some() || world.read(source).is_ok();
+    let text = source.to_string_lossy();
+    if !exists && is_dotted(&text) {
+        let full = request.model.as_deref().filter(|m| m.contains('.') || *m == text).unwrap_or(&text);
+        return library.find(full).ok_or_else(|| Box::new(no_such_shipped(&text)));
+    }
+    let given = library.add_path(world, source)?;
+    note_shadowed(library);
+    match &request.model {
+        Some(name) => named_model(library, &given, name),
+        None => only_model(library, &given),
+    }
+}
+
+fn is_dotted(text: &str) -> bool {
+    !text.is_empty()
+        && !text.ends_with(".mo")
+        && text.split('.').all(|p| p.chars().next().is_some_and(|c| c.is_alphabetic() || c == '_'))
+        && text.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '.')
+}
+
+fn no_such_shipped(name: &str) -> Diagnostic {
+    Diagnostic::new(Code::FileAccess, format!("there is no file, folder or shipped class `{name}`")).help(
+        "give the path of a `.mo` file or package folder, or the dotted name of a class such as `ServoPump.DeadZone`",
+    )
+}
+
+/// A user's top-level class hides a shipped one of the same name.
+fn note_shadowed(library: &mut Library<'_>) {
+    for id in library.own.clone() {
+        let ident = library.class(id).name;
+        let (name, file) = (ident.name.as_str(), format!("{}.mo", ident.name));
+        let hidden = Shipped::roots()
+            .iter()
+            .any(|r| Shipped.list(r).is_some_and(|entries| entries.iter().any(|(e, _)| *e == name || *e == file)));
+        if hidden {
+            library.diagnostics.push(
+                Diagnostic::new(Code::Shadowed, format!("your `{name}` hides the one that ships with bramah"))
+                    .at(ident.span, "this one is used"),
+            );
+        }
+    }
+}
+
+fn named_model(library: &mut Library<'_>, given: &[ClassId], name: &str) -> Result<ClassId, Box<Diagnostic>> {
+    if let Some(id) = library.find(name) {
+        return Ok(id);
+    }
+    // A name relative to the file's only class is understood too.
+    for &id in given {
+        let full = format!("{}.{name}", library.full_name(id));
+        if let Some(found) = library.find(&full) {
+            return Ok(found);
+        }
+    }
+    let mut runnable = Vec::new();
+    given.iter().for_each(|&id| collect_runnable(library, id, &mut runnable));
+    let names: Vec<String> = runnable.iter().map(|&id| library.full_name(id)).collect();
+    let mut d = Diagnostic::new(Code::BadModel, format!("there is no class `{name}`"));
+    if let Some(near) = crate::diag::nearest(name, names.iter().map(String::as_str)) {
+        d = d.help(format!("did you mean `{near}`?"));
+    } else if !names.is_empty() {
+        d = d.help(listed("the file has", &names));
+    }
+    Err(Box::new(d))
+}
+
+fn listed(intro: &str, names: &[String]) -> String {
+    let shown: Vec<String> = names.iter().take(10).map(|n| format!("`{n}`")).collect();
+    let more = if names.len() > 10 { format!(" and {} more", names.len() - 10) } else { String::new() };
+    format!("{intro} {}{more}", shown.join(", "))
+}
+
+/// Without a name: the one class with an `experiment`, or the one model there is.
+fn only_model(library: &mut Library<'_>, given: &[ClassId]) -> Result<ClassId, Box<Diagnostic>> {
+    let mut runnable = Vec::new();
+    given.iter().for_each(|&id| collect_runnable(library, id, &mut runnable));
+    let with_experiment: Vec<ClassId> =
+        runnable.iter().copied().filter(|&id| has_experiment(library.class(id))).collect();
+    for candidates in [&with_experiment, &runnable] {
+        if let [only] = candidates[..] {
+            return Ok(only);
+        }
+    }
+    if let [only] = given {
+        if runnable.contains(only) && with_experiment.is_empty() {
+            return Ok(*only);
+        }
+    }
+    let names: Vec<String> = runnable.iter().map(|&id| library.full_name(id)).collect();
+    let d = if names.is_empty() {
+        Diagnostic::new(Code::BadModel, "there is no model to run")
+            .help("a model is a `model` or `block` that is not `partial`")
+    } else {
+        Diagnostic::new(Code::BadModel, "several models could be run")
+            .help(format!("name one with `--model`: {}", listed("there are", &names)))
+    };
+    Err(Box::new(d))
+}
+
+/// Models of a class and its nested packages that could be run.
+fn collect_runnable(library: &mut Library<'_>, id: ClassId, out: &mut Vec<ClassId>) {
+    let class = library.class(id);
+    if matches!(class.kind, ClassKind::Model | ClassKind::Block | ClassKind::Class) && !class.prefixes.partial {
+        out.push(id);
+    }
+    if class.kind == ClassKind::Package {
+        let mut names: Vec<_> = nested_classes(class).map(|c| c.name.name).collect();
+        names.extend(library.folder_members(id));
+        for name in names {
+            if let Some(child) = library.child(id, name) {
+                collect_runnable(library, child, out);
+            }
+        }
+    }
+}
+
+fn has_experiment(class: &ast::Class) -> bool {
+    if !matches!(class.body, ClassBody::Long(_) | ClassBody::Short { .. }) {
+        return false;
+    }
+    let arguments = class.annotation.iter().flat_map(|a| &a.arguments);
+    arguments
+        .into_iter()
+        .any(|a| matches!(&a.kind, ast::ArgumentKind::Modify { path, .. } if path.parts[0].name == "experiment"))
+}
+
+/// Compiles one text held in memory; for tests and examples.
+pub fn flatten_text(text: &str, model: Option<&str>) -> Outcome<Flattened> {
+    let world = crate::world::MemoryWorld::single("model.mo", text);
+    let request = Request { source: Path::new("model.mo").into(), model: model.map(Into::into), ..Request::default() };
+    flatten(&world, &request)
+}

@@ -1,0 +1,631 @@
+//! Equation and algorithm sections of every component, made scalar.
+
+use super::{
+    Assert, Equation, FlatModel, Message, MessagePart, Origin, OriginKind, Type, Variability, When, WhenAction,
+    WhenBranch,
+};
+use crate::diag::{Code, Diagnostic, Span};
+use crate::expr::{ExprId, Exprs, Node};
+use crate::instance::algorithm::AlgorithmWhen;
+use crate::instance::value::Val;
+use crate::instance::{Instance, ScopeId, View};
+use crate::syntax::ast::{self, ClassBody, EquationKind, Expr, ExprKind, Statement, StatementKind};
+use crate::syntax::symbol::Symbol;
+use rustc_hash::FxHashMap;
+
+/// Scalar sides of an equation with the place it comes from.
+struct Pair {
+    lhs: ExprId,
+    rhs: ExprId,
+    span: Span,
+}
+
+pub(super) struct Walker<'w, 'a, 'l> {
+    instance: &'w mut Instance<'a, 'l>,
+    numbers: &'w FxHashMap<ScopeId, u32>,
+    flat: &'w mut FlatModel,
+    /// Assertions met inside the equations of an `if` with their conditions.
+    guards: Vec<ExprId>,
+}
+
+impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
+    pub(super) fn new(
+        instance: &'w mut Instance<'a, 'l>,
+        numbers: &'w FxHashMap<ScopeId, u32>,
+        flat: &'w mut FlatModel,
+    ) -> Self {
+        Walker { instance, numbers, flat, guards: Vec::new() }
+    }
+
+    pub(super) fn walk(&mut self, scopes: &[ScopeId]) {
+        for &scope in scopes {
+            let template = self.instance.scope(scope).template.clone();
+            for (base, i) in template.bases.iter().zip(0u32..) {
+                let ClassBody::Long(body) = &base.ast.body else { continue };
+                self.body(body, View { scope, base: i });
+            }
+        }
+    }
+
+    fn body(&mut self, body: &'a ast::LongBody, view: View) {
+        let pairs = self.equations(&body.equations, view);
+        self.push(pairs, view, false);
+        let pairs = self.equations(&body.initial_equations, view);
+        self.push(pairs, view, true);
+        for section in &body.algorithms {
+            self.algorithm(section, view, false);
+        }
+        for section in &body.initial_algorithms {
+            self.algorithm(section, view, true);
+        }
+    }
+
+    fn origin(&self, span: Span, view: View) -> Origin {
+        let instance = self.numbers.get(&view.scope).copied().unwrap_or(0);
+        Origin { span, instance, kind: OriginKind::Declared }
+    }
+
+    fn push(&mut self, pairs: Vec<Pair>, view: View, initial: bool) {
+        for p in pairs {
+            let origin = self.origin(p.span, view);
+            let equation = Equation { lhs: p.lhs, rhs: p.rhs, origin };
+            if initial {
+                self.flat.initial_equations.push(equation);
+            } else {
+                self.flat.equations.push(equation);
+            }
+        }
+    }
+
+    /// Scalar equations of a list; `when` and `assert` go straight into the flat model.
+    fn equations(&mut self, equations: &'a [ast::Equation], view: View) -> Vec<Pair> {
+        let mut pairs = Vec::new();
+        for e in equations {
+            self.equation(e, view, &mut pairs);
+        }
+        pairs
+    }
+
+    fn equation(&mut self, e: &'a ast::Equation, view: View, out: &mut Vec<Pair>) {
+        match &e.kind {
+            EquationKind::Connect(..) => {}
+            EquationKind::Equal(l, r) => self.equal(l, r, view, e.span, out),
+            EquationKind::For { iterators, body } => self.for_equation(iterators, body, view, out),
+            EquationKind::If { branches, otherwise } => self.if_equation(branches, otherwise, view, e.span, out),
+            EquationKind::When(branches) => self.when_equation(branches, view, e.span),
+            EquationKind::Call(call) => self.call(call, view, e.span),
+        }
+    }
+
+    fn for_equation(
+        &mut self,
+        iterators: &'a [ast::Iterator],
+        body: &'a [ast::Equation],
+        view: View,
+        out: &mut Vec<Pair>,
+    ) {
+        let Some((first, rest)) = iterators.split_first() else {
+            for e in body {
+                self.equation(e, view, out);
+            }
+            return;
+        };
+        let Some(values) = self.instance.loop_values(first, view) else { return };
+        for value in values {
+            self.instance.push_local(first.name.name, value);
+            self.for_equation(rest, body, view, out);
+            self.instance.pop_local();
+        }
+    }
+
+    fn equal(&mut self, l: &'a Expr, r: &'a Expr, view: View, span: Span, out: &mut Vec<Pair>) {
+        if let ExprKind::Tuple(targets) = &l.kind {
+            self.tuple(targets, r, view, span, out);
+            return;
+        }
+        let (a, b) = (self.instance.eval(l, view), self.instance.eval(r, view));
+        if let (Some(a), Some(b)) = (a, b) {
+            self.equal_values(&a, &b, span, out);
+        }
+    }
+
+    fn tuple(&mut self, targets: &'a [Option<Expr>], r: &'a Expr, view: View, span: Span, out: &mut Vec<Pair>) {
+        let Some(value) = self.instance.eval(r, view) else { return };
+        let values = match &value {
+            Val::Tuple(values) => values.to_vec(),
+            other => vec![other.clone()],
+        };
+        if targets.len() > values.len() {
+            self.instance.diagnostics.push(
+                Diagnostic::new(Code::BadCall, format!("{} results are wanted", targets.len()))
+                    .at(r.span, format!("this gives {}", values.len())),
+            );
+            return;
+        }
+        for (target, value) in targets.iter().zip(&values) {
+            let Some(target) = target else { continue };
+            if let Some(t) = self.instance.eval(target, view) {
+                self.equal_values(&t, value, span, out);
+            }
+        }
+    }
+
+    fn equal_values(&mut self, a: &Val, b: &Val, span: Span, out: &mut Vec<Pair>) {
+        let first = |v: &Val| match v {
+            Val::Tuple(values) => values[0].clone(),
+            other => other.clone(),
+        };
+        let (a, b) = (first(a), first(b));
+        let mut pairs = Vec::new();
+        let zipped = a.zip(&b, &mut |x, y, _| {
+            pairs.push(Pair { lhs: x, rhs: y, span });
+            x
+        });
+        if zipped.is_none() || matches!(a, Val::Text(_)) {
+            let code = if a.dims() == b.dims() { Code::TypeMismatch } else { Code::SizeMismatch };
+            self.instance.diagnostics.push(
+                Diagnostic::new(code, "the two sides of this equation do not fit")
+                    .at(span, format!("{} on the left, {} on the right", a.describe(), b.describe())),
+            );
+            return;
+        }
+        out.extend(pairs);
+    }
+
+    /// An `if` decided by parameters is decided now; another becomes conditional equations.
+    fn if_equation(
+        &mut self,
+        branches: &'a [(Expr, Vec<ast::Equation>)],
+        otherwise: &'a [ast::Equation],
+        view: View,
+        span: Span,
+        out: &mut Vec<Pair>,
+    ) {
+        let Some(((condition, body), rest)) = branches.split_first() else {
+            for e in otherwise {
+                self.equation(e, view, out);
+            }
+            return;
+        };
+        let Some(c) = self.instance.eval(condition, view) else { return };
+        let Some((test, Type::Boolean)) = c.scalar() else {
+            self.instance.diagnostics.push(
+                Diagnostic::new(Code::TypeMismatch, "a condition must be a Boolean")
+                    .at(condition.span, format!("this is {}", c.describe())),
+            );
+            return;
+        };
+        if self.instance.variability(test) <= Variability::Parameter {
+            match self.instance.constant_boolean(condition, view) {
+                Some(true) => {
+                    for e in body {
+                        self.equation(e, view, out);
+                    }
+                }
+                Some(false) => self.if_equation(rest, otherwise, view, span, out),
+                None => {}
+            }
+            return;
+        }
+        self.guards.push(test);
+        let a = self.equations(body, view);
+        self.guards.pop();
+        let not = self.instance.exprs.not(test);
+        self.guards.push(not);
+        let mut b = Vec::new();
+        self.if_equation(rest, otherwise, view, span, &mut b);
+        self.guards.pop();
+        self.merge(test, a, b, span, out);
+    }
+
+    /// `if c then a = x; else a = y;` becomes `a = if c then x else y`; branches must have equally many equations.
+    fn merge(&mut self, test: ExprId, a: Vec<Pair>, mut b: Vec<Pair>, span: Span, out: &mut Vec<Pair>) {
+        if a.len() != b.len() {
+            self.instance.diagnostics.push(
+                Diagnostic::new(Code::Balance, "the branches of this `if` have different numbers of equations")
+                    .at(span, format!("{} in one, {} in another", a.len(), b.len()))
+                    .help("each branch must determine the same variables when the condition can change during the run"),
+            );
+            return;
+        }
+        let pool = &mut self.instance.exprs;
+        for p in a {
+            let at = b.iter().position(|q| q.lhs == p.lhs).unwrap_or(0);
+            let q = b.remove(at);
+            let span = p.span;
+            if p.lhs == q.lhs {
+                out.push(Pair { lhs: p.lhs, rhs: pool.if_(test, p.rhs, q.rhs), span });
+            } else {
+                let (x, y) = (pool.sub(p.lhs, p.rhs), pool.sub(q.lhs, q.rhs));
+                out.push(Pair { lhs: pool.if_(test, x, y), rhs: Exprs::ZERO, span });
+            }
+        }
+    }
+
+    fn when_equation(&mut self, branches: &'a [(Expr, Vec<ast::Equation>)], view: View, span: Span) {
+        let mut when = When { branches: Vec::new(), origin: self.origin(span, view) };
+        for (condition, body) in branches {
+            let Some(conditions) = self.instance.when_conditions(condition, view) else { continue };
+            let mut actions = Vec::new();
+            let was = self.instance.set_no_event(true);
+            for e in body {
+                self.when_body(e, view, Exprs::ONE, &mut actions);
+            }
+            self.instance.set_no_event(was);
+            when.branches.push(WhenBranch { conditions, actions });
+        }
+        self.flat.whens.push(when);
+    }
+
+    fn when_body(&mut self, e: &'a ast::Equation, view: View, guard: ExprId, out: &mut Vec<WhenAction>) {
+        match &e.kind {
+            EquationKind::Equal(l, r) => {
+                let mut pairs = Vec::new();
+                self.equal(l, r, view, e.span, &mut pairs);
+                for p in pairs {
+                    self.when_assign(p, view, guard, out);
+                }
+            }
+            EquationKind::For { iterators, body } => self.when_for(iterators, body, view, guard, out),
+            EquationKind::If { branches, otherwise } => self.when_if(branches, otherwise, view, guard, out),
+            EquationKind::Call(call) => self.when_call(call, view, guard, e.span, out),
+            EquationKind::When(_) => {
+                self.instance
+                    .diagnostics
+                    .push(Diagnostic::new(Code::Unsupported, "a `when` cannot stand inside a `when`").at(e.span, ""));
+            }
+            EquationKind::Connect(..) => {
+                self.instance
+                    .diagnostics
+                    .push(Diagnostic::new(Code::BadConnect, "`connect` cannot stand inside a `when`").at(e.span, ""));
+            }
+        }
+    }
+
+    fn when_for(
+        &mut self,
+        iterators: &'a [ast::Iterator],
+        body: &'a [ast::Equation],
+        view: View,
+        guard: ExprId,
+        out: &mut Vec<WhenAction>,
+    ) {
+        let Some((first, rest)) = iterators.split_first() else {
+            for e in body {
+                self.when_body(e, view, guard, out);
+            }
+            return;
+        };
+        let Some(values) = self.instance.loop_values(first, view) else { return };
+        for value in values {
+            self.instance.push_local(first.name.name, value);
+            self.when_for(rest, body, view, guard, out);
+            self.instance.pop_local();
+        }
+    }
+
+    fn when_if(
+        &mut self,
+        branches: &'a [(Expr, Vec<ast::Equation>)],
+        otherwise: &'a [ast::Equation],
+        view: View,
+        guard: ExprId,
+        out: &mut Vec<WhenAction>,
+    ) {
+        let Some(((condition, body), rest)) = branches.split_first() else {
+            for e in otherwise {
+                self.when_body(e, view, guard, out);
+            }
+            return;
+        };
+        let Some(test) = self.instance.eval(condition, view).and_then(|c| c.scalar()).map(|(e, _)| e) else { return };
+        let pool = &mut self.instance.exprs;
+        let yes = pool.and(guard, test);
+        let no = pool.not(test);
+        let no = pool.and(guard, no);
+        for e in body {
+            self.when_body(e, view, yes, out);
+        }
+        self.when_if(rest, otherwise, view, no, out);
+    }
+
+    /// An assignment; under a guard the variable keeps what it would otherwise get.
+    fn when_assign(&mut self, p: Pair, view: View, guard: ExprId, out: &mut Vec<WhenAction>) {
+        let pool = &mut self.instance.exprs;
+        let (variable, value) = match (pool.node(p.lhs), pool.node(p.rhs)) {
+            (Node::Var(v), _) => (v, p.rhs),
+            (_, Node::Var(v)) => (v, p.lhs),
+            _ => {
+                self.instance.diagnostics.push(
+                    Diagnostic::new(Code::Unsupported, "an equation in a `when` must have a variable on its left side")
+                        .at(p.span, "solve it for the variable it determines"),
+                );
+                return;
+            }
+        };
+        let origin = self.origin(p.span, view);
+        let earlier = out.iter_mut().find_map(|a| match a {
+            WhenAction::Assign { variable: v, value, .. } if *v == variable => Some(value),
+            _ => None,
+        });
+        let pool = &mut self.instance.exprs;
+        match earlier {
+            Some(old) if guard != Exprs::ONE => *old = pool.if_(guard, value, *old),
+            _ => {
+                let pre = pool.pre(variable);
+                let value = pool.if_(guard, value, pre);
+                out.push(WhenAction::Assign { variable, value, origin });
+            }
+        }
+    }
+
+    fn when_call(&mut self, call: &'a Expr, view: View, guard: ExprId, span: Span, out: &mut Vec<WhenAction>) {
+        let ExprKind::Call { function, args, .. } = &call.kind else { return };
+        let origin = self.origin(span, view);
+        match function.parts[0].name.name.as_str() {
+            "reinit" => {
+                let [target, value] = args.as_slice() else {
+                    self.bad_call(span, "`reinit` takes a variable and its new value");
+                    return;
+                };
+                let (Some(t), Some(v)) = (self.instance.eval(target, view), self.instance.eval(value, view)) else {
+                    return;
+                };
+                let mut pairs = Vec::new();
+                self.equal_values(&t, &v, span, &mut pairs);
+                for p in pairs {
+                    let Node::Var(variable) = self.instance.exprs.node(p.lhs) else {
+                        self.bad_call(span, "`reinit` needs a variable as its first argument");
+                        return;
+                    };
+                    let value = self.instance.exprs.if_(guard, p.rhs, p.lhs);
+                    out.push(WhenAction::Reinit { variable, value, origin });
+                }
+            }
+            "assert" => {
+                if let Some(mut a) = self.assertion(call, view, span) {
+                    a.condition = self.unless(guard, a.condition);
+                    out.push(WhenAction::Assert(a));
+                }
+            }
+            "terminate" => {
+                let text = args.first().and_then(|m| self.instance.eval(m, view));
+                if guard != Exprs::ONE {
+                    self.bad_call(
+                        span,
+                        "`terminate` inside an `if` of a `when` is not supported: put its condition into the `when`",
+                    );
+                    return;
+                }
+                out.push(WhenAction::Terminate { message: message(text), origin });
+            }
+            _ => self.bad_call(span, "only `reinit`, `assert` and `terminate` can be called here"),
+        }
+    }
+
+    fn unless(&mut self, guard: ExprId, condition: ExprId) -> ExprId {
+        let pool = &mut self.instance.exprs;
+        let not = pool.not(guard);
+        pool.or(not, condition)
+    }
+
+    fn bad_call(&mut self, span: Span, message: &str) {
+        self.instance.diagnostics.push(Diagnostic::new(Code::BadCall, message).at(span, ""));
+    }
+
+    fn call(&mut self, call: &'a Expr, view: View, span: Span) {
+        let ExprKind::Call { function, .. } = &call.kind else { return };
+        match function.parts[0].name.name.as_str() {
+            "assert" => {
+                if let Some(mut a) = self.assertion(call, view, span) {
+                    for guard in self.guards.clone().into_iter().rev() {
+                        a.condition = self.unless(guard, a.condition);
+                    }
+                    if a.condition != Exprs::ONE {
+                        self.flat.asserts.push(a);
+                    }
+                }
+            }
+            "reinit" | "terminate" => {
+                let name = function.parts[0].name.name;
+                self.instance.diagnostics.push(
+                    Diagnostic::new(Code::BadCall, format!("`{name}` can only stand inside a `when`"))
+                        .at(span, "")
+                        .help("write `when condition then ... end when;` around it"),
+                );
+            }
+            "Connections" => {
+                self.instance.diagnostics.push(
+                    Diagnostic::new(
+                        Code::Unsupported,
+                        "overconstrained connectors (`Connections...`) are not supported",
+                    )
+                    .at(span, "valid Modelica that bramah cannot use yet"),
+                );
+            }
+            _ => {
+                self.instance.eval(call, view);
+            }
+        }
+    }
+
+    fn assertion(&mut self, call: &'a Expr, view: View, span: Span) -> Option<Assert> {
+        let ExprKind::Call { args, named, .. } = &call.kind else { return None };
+        let by_name = |n: &str| named.iter().find(|(i, _)| i.name == n).map(|(_, e)| e);
+        let Some(condition) = args.first().or_else(|| by_name("condition")) else {
+            self.bad_call(span, "`assert` needs a condition and a message");
+            return None;
+        };
+        let was = self.instance.set_no_event(true);
+        let value = self.instance.eval(condition, view);
+        self.instance.set_no_event(was);
+        let (condition, _) = value?.scalar()?;
+        let text = args.get(1).or_else(|| by_name("message")).and_then(|m| self.instance.eval(m, view));
+        let level = args.get(2).or_else(|| by_name("level"));
+        let warning = match level {
+            Some(l) => {
+                let v = self.instance.constant(l, view)?;
+                v.as_number(&self.instance.exprs) == Some(1.0)
+            }
+            None => false,
+        };
+        Some(Assert { condition, message: message(text), warning, origin: self.origin(span, view) })
+    }
+
+    /// An algorithm section: every variable it assigns gets the value it has at the end (MLS 11.1).
+    fn algorithm(&mut self, section: &'a [Statement], view: View, initial: bool) {
+        let (mut always, mut in_when) = (Vec::new(), Vec::new());
+        assigned(section, false, &mut always, &mut in_when);
+        let names: Vec<&'a ast::ReferencePart> = always.iter().chain(&in_when).copied().collect();
+        let mut seen: Vec<Symbol> = Vec::new();
+        let mut originals: Vec<(Symbol, Val)> = Vec::new();
+        let mut count = 0;
+        for part in names {
+            if seen.contains(&part.name.name) {
+                continue;
+            }
+            seen.push(part.name.name);
+            let Some(own) = self.instance.element_value(view, part) else { return };
+            let discrete = in_when.iter().any(|p| p.name.name == part.name.name);
+            let start = self.algorithm_start(&own, discrete);
+            originals.push((part.name.name, own));
+            self.instance.push_local(part.name.name, start);
+            count += 1;
+        }
+        let done = self.instance.run_section(section, view, count);
+        let results: Vec<Val> = self.instance.take_locals(count);
+        let whens = self.instance.take_whens();
+        if done.is_none() {
+            self.section_failed(section);
+            return;
+        }
+        self.section_results(&originals, &results, &whens, &in_when, view, section, initial);
+        for when in whens {
+            self.algorithm_when(when, &originals, view);
+        }
+    }
+
+    fn section_failed(&mut self, section: &'a [Statement]) {
+        if !self.instance.diagnostics.iter().any(Diagnostic::is_error) {
+            if let Some(first) = section.first() {
+                self.instance.diagnostics.push(
+                    Diagnostic::new(
+                        Code::Unsupported,
+                        "this algorithm needs loops or indices that depend on changing values",
+                    )
+                    .at(first.span, "in the section that begins here")
+                    .help("move it into a function"),
+                );
+            }
+        }
+    }
+
+    /// What a variable holds before the section: its `pre` value if discrete, its start value else.
+    fn algorithm_start(&mut self, own: &Val, discrete: bool) -> Val {
+        let variables = &self.flat.variables;
+        let pool = &mut self.instance.exprs;
+        own.map(&mut |e, ty| match pool.node(e) {
+            Node::Var(v) if discrete || ty != Type::Real => pool.pre(v),
+            Node::Var(v) => match variables[v.index()].variability {
+                Variability::Discrete => pool.pre(v),
+                _ => variables[v.index()].start.unwrap_or(Exprs::ZERO),
+            },
+            _ => e,
+        })
+    }
+
+    #[allow(clippy::too_many_arguments, reason = "the pieces of one section")]
+    fn section_results(
+        &mut self,
+        originals: &[(Symbol, Val)],
+        results: &[Val],
+        whens: &[AlgorithmWhen],
+        in_when: &[&'a ast::ReferencePart],
+        view: View,
+        section: &'a [Statement],
+        initial: bool,
+    ) {
+        let span = section.first().map_or(self.flat.instances[0].span, |s| s.span);
+        for ((name, own), result) in originals.iter().zip(results) {
+            let held = whens.iter().any(|w| w.branches.iter().any(|b| b.values.iter().any(|(n, _)| n == name)));
+            if held && in_when.iter().any(|p| p.name.name == *name) {
+                continue;
+            }
+            let mut pairs = Vec::new();
+            own.zip(result, &mut |x, y, _| {
+                pairs.push(Pair { lhs: x, rhs: y, span });
+                x
+            });
+            self.push(pairs, view, initial);
+        }
+    }
+
+    fn algorithm_when(&mut self, when: AlgorithmWhen, originals: &[(Symbol, Val)], view: View) {
+        let origin = self.origin(when.span, view);
+        let mut made = When { branches: Vec::new(), origin };
+        for branch in when.branches {
+            let mut actions = Vec::new();
+            for (name, value) in &branch.values {
+                let Some((_, own)) = originals.iter().find(|(n, _)| n == name) else { continue };
+                let (mut to, mut from) = (Vec::new(), Vec::new());
+                own.scalars(&mut to);
+                value.scalars(&mut from);
+                for (t, value) in to.into_iter().zip(from) {
+                    if let Node::Var(variable) = self.instance.exprs.node(t) {
+                        actions.push(WhenAction::Assign { variable, value, origin });
+                    }
+                }
+            }
+            made.branches.push(WhenBranch { conditions: branch.conditions, actions });
+        }
+        self.flat.whens.push(made);
+    }
+}
+
+/// First parts of the names assigned in statements: outside `when`, and inside.
+fn assigned<'a>(
+    statements: &'a [Statement],
+    inside: bool,
+    always: &mut Vec<&'a ast::ReferencePart>,
+    in_when: &mut Vec<&'a ast::ReferencePart>,
+) {
+    let mut note = |e: &'a Expr| {
+        if let ExprKind::Reference(r) = &e.kind {
+            if inside { in_when.push(&r.parts[0]) } else { always.push(&r.parts[0]) }
+        }
+    };
+    for s in statements {
+        match &s.kind {
+            StatementKind::Assign(target, _) => note(target),
+            StatementKind::AssignTuple(targets, _) => targets.iter().flatten().for_each(&mut note),
+            _ => {}
+        }
+    }
+    for s in statements {
+        match &s.kind {
+            StatementKind::If { branches, otherwise } => {
+                branches.iter().for_each(|(_, b)| assigned(b, inside, always, in_when));
+                assigned(otherwise, inside, always, in_when);
+            }
+            StatementKind::For { body, .. } | StatementKind::While(_, body) => assigned(body, inside, always, in_when),
+            StatementKind::When(branches) => branches.iter().for_each(|(_, b)| assigned(b, true, always, in_when)),
+            _ => {}
+        }
+    }
+}
+
+fn message(text: Option<Val>) -> Message {
+    match text {
+        Some(Val::Text(parts)) => {
+            let mut joined: Vec<MessagePart> = Vec::new();
+            for part in parts.iter() {
+                match (joined.last_mut(), part) {
+                    (Some(MessagePart::Text(a)), MessagePart::Text(b)) => a.push_str(b),
+                    _ => joined.push(part.clone()),
+                }
+            }
+            Message { parts: joined }
+        }
+        _ => Message::default(),
+    }
+}

@@ -1,0 +1,268 @@
+//! From the component tree to scalar variables and equations.
+
+use super::equations::Walker;
+use super::{
+    Equation, Experiment, FlatModel, InstanceInfo, Origin, OriginKind, StateSelect, Type, Variability, Variable,
+};
+use crate::diag::{Checked, Code, Diagnostic};
+use crate::expr::{ExprId, Exprs};
+use crate::instance::{Instance, ScopeId};
+use crate::network::{Network, component_scopes};
+use crate::syntax::ast::{self, ArgumentKind, ClassBody, ExprKind, Modification};
+use crate::syntax::symbol::Symbol;
+use rustc_hash::FxHashMap;
+
+/// Flattens an instance. The instance's expression pool moves into the flat model.
+pub fn flatten(instance: &mut Instance<'_, '_>, network: &Network) -> Checked<FlatModel> {
+    let scopes = component_scopes(instance);
+    let mut flat = FlatModel { class: class_name(instance, instance.root), ..FlatModel::default() };
+    let mut numbers: FxHashMap<ScopeId, u32> = FxHashMap::default();
+    for (i, &scope) in (0u32..).zip(&scopes) {
+        numbers.insert(scope, i);
+    }
+    flat.instances = scopes.iter().map(|&s| instance_info(instance, s, &numbers)).collect();
+    flat.experiment = experiment(instance);
+    variables(instance, &numbers, &mut flat);
+    Walker::new(instance, &numbers, &mut flat).walk(&scopes);
+    connections(instance, network, &numbers, &mut flat);
+    flat.enumerations = instance
+        .enumerations
+        .iter()
+        .map(|e| (e.name.clone(), e.literals.iter().map(|l| l.as_str().to_string()).collect()))
+        .collect();
+    flat.exprs = std::mem::take(&mut instance.exprs);
+    Checked::new(flat, std::mem::take(&mut instance.diagnostics))
+}
+
+fn class_name(instance: &Instance<'_, '_>, scope: ScopeId) -> String {
+    instance.library.full_name(instance.scope(scope).template.class)
+}
+
+fn instance_info(instance: &Instance<'_, '_>, scope: ScopeId, numbers: &FxHashMap<ScopeId, u32>) -> InstanceInfo {
+    let s = instance.scope(scope);
+    let parent = s.owner.and_then(|o| numbers.get(&o)).copied().unwrap_or(0);
+    InstanceInfo { name: s.name.clone(), class: class_name(instance, scope), parent, span: s.span }
+}
+
+fn variables(instance: &mut Instance<'_, '_>, numbers: &FxHashMap<ScopeId, u32>, flat: &mut FlatModel) {
+    for k in 0..instance.order.len() {
+        let i = instance.order[k];
+        let v = variable(instance, i, numbers, flat);
+        flat.variables.push(v);
+    }
+}
+
+fn variable(
+    instance: &mut Instance<'_, '_>,
+    i: u32,
+    numbers: &FxHashMap<ScopeId, u32>,
+    flat: &mut FlatModel,
+) -> Variable {
+    let data = &instance.variables[i as usize];
+    let origin = Origin {
+        span: data.span,
+        instance: numbers.get(&data.scope).copied().unwrap_or(0),
+        kind: OriginKind::Declared,
+    };
+    let input = data.top && data.causality == Some(ast::Causality::Input);
+    let output = data.top && data.causality == Some(ast::Causality::Output);
+    let mut v = Variable {
+        name: data.name.clone(),
+        ty: data.ty,
+        variability: data.variability,
+        input,
+        output,
+        flow: data.flow,
+        hidden: data.hidden,
+        binding: None,
+        start: None,
+        fixed: data.variability <= Variability::Parameter,
+        min: None,
+        max: None,
+        nominal: None,
+        unit: None,
+        display_unit: None,
+        description: data.description.map(Into::into),
+        state_select: if data.ty == Type::Real { data.state_select } else { StateSelect::Default },
+        origin,
+    };
+    attributes(instance, i, &mut v);
+    binding(instance, i, &mut v, flat);
+    v
+}
+
+fn attributes(instance: &mut Instance<'_, '_>, i: u32, v: &mut Variable) {
+    for k in 0..instance.variables[i as usize].attributes.len() {
+        let (name, b) = instance.variables[i as usize].attributes[k].clone();
+        match name.as_str() {
+            "unit" => v.unit = instance.text_attribute(i, "unit").filter(|u| !u.is_empty()).map(Into::into),
+            "displayUnit" => {
+                v.display_unit = instance.text_attribute(i, "displayUnit").filter(|u| !u.is_empty()).map(Into::into);
+            }
+            "fixed" => {
+                if let Some(x) = instance.binding_value(&b, true).and_then(|x| x.as_number(&instance.exprs)) {
+                    v.fixed = x != 0.0;
+                }
+            }
+            "start" | "min" | "max" | "nominal" => {
+                let Some(value) = instance.bound(i, &b, false) else { continue };
+                let Some(value) = instance.coerce(value, v.ty, &format!("{}.{name}", v.name), b.expr.span) else {
+                    continue;
+                };
+                let e = value.scalar().map(|(e, _)| e);
+                if e.is_some_and(|e| instance.variability(e) > Variability::Parameter) {
+                    let name = v.name.clone();
+                    instance.diagnostics.push(
+                        Diagnostic::new(Code::NotConstant, format!("an attribute of `{name}` changes during the run"))
+                            .at(b.expr.span, "only parameters and constants may stand here"),
+                    );
+                    continue;
+                }
+                match name.as_str() {
+                    "start" => v.start = e,
+                    "min" => v.min = e,
+                    "max" => v.max = e,
+                    _ => v.nominal = e,
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+/// Bindings of parameters stay with the variable; bindings of other variables are equations.
+fn binding(instance: &mut Instance<'_, '_>, i: u32, v: &mut Variable, flat: &mut FlatModel) {
+    let parameter = v.variability <= Variability::Parameter;
+    let Some(b) = instance.variables[i as usize].binding.clone() else {
+        if parameter && v.fixed {
+            missing_value(instance, i, v);
+        }
+        return;
+    };
+    let Some(value) = instance.bound(i, &b, false) else { return };
+    let Some(value) = instance.coerce(value, v.ty, &v.name, b.expr.span) else { return };
+    let Some((e, _)) = value.scalar() else { return };
+    if parameter && instance.variability(e) > Variability::Parameter {
+        instance.diagnostics.push(
+            Diagnostic::new(Code::NotConstant, format!("the parameter `{}` is given a value that changes", v.name))
+                .at(b.expr.span, "this is not known before the run")
+                .at(v.origin.span, "declared here")
+                .help("drop `parameter`, or use parameters only"),
+        );
+        return;
+    }
+    if parameter || v.input {
+        v.binding = Some(e);
+        return;
+    }
+    let id = instance.variables[i as usize].id;
+    let lhs = instance.exprs.var(id);
+    let origin = Origin { span: b.expr.span, kind: OriginKind::Binding, ..v.origin };
+    flat.equations.push(Equation { lhs, rhs: e, origin });
+}
+
+/// A parameter without a value takes its start value, with no remark if that was given on purpose (MLS 8.6).
+fn missing_value(instance: &mut Instance<'_, '_>, i: u32, v: &mut Variable) {
+    if v.start.is_some() {
+        v.binding = v.start;
+        return;
+    }
+    let _ = i;
+    let short = v.name.rsplit('.').next().unwrap_or(&v.name).to_string();
+    let word = if v.variability == Variability::Constant { "constant" } else { "parameter" };
+    instance.diagnostics.push(
+        Diagnostic::new(Code::NoValue, format!("the {word} `{}` has no value", v.name))
+            .at(v.origin.span, "declared without `= value`")
+            .instance(v.name.clone())
+            .help(format!(
+                "give it one where the component is used, as in `({short} = ...)`, or with `--set {}=...`",
+                v.name
+            )),
+    );
+}
+
+/// Connection equations: potentials equal, flows summed, open flows zero (MLS 9.2).
+fn connections(
+    instance: &mut Instance<'_, '_>,
+    network: &Network,
+    numbers: &FxHashMap<ScopeId, u32>,
+    flat: &mut FlatModel,
+) {
+    for set in &network.potentials {
+        let first = instance.variables[set.members[0].0 as usize].id;
+        let lhs = instance.exprs.var(first);
+        for &(i, span) in &set.members[1..] {
+            let rhs = instance.exprs.var(instance.variables[i as usize].id);
+            let origin = Origin {
+                span,
+                instance: numbers.get(&set.scope).copied().unwrap_or(0),
+                kind: OriginKind::ConnectPotential,
+            };
+            flat.equations.push(Equation { lhs, rhs, origin });
+        }
+    }
+    for set in &network.flows {
+        let mut sum: Option<ExprId> = None;
+        for &(i, outside) in &set.members {
+            let e = instance.exprs.var(instance.variables[i as usize].id);
+            sum = Some(match (sum, outside) {
+                (None, false) => e,
+                (None, true) => instance.exprs.neg(e),
+                (Some(s), false) => instance.exprs.add(s, e),
+                (Some(s), true) => instance.exprs.sub(s, e),
+            });
+        }
+        let origin = Origin {
+            span: set.span,
+            instance: numbers.get(&set.scope).copied().unwrap_or(0),
+            kind: OriginKind::ConnectFlow,
+        };
+        flat.equations.push(Equation { lhs: sum.unwrap_or(Exprs::ZERO), rhs: Exprs::ZERO, origin });
+    }
+    for &i in &network.open {
+        let data = &instance.variables[i as usize];
+        let origin = Origin {
+            span: data.span,
+            instance: numbers.get(&data.scope).copied().unwrap_or(0),
+            kind: OriginKind::OpenPort,
+        };
+        let lhs = instance.exprs.var(data.id);
+        flat.equations.push(Equation { lhs, rhs: Exprs::ZERO, origin });
+    }
+}
+
+/// The `experiment` annotation of the model or of a class it extends.
+fn experiment(instance: &mut Instance<'_, '_>) -> Experiment {
+    let template = instance.scope(instance.root).template.clone();
+    let mut experiment = Experiment::default();
+    for base in &template.bases {
+        if !matches!(base.ast.body, ClassBody::Long(_) | ClassBody::Short { .. }) {
+            continue;
+        }
+        let Some(m) = base.ast.annotation.as_ref().and_then(|a| argument(a, "experiment")) else { continue };
+        let number = |name: &str| argument(m, name).and_then(|m| m.value.as_ref()).and_then(literal);
+        experiment.start_time = experiment.start_time.or(number("StartTime"));
+        experiment.stop_time = experiment.stop_time.or(number("StopTime"));
+        experiment.interval = experiment.interval.or(number("Interval"));
+        experiment.tolerance = experiment.tolerance.or(number("Tolerance"));
+        break;
+    }
+    experiment
+}
+
+fn argument<'m>(m: &'m Modification, name: &str) -> Option<&'m Modification> {
+    let wanted = Symbol::new(name);
+    m.arguments.iter().find_map(|a| match &a.kind {
+        ArgumentKind::Modify { path, modification: Some(m), .. } if path.parts[0].name == wanted => Some(m),
+        _ => None,
+    })
+}
+
+fn literal(e: &ast::Expr) -> Option<f64> {
+    match &e.kind {
+        ExprKind::Integer(i) => Some(*i as f64),
+        ExprKind::Real(x) => Some(*x),
+        ExprKind::Unary(ast::UnaryOp::Minus, inner) => literal(inner).map(|x| -x),
+        _ => None,
+    }
+}

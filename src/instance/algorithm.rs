@@ -1,0 +1,375 @@
+//! Statements carried out on symbolic values: what an algorithm computes, as expressions.
+
+use super::value::Val;
+use super::{Instance, View};
+use crate::diag::{Code, Span};
+use crate::expr::{ExprId, Exprs};
+use crate::flat::Type;
+use crate::syntax::ast::{Expr, ExprKind, Reference, ReferencePart, Statement, StatementKind};
+use crate::syntax::symbol::Symbol;
+use std::rc::Rc;
+
+/// How a sequence of statements ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Flow {
+    /// At its end.
+    Next,
+    /// By `break`.
+    Break,
+    /// By `return`.
+    Return,
+}
+
+/// A `when` met in an algorithm section of a model: conditions of each branch with the values it assigns.
+#[derive(Clone, Debug)]
+pub struct AlgorithmWhen {
+    /// Branches in order of priority.
+    pub branches: Vec<AlgorithmBranch>,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// One branch of an [`AlgorithmWhen`].
+#[derive(Clone, Debug)]
+pub struct AlgorithmBranch {
+    /// Conditions, any of which fires it.
+    pub conditions: Vec<ExprId>,
+    /// New values of assigned variables, by the first part of their names.
+    pub values: Vec<(Symbol, Val)>,
+}
+
+impl<'a> Instance<'a, '_> {
+    /// Carries out statements; `None` after a message, or when they cannot be written as expressions.
+    pub fn execute(&mut self, statements: &'a [Statement], view: View) -> Option<Flow> {
+        for s in statements {
+            self.eval.steps += 1;
+            if self.eval.steps > self.eval.budget {
+                self.eval.not_inline = true;
+                return None;
+            }
+            match self.statement(s, view)? {
+                Flow::Next => {}
+                other => return Some(other),
+            }
+        }
+        Some(Flow::Next)
+    }
+
+    fn statement(&mut self, s: &'a Statement, view: View) -> Option<Flow> {
+        match &s.kind {
+            StatementKind::Assign(target, value) => {
+                let value = self.eval(value, view)?;
+                self.assign(target, value, view, s.span)?;
+                Some(Flow::Next)
+            }
+            StatementKind::AssignTuple(targets, call) => {
+                let value = self.eval(call, view)?;
+                self.assign_tuple(targets, value, view, s.span)?;
+                Some(Flow::Next)
+            }
+            StatementKind::Call(call) => self.statement_call(call, view),
+            StatementKind::If { branches, otherwise } => self.if_statement(branches, otherwise, view),
+            StatementKind::For { iterators, body } => self.for_statement(iterators, body, view),
+            StatementKind::While(condition, body) => self.while_statement(condition, body, view),
+            StatementKind::When(branches) => self.when_statement(branches, view, s.span),
+            StatementKind::Break => Some(Flow::Break),
+            StatementKind::Return => Some(Flow::Return),
+        }
+    }
+
+    pub(super) fn assign_tuple(
+        &mut self,
+        targets: &'a [Option<Expr>],
+        value: Val,
+        view: View,
+        span: Span,
+    ) -> Option<()> {
+        let values: Vec<Val> = match &value {
+            Val::Tuple(values) => values.to_vec(),
+            other => vec![other.clone()],
+        };
+        if targets.len() > values.len() {
+            let message = format!("{} results are wanted and {} are there", targets.len(), values.len());
+            return self.fail(Code::BadCall, &message, span);
+        }
+        for (target, value) in targets.iter().zip(values) {
+            if let Some(t) = target {
+                self.assign(t, value, view, span)?;
+            }
+        }
+        Some(())
+    }
+
+    /// `target := value` for a local, or for a variable that the algorithm section was given as one.
+    fn assign(&mut self, target: &'a Expr, value: Val, view: View, span: Span) -> Option<()> {
+        let ExprKind::Reference(r) = &target.kind else {
+            return self.fail(Code::TypeMismatch, "only a variable can be assigned to", target.span);
+        };
+        let name = r.parts[0].name;
+        let Some(i) = self.local(name.name) else {
+            self.unknown_name(name.name, name.span, &[]);
+            return None;
+        };
+        let value = match value {
+            Val::Tuple(values) => values[0].clone(),
+            other => other,
+        };
+        let old = self.eval.locals[i].1.clone();
+        let new = self.replaced(&old, r, 0, value, view, span)?;
+        self.eval.locals[i].1 = new;
+        Some(())
+    }
+
+    fn replaced(
+        &mut self,
+        old: &Val,
+        r: &'a Reference,
+        part: usize,
+        value: Val,
+        view: View,
+        span: Span,
+    ) -> Option<Val> {
+        let p: &'a ReferencePart = &r.parts[part];
+        let last = part + 1 == r.parts.len();
+        if p.subscripts.is_empty() {
+            if last {
+                return self.matching(old, value, span);
+            }
+            return self.replaced_field(old, r, part + 1, value, view, span);
+        }
+        let Val::Array { dims, elements } = old else {
+            return self.fail(Code::BadIndex, &format!("`{}` is not an array", p.name.name), span);
+        };
+        let places = self.places(dims, p, view, span)?;
+        let mut elements = elements.to_vec();
+        if last {
+            if places.len() != value.elements().len() {
+                let message = format!("{} places cannot take {}", places.len(), value.describe());
+                return self.fail(Code::SizeMismatch, &message, span);
+            }
+            for (&place, v) in places.iter().zip(value.elements()) {
+                elements[place] = self.matching(&elements[place].clone(), v.clone(), span)?;
+            }
+        } else {
+            let [place] = places[..] else {
+                return self.fail(Code::BadIndex, "one element must be named here", span);
+            };
+            elements[place] = self.replaced_field(&elements[place].clone(), r, part + 1, value, view, span)?;
+        }
+        Some(Val::Array { dims: dims.clone(), elements: Rc::new(elements) })
+    }
+
+    fn replaced_field(
+        &mut self,
+        old: &Val,
+        r: &'a Reference,
+        part: usize,
+        value: Val,
+        view: View,
+        span: Span,
+    ) -> Option<Val> {
+        let name = r.parts[part].name;
+        let Val::Record(fields) = old else {
+            return self.fail(
+                Code::UnknownName,
+                &format!("{} has no field `{}`", old.describe(), name.name),
+                name.span,
+            );
+        };
+        let mut fields = fields.to_vec();
+        let Some(i) = fields.iter().position(|(n, _)| *n == name.name) else {
+            let names: Vec<Symbol> = fields.iter().map(|(n, _)| *n).collect();
+            self.unknown_name(name.name, name.span, &names);
+            return None;
+        };
+        fields[i].1 = self.replaced(&fields[i].1.clone(), r, part, value, view, span)?;
+        Some(Val::Record(Rc::new(fields)))
+    }
+
+    fn places(&mut self, dims: &[usize], p: &'a ReferencePart, view: View, span: Span) -> Option<Vec<usize>> {
+        let all: Vec<Val> = (0..dims.iter().product()).map(|i: usize| self.integer(i as f64)).collect();
+        let index = Val::array(dims.to_vec(), all);
+        let chosen = self.subscript(index, &p.subscripts, view, span)?;
+        let mut places = Vec::new();
+        for v in chosen.elements() {
+            match v.as_number(&self.exprs) {
+                Some(x) => places.push(x as usize),
+                None => {
+                    self.eval.not_inline = true;
+                    return None;
+                }
+            }
+        }
+        Some(places)
+    }
+
+    /// A value for a variable that holds another now: sizes and types must fit.
+    fn matching(&mut self, old: &Val, value: Val, span: Span) -> Option<Val> {
+        if old.dims() != value.dims() {
+            let message = format!("{} cannot take {}", old.describe(), value.describe());
+            return self.fail(Code::SizeMismatch, &message, span);
+        }
+        match (old.element_type(), value.element_type()) {
+            (Some(Type::Real), Some(Type::Integer)) => Some(value.with_type(Type::Real)),
+            (Some(a), Some(b)) if a != b => {
+                self.fail(Code::TypeMismatch, &format!("{} cannot take {}", old.describe(), value.describe()), span)
+            }
+            _ => Some(value),
+        }
+    }
+
+    /// `assert` in a function: known to hold, known to fail, or left to a procedure.
+    fn statement_call(&mut self, call: &'a Expr, view: View) -> Option<Flow> {
+        if let ExprKind::Call { function, args, .. } = &call.kind {
+            match function.parts[0].name.name.as_str() {
+                "assert" if self.eval.frame > 0 || self.eval.depth > 0 => {
+                    let c = self.eval(args.first()?, view)?;
+                    return match c.as_number(&self.exprs) {
+                        Some(x) if x != 0.0 => Some(Flow::Next),
+                        Some(_) => {
+                            let text =
+                                args.get(1).and_then(|m| self.eval(m, view)).and_then(|v| v.as_text(&self.exprs));
+                            let text = text.unwrap_or_else(|| "an assertion".into());
+                            self.fail(Code::Evaluation, &format!("an assertion of a function fails: {text}"), call.span)
+                        }
+                        None => {
+                            self.eval.not_inline = true;
+                            None
+                        }
+                    };
+                }
+                "assert" | "terminate" => {
+                    // Left to the flat model, with the values that the locals have here.
+                    self.unsupported(call.span, "`assert` or `terminate` in an algorithm section of a model");
+                    return None;
+                }
+                _ => {}
+            }
+        }
+        self.eval(call, view)?;
+        Some(Flow::Next)
+    }
+
+    fn if_statement(
+        &mut self,
+        branches: &'a [(Expr, Vec<Statement>)],
+        otherwise: &'a [Statement],
+        view: View,
+    ) -> Option<Flow> {
+        let Some(((condition, body), rest)) = branches.split_first() else { return self.execute(otherwise, view) };
+        let c = self.eval(condition, view)?;
+        let Some((test, Type::Boolean)) = c.scalar() else { return self.wrong_type("a Boolean", &c, condition.span) };
+        if let Some(known) = self.exprs.as_num(test) {
+            return if known == 0.0 { self.if_statement(rest, otherwise, view) } else { self.execute(body, view) };
+        }
+        let frame = self.eval.frame;
+        let before = self.eval.locals.clone();
+        let first = self.execute(body, view)?;
+        let after = std::mem::replace(&mut self.eval.locals, before);
+        let second = self.if_statement(rest, otherwise, view)?;
+        if first != Flow::Next || second != Flow::Next {
+            self.eval.not_inline = true;
+            return None;
+        }
+        for i in frame..self.eval.locals.len() {
+            let (a, b) = (&after[i].1, &self.eval.locals[i].1);
+            match a.zip(b, &mut |x, y, _| self.exprs.if_(test, x, y)) {
+                Some(merged) => self.eval.locals[i].1 = merged,
+                None => {
+                    self.eval.not_inline = true;
+                    return None;
+                }
+            }
+        }
+        Some(Flow::Next)
+    }
+
+    fn for_statement(
+        &mut self,
+        iterators: &'a [crate::syntax::ast::Iterator],
+        body: &'a [Statement],
+        view: View,
+    ) -> Option<Flow> {
+        let Some((first, rest)) = iterators.split_first() else { return self.execute(body, view) };
+        for value in self.iterate(first, view)? {
+            self.eval.locals.push((first.name.name, value));
+            let flow = self.for_statement(rest, body, view);
+            self.eval.locals.pop();
+            match flow? {
+                Flow::Next => {}
+                Flow::Break => break,
+                Flow::Return => return Some(Flow::Return),
+            }
+        }
+        Some(Flow::Next)
+    }
+
+    fn while_statement(&mut self, condition: &'a Expr, body: &'a [Statement], view: View) -> Option<Flow> {
+        loop {
+            self.eval.steps += 1;
+            let c = self.eval(condition, view)?;
+            match c.as_number(&self.exprs) {
+                Some(0.0) => return Some(Flow::Next),
+                Some(_) if self.eval.steps <= self.eval.budget => {}
+                _ => {
+                    self.eval.not_inline = true;
+                    return None;
+                }
+            }
+            match self.execute(body, view)? {
+                Flow::Next => {}
+                Flow::Break => return Some(Flow::Next),
+                Flow::Return => return Some(Flow::Return),
+            }
+        }
+    }
+
+    /// `when` in an algorithm section of a model: what each branch assigns is kept for the flat model.
+    fn when_statement(&mut self, branches: &'a [(Expr, Vec<Statement>)], view: View, span: Span) -> Option<Flow> {
+        if self.eval.depth > 0 {
+            return self.fail(Code::Unsupported, "`when` cannot stand in a function", span);
+        }
+        let mut collected = AlgorithmWhen { branches: Vec::new(), span };
+        let before = self.eval.locals.clone();
+        for (condition, body) in branches {
+            let conditions = self.when_conditions(condition, view)?;
+            let was = std::mem::replace(&mut self.eval.no_event, true);
+            let done = self.execute(body, view);
+            self.eval.no_event = was;
+            done?;
+            let frame = self.eval.frame;
+            let mut values = Vec::new();
+            for (i, (name, value)) in self.eval.locals.iter().enumerate().skip(frame) {
+                if !same(&before[i].1, value) {
+                    values.push((*name, value.clone()));
+                }
+            }
+            self.eval.locals.clone_from(&before);
+            collected.branches.push(AlgorithmBranch { conditions, values });
+        }
+        self.eval.whens.push(collected);
+        Some(Flow::Next)
+    }
+
+    /// The conditions of a `when`: one, or a vector of which any fires.
+    pub fn when_conditions(&mut self, condition: &'a Expr, view: View) -> Option<Vec<ExprId>> {
+        let value = self.eval(condition, view)?;
+        let mut conditions = Vec::new();
+        for v in value.elements() {
+            match v.scalar() {
+                Some((e, Type::Boolean)) => conditions.push(e),
+                _ => return self.wrong_type("a Boolean", v, condition.span),
+            }
+        }
+        conditions.retain(|&c| c != Exprs::ZERO);
+        Some(conditions)
+    }
+}
+
+/// Whether two values hold the same expressions.
+pub(super) fn same(a: &Val, b: &Val) -> bool {
+    let (mut x, mut y) = (Vec::new(), Vec::new());
+    a.scalars(&mut x);
+    b.scalars(&mut y);
+    x == y
+}

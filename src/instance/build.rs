@@ -1,0 +1,775 @@
+//! Components: from declarations with their modifiers to nodes, on demand and then all.
+
+use super::errors::builtin_name;
+use super::lookup::{Builtin, Found, predefined_enumerations};
+use super::modifiers::{Access, Arg, ArgKind, Binding, Reached, extended, indexed};
+use super::template::{Kind, Template, What};
+use super::{ClassRef, ElementState, Inherited, Instance, Node, NodeId, ROOT, ScopeId, VarData, View, evaluate};
+use crate::diag::{Code, Diagnostic, Span};
+use crate::expr::{Exprs, VarId};
+use crate::flat::{StateSelect, Type, Variability};
+use crate::resolve::{ClassId, Library};
+use crate::syntax::ast::{self, ClassKind, Subscript};
+use crate::syntax::symbol::Symbol;
+use rustc_hash::FxHashMap;
+use std::rc::Rc;
+
+/// The most scalar variables a model may have; beyond, a size is probably mistaken.
+const MOST_VARIABLES: usize = 20_000_000;
+/// The deepest nesting of components.
+const DEEPEST: usize = 60;
+
+/// A value for a parameter or start attribute, given from outside.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Override {
+    /// Dotted name, as in `pump.D` or `vol.p.start`.
+    pub name: String,
+    /// An expression in Modelica syntax, or a number with a unit such as `0.8 ml`.
+    pub value: String,
+}
+
+/// What to instantiate.
+#[derive(Clone, Debug)]
+pub struct ModelRequest {
+    /// The class.
+    pub class: ClassId,
+    /// Values from outside.
+    pub overrides: Vec<Override>,
+}
+
+/// The component tree of a class.
+///
+/// Diagnostics are collected in the returned [`Instance`]; with an error among them the tree may be incomplete.
+pub fn instantiate<'a, 'l>(library: &'l mut Library<'a>, request: &ModelRequest) -> Instance<'a, 'l> {
+    let mut instance = Instance {
+        library,
+        scopes: Vec::new(),
+        nodes: Vec::new(),
+        variables: Vec::new(),
+        order: Vec::new(),
+        exprs: Exprs::default(),
+        enumerations: predefined_enumerations(),
+        enumeration_index: FxHashMap::default(),
+        root: ScopeId(1),
+        diagnostics: Vec::new(),
+        templates: FxHashMap::default(),
+        packages: FxHashMap::default(),
+        dynamic_packages: Vec::new(),
+        array_values: FxHashMap::default(),
+        inner_declared: FxHashMap::default(),
+        procedures: FxHashMap::default(),
+        variabilities: Vec::new(),
+        eval: evaluate::State::default(),
+    };
+    instance.build_model(request);
+    instance
+}
+
+impl<'a> Instance<'a, '_> {
+    fn build_model(&mut self, request: &ModelRequest) {
+        let class = self.library.class(request.class);
+        let name = self.library.full_name(request.class);
+        let nothing = Rc::new(empty_template(request.class));
+        self.new_scope(nothing.clone(), String::new(), Rc::from([]), None, class.name.span);
+        let parent = self.surroundings(request.class);
+        // The model's scope is number 1, so that `Instance::root` is known before it is built.
+        let root = self.scopes.len();
+        if root != 1 {
+            self.root = ScopeId(u32::try_from(root).expect("small"));
+        }
+        self.root = self.new_scope(nothing, String::new(), Rc::from([]), None, class.name.span);
+        if !self.can_run(class, &name) {
+            return;
+        }
+        let template = self.template(request.class, parent);
+        let args = self.override_args(request);
+        let elements = vec![ElementState::Unknown; template.elements.len()];
+        let root = self.root;
+        let scope = self.scope_mut(root);
+        (scope.template, scope.args, scope.elements, scope.component) = (template, args, elements, true);
+        self.build_elements(root, 0);
+        self.number_variables();
+    }
+
+    /// The view from which a class given by its full name sees its surroundings.
+    fn surroundings(&mut self, class: ClassId) -> View {
+        let Some(parent) = self.library.parent(class) else { return ROOT };
+        let around = self.surroundings(parent);
+        let found = ClassRef { class: parent, parent: around, args: Rc::from([]) };
+        View { scope: self.package(&found), base: 0 }
+    }
+
+    fn can_run(&mut self, class: &'a ast::Class, name: &str) -> bool {
+        let kind = match class.kind {
+            ClassKind::Model | ClassKind::Block | ClassKind::Class => None,
+            ClassKind::Package => Some("package"),
+            ClassKind::Function { .. } => Some("function"),
+            ClassKind::Record { .. } => Some("record"),
+            ClassKind::Connector { .. } => Some("connector"),
+            ClassKind::Type => Some("type"),
+            ClassKind::Operator => Some("operator"),
+        };
+        if let Some(kind) = kind {
+            self.report(
+                Diagnostic::new(Code::BadModel, format!("`{name}` is a {kind}, not a model"))
+                    .at(class.name.span, "only a model or block can be run")
+                    .help("name a model with `--model CLASS`"),
+            );
+            return false;
+        }
+        if class.prefixes.partial {
+            self.report(
+                Diagnostic::new(Code::Partial, format!("`{name}` is partial and cannot be run"))
+                    .at(class.name.span, "declared `partial`")
+                    .help("run a class that extends it"),
+            );
+            return false;
+        }
+        true
+    }
+
+    /// Values from outside become one modification of the model, in a text of their own that messages can show.
+    fn override_args(&mut self, request: &ModelRequest) -> Rc<[Arg<'a>]> {
+        if request.overrides.is_empty() {
+            return Rc::from([]);
+        }
+        let list: Vec<String> =
+            request.overrides.iter().map(|o| format!("{} = {}", o.name, evaluate::override_text(&o.value))).collect();
+        let text = format!("model Set\n  extends Model(\n    {}\n  );\nend Set;\n", list.join(",\n    "));
+        let before = self.library.diagnostics.len();
+        let own = self.library.own.len();
+        let ids = self.library.add_text("<values given from outside>", &text);
+        self.library.own.truncate(own);
+        let bad = self.library.diagnostics.split_off(before);
+        if !bad.is_empty() {
+            let names: Vec<_> = request.overrides.iter().map(|o| format!("`{}={}`", o.name, o.value)).collect();
+            self.report(
+                Diagnostic::new(Code::BadSet, format!("cannot read {}", names.join(", "))).help(
+                    "a value is NAME=VALUE with a dotted name and a Modelica expression, or a number with a unit",
+                ),
+            );
+            return Rc::from([]);
+        }
+        let Some(ast::ClassBody::Long(body)) = ids.first().map(|&id| &self.library.class(id).body) else {
+            return Rc::from([]);
+        };
+        let Some(ast::ElementKind::Extends(e)) = body.elements.first().map(|e| &e.kind) else { return Rc::from([]) };
+        let view = View { scope: self.root, base: 0 };
+        let none: Rc<[Access]> = Rc::from([]);
+        let arguments = e.modification.iter().flat_map(|m| &m.arguments);
+        arguments.filter_map(|a| Arg::new(a, view, &none, true)).collect()
+    }
+
+    /// Builds all components of an instance.
+    fn build_elements(&mut self, scope: ScopeId, depth: usize) {
+        let template = self.scope(scope).template.clone();
+        self.check_targets(scope, &template);
+        if depth > DEEPEST {
+            self.too_deep(scope);
+            return;
+        }
+        for (i, element) in (0u32..).zip(&template.elements) {
+            if matches!(element.kind, Kind::Component(_)) {
+                self.component_at(scope, i, depth);
+            }
+        }
+    }
+
+    fn too_deep(&mut self, scope: ScopeId) {
+        let s = self.scope(scope);
+        let (span, class) = (s.span, s.template.class);
+        let class = self.library.full_name(class);
+        self.report(
+            Diagnostic::new(Code::Recursion, format!("components of `{class}` are nested without end"))
+                .at(span, "this component contains itself")
+                .class(class)
+                .help("a class cannot hold a component of its own kind"),
+        );
+    }
+
+    /// Every modifier must mean an element.
+    fn check_targets(&mut self, scope: ScopeId, template: &Template<'a>) {
+        if template.broken {
+            return;
+        }
+        let args = self.scope(scope).args.clone();
+        for arg in args.iter() {
+            let name = match arg.kind {
+                ArgKind::Modify(path, _) => path[0],
+                ArgKind::Component(c) => c.name,
+                ArgKind::Class(c) => c.name,
+            };
+            if template.by_name.contains_key(&name.name) {
+                continue;
+            }
+            let class = self.library.full_name(template.class);
+            let names: Vec<Symbol> = template.elements.iter().filter(|e| !e.protected).map(|e| e.name).collect();
+            let told = self.diagnostics.iter().any(|d| d.labels.first().is_some_and(|l| l.span == name.span));
+            if !told {
+                self.unknown_modifier(name, &class, &names);
+            }
+        }
+    }
+
+    /// The node of a component element; `None` if it is conditional and absent, or could not be built.
+    pub fn component(&mut self, scope: ScopeId, index: u32) -> Option<NodeId> {
+        self.component_at(scope, index, 0)
+    }
+
+    fn component_at(&mut self, scope: ScopeId, index: u32, depth: usize) -> Option<NodeId> {
+        match &self.scope(scope).elements[index as usize] {
+            ElementState::Node(node) => return Some(*node),
+            ElementState::Unknown => {}
+            ElementState::Busy | ElementState::Absent | ElementState::Class(_) => return None,
+        }
+        self.scope_mut(scope).elements[index as usize] = ElementState::Busy;
+        let node = self.build_component(scope, index, depth);
+        let state = node.map_or(ElementState::Absent, ElementState::Node);
+        self.scope_mut(scope).elements[index as usize] = state;
+        node
+    }
+
+    fn build_component(&mut self, scope: ScopeId, index: u32, depth: usize) -> Option<NodeId> {
+        let template = self.scope(scope).template.clone();
+        let element = &template.elements[index as usize];
+        let Kind::Component(declared) = element.kind else { return None };
+        let own = View { scope, base: element.base };
+        if declared.prefixes.outer && !declared.prefixes.inner {
+            return self.outer_component(scope, declared, own);
+        }
+        let reached = self.reached(scope, index);
+        if let Some(condition) = &declared.condition {
+            if !self.constant_boolean(condition, own)? {
+                return None;
+            }
+        }
+        let (component, view) = match reached.redeclare {
+            Some((ArgKind::Component(c), view, ..)) => (c, view),
+            _ => (declared, own),
+        };
+        let found = self.class_at(view, &component.class)?;
+        self.check_redeclaration(declared, own, component, &found);
+        let plan = Plan {
+            name: joined(&self.scope(scope).name, element.name),
+            scope,
+            declared,
+            prefix: self.prefixes(scope, element.protected, component, declared),
+            span: declared.name.span,
+            depth,
+        };
+        let subscripts = if component.subscripts.is_empty() { &declared.subscripts } else { &component.subscripts };
+        let dims = self.dimensions(subscripts, own, reached.binding.as_ref(), 0)?;
+        self.build_shaped(&plan, &found, &dims, reached)
+    }
+
+    fn prefixes(
+        &self,
+        scope: ScopeId,
+        protected: bool,
+        component: &ast::Component,
+        declared: &ast::Component,
+    ) -> Inherited {
+        let outer = self.scope(scope).prefix;
+        let prefix = if component.prefix.variability.is_some() { component.prefix } else { declared.prefix };
+        let stricter = match (outer.variability, prefix.variability) {
+            (Some(a), Some(b)) => Some(a.min(b)),
+            (a, b) => a.or(b),
+        };
+        Inherited {
+            variability: stricter,
+            causality: component.prefix.causality.or(declared.prefix.causality).or(outer.causality),
+            hidden: outer.hidden || protected || hides_result(declared),
+            nested: outer.nested,
+        }
+    }
+
+    fn outer_component(&mut self, scope: ScopeId, declared: &'a ast::Component, view: View) -> Option<NodeId> {
+        let name = declared.name.name;
+        if let Some(node) = self.inner_of(scope, name) {
+            return Some(node);
+        }
+        let found = self.class_at(view, &declared.class)?;
+        let Found::Class(class) = &found else { return None };
+        let full = self.library.full_name(class.class);
+        if self.library.class(class.class).prefixes.partial {
+            self.report(
+                Diagnostic::new(Code::NoInner, format!("`outer {name}` finds no `inner {name}`"))
+                    .at(declared.name.span, "needs an `inner` component of this name further up")
+                    .instance(self.scope(scope).name.clone())
+                    .help(format!("add `inner SomeClass {name};` to the model, with a class that extends `{full}`")),
+            );
+            return None;
+        }
+        self.report(
+            Diagnostic::new(Code::AutomaticInner, format!("`inner {full} {name}` was added to the model"))
+                .at(declared.name.span, format!("`outer {name}` has no `inner` above it"))
+                .help(format!("write `inner {full} {name};` in the model to choose its parameters")),
+        );
+        let root = self.root;
+        let plan = Plan {
+            name: name.as_str().to_string(),
+            scope: root,
+            declared,
+            prefix: Inherited::default(),
+            span: declared.name.span,
+            depth: 0,
+        };
+        let node = self.build_shaped(&plan, &found, &[], Reached::default())?;
+        self.inner_declared.insert((root, name), node);
+        Some(node)
+    }
+
+    /// Array dimensions; `:` is taken from the value.
+    fn dimensions(
+        &mut self,
+        subscripts: &'a [Subscript],
+        view: View,
+        binding: Option<&Binding<'a>>,
+        skip: usize,
+    ) -> Option<Vec<usize>> {
+        let mut dims = Vec::with_capacity(subscripts.len());
+        for (i, s) in subscripts.iter().enumerate() {
+            let size = match s {
+                Subscript::Expr(e) => self.dimension(e, view)?,
+                Subscript::All(span) => {
+                    let Some(b) = binding else {
+                        self.report(
+                            Diagnostic::new(Code::NoValue, "the size `:` needs a value to be taken from")
+                                .at(*span, "no binding gives this size")
+                                .help("write a size, or bind the array to a value"),
+                        );
+                        return None;
+                    };
+                    let value = self.binding_value(b, true)?;
+                    match value.dims().get(skip + i) {
+                        Some(&n) => n,
+                        None => {
+                            self.report(
+                                Diagnostic::new(Code::SizeMismatch, "the value has fewer dimensions than the array")
+                                    .at(b.expr.span, "this value")
+                                    .at(*span, "should give this size"),
+                            );
+                            return None;
+                        }
+                    }
+                }
+            };
+            dims.push(size);
+        }
+        Some(dims)
+    }
+
+    /// Builds a component with the array dimensions of its declaration and of its type.
+    fn build_shaped(
+        &mut self,
+        plan: &Plan<'a>,
+        found: &Found<'a>,
+        dims: &[usize],
+        reached: Reached<'a>,
+    ) -> Option<NodeId> {
+        let mut all = dims.to_vec();
+        let template = match found {
+            Found::Class(class) => {
+                let t = self.template(class.class, class.parent);
+                for (subscripts, base) in t.dims.iter().rev() {
+                    let view = t.bases[*base as usize].parent;
+                    all.extend(self.dimensions(subscripts, view, reached.binding.as_ref(), dims.len())?);
+                }
+                Some(t)
+            }
+            _ => None,
+        };
+        let count = all.iter().try_fold(1usize, |n, &d| n.checked_mul(d));
+        if count.is_none_or(|n| n + self.variables.len() > MOST_VARIABLES) {
+            self.report(
+                Diagnostic::new(
+                    Code::TooLarge,
+                    format!("`{}` would have more than {MOST_VARIABLES} elements", plan.name),
+                )
+                .at(plan.span, "this array")
+                .help("check the parameters that give its size"),
+            );
+            return None;
+        }
+        let mut args = reached.args;
+        if let Found::Class(class) = found {
+            args.extend(class.args.iter().cloned());
+        }
+        let part = Part { binding: reached.binding, final_: reached.final_ };
+        self.build_array(plan, found, template.as_ref(), (&all, dims.len()), &args.into(), part)
+    }
+
+    fn build_array(
+        &mut self,
+        plan: &Plan<'a>,
+        found: &Found<'a>,
+        template: Option<&Rc<Template<'a>>>,
+        (dims, declared): (&[usize], usize),
+        args: &Rc<[Arg<'a>]>,
+        part: Part<'a>,
+    ) -> Option<NodeId> {
+        if dims.is_empty() {
+            return self.build_one(plan, (&plan.name, &[]), found, template, args.clone(), part);
+        }
+        let count: usize = dims.iter().product();
+        let mut elements = Vec::with_capacity(count);
+        for flat in 0..count {
+            let index = unravel(flat, dims);
+            let text: Vec<String> = index.iter().map(|i| (i + 1).to_string()).collect();
+            let name = format!("{}[{}]", plan.name, text.join(","));
+            let args = indexed(args, &index);
+            let binding = part.binding.clone().map(|b| Binding { access: extended(&b.access, &index), ..b });
+            let part = Part { binding, ..part.clone() };
+            // The attributes of an array type are indexed by the type's own dimensions only.
+            let own = &index[declared..];
+            elements.push(self.build_one(plan, (&name, own), found, template, args, part)?);
+        }
+        Some(self.add_node(Node::Array { dims: dims.to_vec(), elements }))
+    }
+
+    fn build_one(
+        &mut self,
+        plan: &Plan<'a>,
+        (name, index): (&str, &[u32]),
+        found: &Found<'a>,
+        template: Option<&Rc<Template<'a>>>,
+        args: Rc<[Arg<'a>]>,
+        part: Part<'a>,
+    ) -> Option<NodeId> {
+        match (found, template) {
+            (Found::Builtin(b), _) => Some(self.build_variable(plan, name, *b, &args, &[], part)),
+            (Found::Class(_), Some(t)) => match t.builtin {
+                Some(b) => {
+                    let chain = self.type_args(t, index);
+                    Some(self.build_variable(plan, name, b, &args, &chain, part))
+                }
+                None => self.build_object(plan, name, t, args, part),
+            },
+            _ => None,
+        }
+    }
+
+    /// Attribute modifications of a type chain, each seen from around the class it stands in.
+    fn type_args(&self, t: &Template<'a>, index: &[u32]) -> Vec<Arg<'a>> {
+        let none: Rc<[Access]> = Rc::from([]);
+        // A type is scalar inside the class that gives it its dimensions.
+        let shaped = t.dims.iter().map(|(_, base)| *base).min().unwrap_or(0);
+        let mut chain = Vec::new();
+        for s in &t.builtin_args {
+            let What::Argument(a) = s.what else { continue };
+            let arg = Arg::new(a, t.bases[s.base as usize].parent, &none, false);
+            let own = if s.base <= shaped { index } else { &[] };
+            chain.extend(arg.iter().flat_map(|a| indexed(std::slice::from_ref(a), own).to_vec()));
+        }
+        chain
+    }
+
+    fn build_object(
+        &mut self,
+        plan: &Plan<'a>,
+        name: &str,
+        template: &Rc<Template<'a>>,
+        args: Rc<[Arg<'a>]>,
+        part: Part<'a>,
+    ) -> Option<NodeId> {
+        if !self.can_be_component(plan, template) {
+            return None;
+        }
+        let scope = self.new_scope(template.clone(), name.to_string(), args, Some(plan.scope), plan.span);
+        let mut prefix = plan.prefix;
+        prefix.causality = plan.prefix.causality.or(template.prefix.causality);
+        prefix.nested = prefix.nested || !matches!(template.kind, ClassKind::Connector { .. });
+        let record = matches!(template.kind, ClassKind::Record { .. });
+        let s = self.scope_mut(scope);
+        (s.prefix, s.component) = (prefix, true);
+        match part.binding {
+            Some(b) if record => s.binding = Some(b),
+            Some(b) => {
+                let class = self.library.full_name(template.class);
+                self.report(
+                    Diagnostic::new(Code::TypeMismatch, format!("`{name}` is a component and cannot have a value"))
+                        .at(b.expr.span, format!("`{class}` is not a type with values"))
+                        .help("modify its elements in brackets instead"),
+                );
+            }
+            None => {}
+        }
+        let node = self.add_node(Node::Object(scope));
+        self.build_elements(scope, plan.depth + 1);
+        Some(node)
+    }
+
+    fn can_be_component(&mut self, plan: &Plan<'a>, template: &Template<'a>) -> bool {
+        let ast = template.bases[0].ast;
+        let class = || self.library.full_name(template.class);
+        let d = match template.kind {
+            ClassKind::Package => Diagnostic::new(Code::WrongClassKind, format!("`{}` is a package", class())),
+            ClassKind::Function { .. } => Diagnostic::new(Code::WrongClassKind, format!("`{}` is a function", class())),
+            ClassKind::Connector { expandable: true } => {
+                Diagnostic::new(Code::Unsupported, format!("`{}` is an expandable connector", class()))
+                    .help("use a connector with declared variables")
+            }
+            _ if ast.prefixes.partial => {
+                Diagnostic::new(Code::Partial, format!("`{}` is partial and cannot be a component", class()))
+                    .help("use a class that extends it, or redeclare the component")
+            }
+            _ => return true,
+        };
+        self.report(d.at(plan.span, format!("`{}` is declared here", plan.name)).instance(plan.name.clone()));
+        false
+    }
+
+    fn build_variable(
+        &mut self,
+        plan: &Plan<'a>,
+        name: &str,
+        builtin: Builtin,
+        args: &[Arg<'a>],
+        chain: &[Arg<'a>],
+        part: Part<'a>,
+    ) -> NodeId {
+        let ty = match builtin {
+            Builtin::Real | Builtin::String => Type::Real,
+            Builtin::Integer => Type::Integer,
+            Builtin::Boolean => Type::Boolean,
+            Builtin::Enumeration(i) => Type::Enumeration(i),
+        };
+        let variability = match plan.prefix.variability {
+            Some(ast::Variability::Constant) => Variability::Constant,
+            Some(ast::Variability::Parameter) => Variability::Parameter,
+            Some(ast::Variability::Discrete) => Variability::Discrete,
+            None if ty != Type::Real => Variability::Discrete,
+            None => Variability::Continuous,
+        };
+        let attributes = self.attributes(args.iter().chain(chain), builtin, name);
+        let mut data = VarData {
+            name: name.to_string(),
+            ty,
+            string: builtin == Builtin::String,
+            variability,
+            causality: plan.prefix.causality,
+            top: !plan.prefix.nested && plan.prefix.causality.is_some() && !plan.prefix.hidden,
+            flow: plan.declared.prefix.flow,
+            hidden: plan.prefix.hidden,
+            final_: part.final_,
+            structural: false,
+            binding: part.binding,
+            attributes,
+            state_select: StateSelect::Default,
+            description: plan.declared.description.as_deref(),
+            span: plan.span,
+            scope: plan.scope,
+            constant: None,
+            busy: false,
+            id: VarId(u32::MAX),
+        };
+        data.state_select = self.state_select(&data);
+        self.variables.push(data);
+        let index = u32::try_from(self.variables.len() - 1).expect("limited above");
+        self.add_node(Node::Var(index))
+    }
+
+    fn attributes<'x>(
+        &mut self,
+        args: impl Iterator<Item = &'x Arg<'a>>,
+        builtin: Builtin,
+        name: &str,
+    ) -> Vec<(Symbol, Binding<'a>)>
+    where
+        'a: 'x,
+    {
+        let mut attributes: Vec<(Symbol, Binding<'a>)> = Vec::new();
+        for arg in args {
+            let ArgKind::Modify(path, modification) = arg.kind else { continue };
+            let attribute = path[0].name;
+            if !known_attribute(attribute.as_str()) || path.len() > 1 {
+                let _ = builtin_name(builtin);
+                self.unknown_attribute(attribute, path[0].span, builtin);
+                continue;
+            }
+            let Some(expr) = modification.and_then(|m| m.value.as_ref()) else { continue };
+            if attributes.iter().any(|(a, _)| *a == attribute) {
+                continue;
+            }
+            let binding = Binding { expr, view: arg.view, access: arg.access.clone(), final_: arg.final_ };
+            attributes.push((attribute, binding));
+        }
+        let _ = name;
+        attributes
+    }
+
+    fn state_select(&mut self, data: &VarData<'a>) -> StateSelect {
+        let Some((_, b)) = data.attributes.iter().find(|(n, _)| *n == "stateSelect") else {
+            return StateSelect::Default;
+        };
+        let b = b.clone();
+        match self.binding_value(&b, true).and_then(|v| v.as_number(&self.exprs)) {
+            Some(1.0) => StateSelect::Never,
+            Some(2.0) => StateSelect::Avoid,
+            Some(4.0) => StateSelect::Prefer,
+            Some(5.0) => StateSelect::Always,
+            _ => StateSelect::Default,
+        }
+    }
+
+    /// A redeclared component must be of a class that fits the constraining one: here, it must offer its elements.
+    fn check_redeclaration(
+        &mut self,
+        declared: &'a ast::Component,
+        own: View,
+        component: &'a ast::Component,
+        found: &Found<'a>,
+    ) {
+        if std::ptr::eq(declared, component) {
+            return;
+        }
+        if !declared.prefixes.replaceable && !component.prefixes.redeclare {
+            return;
+        }
+        if !declared.prefixes.replaceable {
+            self.report(
+                Diagnostic::new(Code::BadRedeclare, format!("`{}` is not replaceable", declared.name.name))
+                    .at(component.name.span, "redeclared here")
+                    .at(declared.name.span, "declared without `replaceable`")
+                    .help(format!("write `replaceable` before the declaration of `{}`", declared.name.name)),
+            );
+            return;
+        }
+        let path = declared.constraint.as_ref().map_or(&declared.class, |c| &c.path);
+        let Ok(constraint) = self.lookup_path(own, path) else { return };
+        self.check_subtype(&constraint, found, component.name.span, path.span);
+    }
+
+    /// Every public component of the constraining class must exist in the class that takes its place (MLS 6.4).
+    pub(super) fn check_subtype(&mut self, constraint: &Found<'a>, found: &Found<'a>, at: Span, constrained: Span) {
+        let (Found::Class(want), Found::Class(have)) = (constraint, found) else { return };
+        let want = self.template(want.class, want.parent);
+        let have = self.template(have.class, have.parent);
+        if have.broken || want.broken {
+            return;
+        }
+        let missing = want.elements.iter().find(|e| !e.protected && !have.by_name.contains_key(&e.name));
+        let Some(missing) = missing else { return };
+        let (want, have) = (self.library.full_name(want.class), self.library.full_name(have.class));
+        self.report(
+            Diagnostic::new(Code::BadRedeclare, format!("`{have}` cannot take the place of `{want}`"))
+                .at(at, format!("`{have}` has no `{}`", missing.name))
+                .at(constrained, format!("`{want}` is required here"))
+                .help(format!("use a class that extends `{want}`")),
+        );
+    }
+
+    /// Gives every variable its number: declaration order, depth first.
+    fn number_variables(&mut self) {
+        let mut order = Vec::with_capacity(self.variables.len());
+        self.number_scope(self.root, &mut order);
+        for i in 0..u32::try_from(self.variables.len()).expect("limited above") {
+            // Automatic `inner` components come last.
+            if self.variables[i as usize].id.0 == u32::MAX {
+                self.number_variable(i, &mut order);
+            }
+        }
+        self.order = order;
+    }
+
+    fn number_variable(&mut self, i: u32, order: &mut Vec<u32>) {
+        let data = &mut self.variables[i as usize];
+        if data.id.0 == u32::MAX && !data.string {
+            data.id = VarId(u32::try_from(order.len()).expect("limited above"));
+            order.push(i);
+        }
+    }
+
+    fn number_scope(&mut self, scope: ScopeId, order: &mut Vec<u32>) {
+        for i in 0..self.scope(scope).elements.len() {
+            let s = self.scope(scope);
+            let outer = matches!(s.template.elements[i].kind, Kind::Component(c) if c.prefixes.outer);
+            if let (ElementState::Node(node), false) = (&s.elements[i], outer) {
+                self.number_node(*node, order);
+            }
+        }
+    }
+
+    fn number_node(&mut self, node: NodeId, order: &mut Vec<u32>) {
+        match self.node(node) {
+            Node::Var(i) => self.number_variable(*i, order),
+            Node::Object(scope) => self.number_scope(*scope, order),
+            Node::Array { elements, .. } => {
+                for e in elements.clone() {
+                    self.number_node(e, order);
+                }
+            }
+        }
+    }
+}
+
+/// What is the same for all elements of a component array.
+struct Plan<'a> {
+    name: String,
+    scope: ScopeId,
+    declared: &'a ast::Component,
+    prefix: Inherited,
+    span: Span,
+    depth: usize,
+}
+
+/// Value of a component.
+#[derive(Clone)]
+struct Part<'a> {
+    binding: Option<Binding<'a>>,
+    final_: bool,
+}
+
+fn known_attribute(name: &str) -> bool {
+    matches!(
+        name,
+        "start"
+            | "fixed"
+            | "min"
+            | "max"
+            | "nominal"
+            | "unit"
+            | "displayUnit"
+            | "quantity"
+            | "stateSelect"
+            | "unbounded"
+    )
+}
+
+fn joined(owner: &str, name: Symbol) -> String {
+    if owner.is_empty() { name.as_str().to_string() } else { format!("{owner}.{name}") }
+}
+
+/// Row-major index of an element.
+fn unravel(mut flat: usize, dims: &[usize]) -> Vec<u32> {
+    let mut index = vec![0; dims.len()];
+    for (i, &d) in dims.iter().enumerate().rev() {
+        index[i] = u32::try_from(flat % d).expect("limited above");
+        flat /= d;
+    }
+    index
+}
+
+fn hides_result(c: &ast::Component) -> bool {
+    let arguments = c.annotation.iter().flat_map(|m| &m.arguments);
+    arguments.into_iter().any(|a| {
+        matches!(&a.kind, ast::ArgumentKind::Modify { path, modification: Some(m), .. }
+            if path.parts[0].name == "HideResult"
+                && matches!(m.value.as_ref().map(|v| &v.kind), Some(ast::ExprKind::Boolean(true))))
+    })
+}
+
+fn empty_template<'a>(class: ClassId) -> Template<'a> {
+    Template {
+        class,
+        bases: Vec::new(),
+        elements: Vec::new(),
+        by_name: FxHashMap::default(),
+        builtin: None,
+        builtin_args: Vec::new(),
+        dims: Vec::new(),
+        prefix: ast::TypePrefix::default(),
+        kind: ClassKind::Class,
+        broken: false,
+    }
+}

@@ -1,0 +1,527 @@
+//! Calls: built-in functions, record constructors, user functions (written out as expressions where that is possible).
+
+use super::builtin::retyped;
+use super::lookup::{Builtin, Found};
+use super::template::{Kind, Template};
+use super::value::{Val, size_text};
+use super::{ClassRef, Instance, ScopeId, View};
+use crate::diag::{Code, Diagnostic, Span};
+use crate::expr::{ExprId, Exprs};
+use crate::flat::{Type, Variability};
+use crate::syntax::ast::{self, Causality, ClassKind, Expr, Ident, Reference};
+use crate::syntax::symbol::Symbol;
+use std::rc::Rc;
+
+/// Deepest nesting of function calls that are written out.
+const DEEPEST_INLINE: usize = 40;
+/// Most statements executed to write one call out.
+const MOST_STEPS: usize = 20_000;
+/// The same when all arguments are known, so that the call is simply carried out.
+const MOST_KNOWN_STEPS: usize = 2_000_000;
+/// Deepest nesting when all arguments are known.
+const DEEPEST_KNOWN: usize = 150;
+
+/// A function ready to be called.
+pub(super) struct Callee<'a> {
+    pub scope: ScopeId,
+    pub template: Rc<Template<'a>>,
+    pub name: String,
+}
+
+/// One declared input, output or local of a function.
+pub(super) struct Formal<'a> {
+    pub name: Symbol,
+    pub component: &'a ast::Component,
+    pub index: u32,
+    pub view: View,
+}
+
+impl<'a> Instance<'a, '_> {
+    pub(super) fn call(
+        &mut self,
+        function: &'a Reference,
+        args: &'a [Expr],
+        named: &'a [(Ident, Expr)],
+        view: View,
+        span: Span,
+    ) -> Option<Val> {
+        if let Some(v) = self.builtin_call(function, args, named, view, span) {
+            return v;
+        }
+        let path = ast::Path {
+            global: function.global,
+            parts: function.parts.iter().map(|p| p.name).collect(),
+            span: function.span,
+        };
+        match self.lookup_path(view, &path) {
+            Ok(Found::Class(class)) => self.call_class(class, args, named, view, span),
+            Ok(Found::Builtin(Builtin::Enumeration(i))) => self.to_enumeration(i, args, view, span),
+            _ => match self.instance_function(function, view) {
+                Some(class) => self.call_class(class, args, named, view, span),
+                None => {
+                    self.unknown_function(function);
+                    None
+                }
+            },
+        }
+    }
+
+    /// A function named through a component, as in `oil.density(p)`.
+    fn instance_function(&mut self, function: &Reference, view: View) -> Option<ClassRef<'a>> {
+        let Found::Component(scope, index) = self.lookup(view, function.parts[0].name.name)? else { return None };
+        let mut node = self.component(scope, index)?;
+        let (last, middle) = function.parts[1..].split_last()?;
+        for part in middle {
+            let super::Node::Object(s) = *self.node(node) else { return None };
+            let &i = self.scope(s).template.by_name.get(&part.name.name)?;
+            node = self.component(s, i)?;
+        }
+        let super::Node::Object(s) = *self.node(node) else { return None };
+        match self.lookup(View { scope: s, base: 0 }, last.name.name)? {
+            Found::Class(class) => Some(class),
+            _ => None,
+        }
+    }
+
+    fn call_class(
+        &mut self,
+        class: ClassRef<'a>,
+        args: &'a [Expr],
+        named: &'a [(Ident, Expr)],
+        view: View,
+        span: Span,
+    ) -> Option<Val> {
+        let template = self.template(class.class, class.parent);
+        if let Some(Builtin::Enumeration(i)) = template.builtin {
+            return self.to_enumeration(i, args, view, span);
+        }
+        let positional: Option<Vec<Val>> = args.iter().map(|a| self.argument(a, view)).collect();
+        let mut by_name = Vec::new();
+        for (name, e) in named {
+            by_name.push((*name, self.argument(e, view)?));
+        }
+        let positional = positional?;
+        let scope = self.package(&class);
+        let name = self.library.full_name(class.class);
+        let callee = Callee { scope, template, name };
+        match callee.template.kind {
+            ClassKind::Record { .. } => self.construct(&callee, positional, by_name, span),
+            ClassKind::Function { .. } => self.call_function(&callee, positional, by_name, span),
+            _ => {
+                let message = format!("`{}` is not a function", callee.name);
+                self.fail(Code::UnknownFunction, &message, span)
+            }
+        }
+    }
+
+    /// An argument; whole numbers that parameters give are taken by value, for sizes and loops depend on them.
+    fn argument(&mut self, e: &'a Expr, view: View) -> Option<Val> {
+        let value = self.eval(e, view)?;
+        if let Val::Scalar(id, Type::Integer) = value {
+            let outside = self.eval.frame == 0 && !self.eval.procedure;
+            let open = self.exprs.as_num(id).is_none() && self.variability(id) <= Variability::Parameter;
+            if outside && open && !self.eval.locals.iter().any(|(_, v)| v.scalar().is_some_and(|(l, _)| l == id)) {
+                return self.constant(e, view);
+            }
+        }
+        Some(value)
+    }
+
+    fn to_enumeration(&mut self, i: u32, args: &'a [Expr], view: View, span: Span) -> Option<Val> {
+        let [arg] = args else {
+            return self.fail(Code::BadCall, "a conversion to an enumeration takes one Integer", span);
+        };
+        Some(retyped(&self.eval(arg, view)?, Type::Enumeration(i)))
+    }
+
+    /// Components of a function or record that pass a test.
+    pub(super) fn formals(
+        &self,
+        callee: &Callee<'a>,
+        wanted: impl Fn(&ast::Component, bool) -> bool,
+    ) -> Vec<Formal<'a>> {
+        let with_index = (0u32..).zip(&callee.template.elements);
+        let found = with_index.filter_map(|(index, e)| match e.kind {
+            Kind::Component(component) if wanted(component, e.protected) => {
+                Some(Formal { name: e.name, component, index, view: View { scope: callee.scope, base: e.base } })
+            }
+            _ => None,
+        });
+        found.collect()
+    }
+
+    /// A value of a record class from its constructor.
+    fn construct(
+        &mut self,
+        callee: &Callee<'a>,
+        positional: Vec<Val>,
+        named: Vec<(Ident, Val)>,
+        span: Span,
+    ) -> Option<Val> {
+        let formals = self.formals(callee, |c, protected| {
+            !protected && !matches!(c.prefix.variability, Some(ast::Variability::Constant))
+        });
+        let before = self.enter_frame();
+        let bound = self.bind(callee, &formals, positional, named, span);
+        let mut fields = Vec::new();
+        if bound.is_some() {
+            for f in &formals {
+                let i = self.local(f.name);
+                fields.push((f.name, i.map(|i| self.eval.locals[i].1.clone())));
+            }
+        }
+        self.leave_frame(before);
+        bound?;
+        let fields: Option<Vec<_>> = fields.into_iter().map(|(n, v)| Some((n, v?))).collect();
+        Some(Val::Record(Rc::new(fields?)))
+    }
+
+    pub(super) fn enter_frame(&mut self) -> (usize, usize, bool) {
+        let before = (self.eval.frame, self.eval.locals.len(), self.eval.no_event);
+        self.eval.frame = self.eval.locals.len();
+        self.eval.no_event = true;
+        before
+    }
+
+    pub(super) fn leave_frame(&mut self, before: (usize, usize, bool)) {
+        self.eval.locals.truncate(before.1);
+        (self.eval.frame, _, self.eval.no_event) = before;
+    }
+
+    /// Binds arguments to inputs in a fresh frame; defaults may use inputs before them.
+    pub(super) fn bind(
+        &mut self,
+        callee: &Callee<'a>,
+        formals: &[Formal<'a>],
+        positional: Vec<Val>,
+        named: Vec<(Ident, Val)>,
+        span: Span,
+    ) -> Option<()> {
+        if positional.len() > formals.len() {
+            let message =
+                format!("`{}` takes {} arguments, and {} are given", callee.name, formals.len(), positional.len());
+            return self.fail(Code::BadCall, &message, span);
+        }
+        if let Some((name, _)) = named.iter().find(|(n, _)| formals.iter().all(|f| f.name != n.name)) {
+            let names: Vec<Symbol> = formals.iter().map(|f| f.name).collect();
+            let mut d = Diagnostic::new(Code::BadCall, format!("`{}` has no input `{}`", callee.name, name.name))
+                .at(name.span, "not an input");
+            d = match super::errors::nearest(name.name.as_str(), names.iter().map(|n| n.as_str())) {
+                Some(near) => d.help(format!("did you mean `{near}`?")),
+                None => d.help(super::errors::list_names("it takes", &names)),
+            };
+            self.report(d);
+            return None;
+        }
+        let mut positional = positional.into_iter();
+        for f in formals {
+            let given =
+                positional.next().or_else(|| named.iter().find(|(n, _)| n.name == f.name).map(|(_, v)| v.clone()));
+            let value = match given {
+                Some(v) => self.fit_argument(callee, f, v, span)?,
+                None => match self.default_value(f)? {
+                    Some(v) => v,
+                    None => {
+                        let message = format!("`{}` needs a value for its input `{}`", callee.name, f.name);
+                        let d = Diagnostic::new(Code::BadCall, message)
+                            .at(span, "this call")
+                            .at(f.component.name.span, "declared here without a default");
+                        self.report(d);
+                        return None;
+                    }
+                },
+            };
+            self.eval.locals.push((f.name, value));
+        }
+        Some(())
+    }
+
+    /// Checks an argument against the declared type and number of dimensions.
+    fn fit_argument(&mut self, callee: &Callee<'a>, f: &Formal<'a>, value: Val, span: Span) -> Option<Val> {
+        let wanted = match self.class_at(f.view, &f.component.class)? {
+            Found::Builtin(b) => Some(b),
+            Found::Class(c) => {
+                let t = self.template(c.class, c.parent);
+                if t.dims.is_empty() { t.builtin } else { None }
+            }
+            Found::Component(..) => None,
+        };
+        let Some(b) = wanted else { return Some(value) };
+        let declared = f.component.subscripts.len();
+        if value.dims().len() != declared {
+            let message = format!(
+                "input `{}` of `{}` is {}, and this is {}",
+                f.name,
+                callee.name,
+                if declared == 0 { "a single value".into() } else { format!("an array of {declared} dimensions") },
+                value.describe()
+            );
+            return self.fail(Code::BadCall, &message, span);
+        }
+        let fits = match (b, value.element_type()) {
+            (Builtin::Real, Some(Type::Real | Type::Integer)) => true,
+            (Builtin::Integer, Some(Type::Integer)) | (Builtin::Boolean, Some(Type::Boolean)) => true,
+            (Builtin::Enumeration(a), Some(Type::Enumeration(b))) => a == b,
+            (Builtin::String, _) => matches!(value.elements().first(), Some(Val::Text(_)) | None),
+            (_, None) => value.elements().is_empty(),
+            _ => false,
+        };
+        if !fits {
+            let message = format!(
+                "input `{}` of `{}` is of type {}, and this is {}",
+                f.name,
+                callee.name,
+                super::errors::builtin_name(b),
+                value.describe()
+            );
+            return self.fail(Code::BadCall, &message, span);
+        }
+        Some(if b == Builtin::Real { value.with_type(Type::Real) } else { value })
+    }
+
+    /// The declared default: `None` on failure, `Some(None)` when there is none.
+    fn default_value(&mut self, f: &Formal<'a>) -> Option<Option<Val>> {
+        let reached = self.reached(f.view.scope, f.index);
+        match reached.binding {
+            Some(b) => {
+                // In the frame of the call, so that earlier inputs are seen.
+                let value = if b.access.is_empty() { self.eval(b.expr, b.view) } else { self.binding_value(&b, true) };
+                value.map(Some)
+            }
+            None => match self.class_at(f.view, &f.component.class)? {
+                // A record without a value takes its fields' defaults.
+                Found::Class(c) if f.component.subscripts.is_empty() => self.default_record(&c),
+                _ => Some(None),
+            },
+        }
+    }
+
+    fn default_record(&mut self, class: &ClassRef<'a>) -> Option<Option<Val>> {
+        let template = self.template(class.class, class.parent);
+        if !matches!(template.kind, ClassKind::Record { .. }) {
+            return Some(None);
+        }
+        let scope = self.package(class);
+        let name = self.library.full_name(class.class);
+        let callee = Callee { scope, template, name };
+        let span = self.library.class(class.class).name.span;
+        let mark = self.diagnostics.len();
+        let value = self.construct(&callee, Vec::new(), Vec::new(), span);
+        if value.is_none() {
+            self.diagnostics.truncate(mark);
+        }
+        Some(value)
+    }
+
+    pub(super) fn call_function(
+        &mut self,
+        callee: &Callee<'a>,
+        positional: Vec<Val>,
+        named: Vec<(Ident, Val)>,
+        span: Span,
+    ) -> Option<Val> {
+        if callee.template.bases.iter().any(|b| has_external(b.ast)) {
+            self.unsupported(span, &format!("the external function `{}`", callee.name));
+            return None;
+        }
+        if callee.template.bases[0].ast.prefixes.partial {
+            let message = format!("`{}` is partial and cannot be called", callee.name);
+            return self.fail(Code::Partial, &message, span);
+        }
+        let known = self.all_known(&positional) && named.iter().all(|(_, v)| self.known(v));
+        let limit = if known { DEEPEST_KNOWN } else { DEEPEST_INLINE };
+        if self.eval.depth >= limit {
+            if known {
+                let message = format!("`{}` calls itself without end", callee.name);
+                let d = Diagnostic::new(Code::Recursion, message).at(span, "this call");
+                if !self.diagnostics.iter().any(|d| d.code == Code::Recursion) {
+                    self.report(d.help("a recursive function must reach a case in which it does not call itself"));
+                }
+                return None;
+            }
+            self.eval.not_inline = true;
+            return None;
+        }
+        let mark = self.diagnostics.len();
+        let budget = if self.eval.depth == 0 { 0 } else { self.eval.steps };
+        self.eval.steps = budget;
+        self.eval.depth += 1;
+        let outer = std::mem::replace(&mut self.eval.not_inline, false);
+        let value = self.inline(callee, positional.clone(), named.clone(), known, span);
+        self.eval.depth -= 1;
+        let refused = std::mem::replace(&mut self.eval.not_inline, outer);
+        if value.is_some() || !refused {
+            return value;
+        }
+        if known {
+            let message = format!("`{}` does not come to an end", callee.name);
+            return self.fail(Code::Recursion, &message, span);
+        }
+        self.diagnostics.truncate(mark);
+        self.call_procedure(callee, positional, named, span)
+    }
+
+    fn all_known(&self, values: &[Val]) -> bool {
+        values.iter().all(|v| self.known(v))
+    }
+
+    fn known(&self, v: &Val) -> bool {
+        let mut scalars: Vec<ExprId> = Vec::new();
+        v.scalars(&mut scalars);
+        scalars.iter().all(|&e| self.exprs.as_num(e).is_some())
+    }
+
+    /// Carries the function out on symbolic values.
+    fn inline(
+        &mut self,
+        callee: &Callee<'a>,
+        positional: Vec<Val>,
+        named: Vec<(Ident, Val)>,
+        known: bool,
+        span: Span,
+    ) -> Option<Val> {
+        let was = std::mem::replace(&mut self.eval.procedure, false);
+        let before = self.enter_frame();
+        self.eval.budget = if known { MOST_KNOWN_STEPS } else { MOST_STEPS };
+        let value = self.inline_body(callee, positional, named, span);
+        self.leave_frame(before);
+        self.eval.procedure = was;
+        value
+    }
+
+    fn inline_body(
+        &mut self,
+        callee: &Callee<'a>,
+        positional: Vec<Val>,
+        named: Vec<(Ident, Val)>,
+        span: Span,
+    ) -> Option<Val> {
+        let inputs = self.formals(callee, is_input);
+        self.bind(callee, &inputs, positional, named, span)?;
+        let locals = self.formals(callee, |c, p| !is_input(c, p));
+        for f in &locals {
+            let value = self.declared_local(f)?;
+            self.eval.locals.push((f.name, value));
+        }
+        for (i, base) in callee.template.bases.iter().enumerate() {
+            let ast::ClassBody::Long(body) = &base.ast.body else { continue };
+            let view = View { scope: callee.scope, base: u32::try_from(i).expect("few bases") };
+            for section in &body.algorithms {
+                match self.execute(section, view)? {
+                    super::algorithm::Flow::Return => break,
+                    _ => {}
+                }
+            }
+        }
+        let outputs: Vec<Val> = locals
+            .iter()
+            .filter(|f| f.component.prefix.causality == Some(Causality::Output))
+            .filter_map(|f| self.local(f.name).map(|i| self.eval.locals[i].1.clone()))
+            .collect();
+        self.outputs(outputs, callee, span)
+    }
+
+    pub(super) fn outputs(&mut self, mut outputs: Vec<Val>, callee: &Callee<'a>, span: Span) -> Option<Val> {
+        match outputs.len() {
+            0 => self.fail(Code::BadCall, &format!("`{}` has no output", callee.name), span),
+            1 => outputs.pop(),
+            _ => Some(Val::Tuple(Rc::new(outputs))),
+        }
+    }
+
+    /// The initial value of an output or protected component of a function; zero where nothing is said.
+    pub(super) fn declared_local(&mut self, f: &Formal<'a>) -> Option<Val> {
+        let reached = self.reached(f.view.scope, f.index);
+        let value = match reached.binding {
+            Some(b) if b.access.is_empty() => Some(self.eval(b.expr, b.view)?),
+            Some(b) => Some(self.binding_value(&b, true)?),
+            None => None,
+        };
+        let blank = self.blank(f, value.as_ref())?;
+        match value {
+            None => Some(blank),
+            Some(v) => {
+                if v.dims() != blank.dims() {
+                    let message = format!(
+                        "`{}` has size {}, and its value {}",
+                        f.name,
+                        size_text(blank.dims()),
+                        size_text(v.dims())
+                    );
+                    return self.fail(Code::SizeMismatch, &message, f.component.name.span);
+                }
+                let ty = blank.element_type().unwrap_or(Type::Real);
+                Some(if ty == Type::Real { v.with_type(ty) } else { v })
+            }
+        }
+    }
+
+    /// Zeros in the declared shape.
+    fn blank(&mut self, f: &Formal<'a>, value: Option<&Val>) -> Option<Val> {
+        let found = self.class_at(f.view, &f.component.class)?;
+        let one = self.blank_one(&found, f.component.name.span)?;
+        let mut dims = Vec::new();
+        for (i, s) in f.component.subscripts.iter().enumerate() {
+            dims.push(match s {
+                ast::Subscript::All(span) => match value.and_then(|v| v.dims().get(i).copied()) {
+                    Some(n) => n,
+                    None => return self.fail(Code::NoValue, "this size is not given", *span),
+                },
+                ast::Subscript::Expr(e) => match self.enumeration_range(e, f.view) {
+                    Some(all) => all.len(),
+                    None => self.known_number(e, f.view)?.0.max(0.0) as usize,
+                },
+            });
+        }
+        let inner = one.dims().to_vec();
+        if dims.is_empty() {
+            return Some(one);
+        }
+        let count: usize = dims.iter().product();
+        if count > 1_000_000 {
+            return self.fail(Code::TooLarge, "this array has more than a million elements", f.component.name.span);
+        }
+        let elements = (0..count).flat_map(|_| one.elements().to_vec()).collect();
+        Some(Val::array(dims.into_iter().chain(inner).collect(), elements))
+    }
+
+    fn blank_one(&mut self, found: &Found<'a>, span: Span) -> Option<Val> {
+        let of = |b: Builtin| match b {
+            Builtin::Real => Val::Scalar(Exprs::ZERO, Type::Real),
+            Builtin::Integer => Val::Scalar(Exprs::ZERO, Type::Integer),
+            Builtin::Boolean => Val::Scalar(Exprs::ZERO, Type::Boolean),
+            Builtin::Enumeration(i) => Val::Scalar(Exprs::ONE, Type::Enumeration(i)),
+            Builtin::String => Val::text(""),
+        };
+        match found {
+            Found::Builtin(b) => Some(of(*b)),
+            Found::Class(c) => {
+                let t = self.template(c.class, c.parent);
+                if let (Some(b), true) = (t.builtin, t.dims.is_empty()) {
+                    return Some(of(b));
+                }
+                let mut fields = Vec::new();
+                let scope = self.package(c);
+                let callee = Callee { scope, template: t, name: String::new() };
+                for f in self.formals(&callee, |_, _| true) {
+                    let value = self.blank_field(&f)?;
+                    fields.push((f.name, value));
+                }
+                Some(Val::Record(Rc::new(fields)))
+            }
+            Found::Component(..) => self.fail(Code::WrongClassKind, "a type is needed here", span),
+        }
+    }
+
+    fn blank_field(&mut self, f: &Formal<'a>) -> Option<Val> {
+        self.declared_local(f)
+    }
+}
+
+pub(super) fn is_input(c: &ast::Component, protected: bool) -> bool {
+    !protected && c.prefix.causality == Some(Causality::Input)
+}
+
+fn has_external(class: &ast::Class) -> bool {
+    matches!(&class.body, ast::ClassBody::Long(b) if b.external.is_some())
+}

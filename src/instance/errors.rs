@@ -1,0 +1,163 @@
+//! Messages of this stage.
+
+use super::lookup::{Builtin, dotted};
+use super::{Instance, View};
+use crate::diag::{Code, Diagnostic, Span};
+use crate::resolve::{ClassId, nested_classes};
+use crate::syntax::ast;
+use crate::syntax::symbol::Symbol;
+
+pub use crate::diag::nearest;
+
+/// A name cut to a length that fits in a message.
+pub fn short(name: &str) -> String {
+    if name.chars().count() <= 80 {
+        return name.to_string();
+    }
+    let head: String = name.chars().take(60).collect();
+    format!("{head}... ({} bytes)", name.len())
+}
+
+impl<'a> Instance<'a, '_> {
+    pub(super) fn unsupported(&mut self, span: Span, what: &str) {
+        self.report(
+            Diagnostic::new(Code::Unsupported, format!("{what} is not supported"))
+                .at(span, "valid Modelica that bramah cannot use yet"),
+        );
+    }
+
+    pub(super) fn unknown_class(&mut self, path: &ast::Path, class: ClassId) {
+        let inside = self.library.full_name(class);
+        self.report(
+            Diagnostic::new(Code::UnknownClass, format!("`{}` is not a class", short(&dotted(path))))
+                .at(path.span, "a class is needed here")
+                .class(inside),
+        );
+    }
+
+    pub(super) fn unknown_base(&mut self, path: &ast::Path, class: ClassId, parent: View) {
+        let part = self.lookup_path(parent, path).err().unwrap_or(0);
+        let mut names = self.class_names_around(class);
+        names.extend(self.class_names_at(parent));
+        self.unknown_class_message(path, part, &names);
+    }
+
+    pub(super) fn unknown_class_at(&mut self, view: View, path: &ast::Path, part: usize) {
+        let names = if part == 0 {
+            self.class_names_at(view)
+        } else {
+            let shorter = ast::Path { global: path.global, parts: path.parts[..part].to_vec(), span: path.span };
+            match self.lookup_path(view, &shorter) {
+                Ok(super::lookup::Found::Class(c)) => self.class_names_around(c.class),
+                _ => Vec::new(),
+            }
+        };
+        self.unknown_class_message(path, part, &names);
+    }
+
+    fn unknown_class_message(&mut self, path: &ast::Path, part: usize, names: &[Symbol]) {
+        let name = path.parts[part].name.as_str();
+        let whole = short(&dotted(path));
+        let message = if part == 0 {
+            format!("there is no class `{}`", short(name))
+        } else {
+            let before: Vec<_> = path.parts[..part].iter().map(|p| p.name.as_str()).collect();
+            format!("`{}` has no class `{}`", short(&before.join(".")), short(name))
+        };
+        let mut d = Diagnostic::new(Code::UnknownClass, message).at(path.parts[part].span, "not found");
+        if let Some(near) = nearest(name, names.iter().map(|n| n.as_str())) {
+            d = d.help(format!("did you mean `{near}`?"));
+        } else if part == 0 && name == "Modelica" || whole.starts_with("Modelica.") {
+            d = d.help("only `Modelica.Units.SI`, `Modelica.Constants` and `Modelica.Math` are built in; give other libraries with `--library DIR`");
+        } else {
+            d = d.help("check the spelling, or name the folder that holds it with `--library DIR`");
+        }
+        self.report(d);
+    }
+
+    /// Names of classes visible from a class, for suggestions.
+    fn class_names_around(&mut self, class: ClassId) -> Vec<Symbol> {
+        let mut names = Vec::new();
+        let mut at = Some(class);
+        while let Some(c) = at {
+            names.extend(nested_classes(self.library.class(c)).map(|n| n.name.name));
+            names.extend(self.library.folder_members(c));
+            at = self.library.parent(c);
+        }
+        names.extend(["Real", "Integer", "Boolean", "String"].map(Symbol::new));
+        let own: Vec<ClassId> = self.library.own.clone();
+        names.extend(own.iter().map(|&o| self.library.class(o).name.name));
+        names
+    }
+
+    fn class_names_at(&mut self, view: View) -> Vec<Symbol> {
+        let template = self.scope(view.scope).template.clone();
+        match template.bases.get(view.base as usize) {
+            Some(base) => self.class_names_around(base.class),
+            None => Vec::new(),
+        }
+    }
+
+    pub(super) fn unknown_modifier(&mut self, name: ast::Ident, class: &str, known: &[Symbol]) {
+        let mut d = Diagnostic::new(
+            Code::UnknownModifier,
+            format!("`{class}` has no element `{}` to modify", short(name.name.as_str())),
+        )
+        .at(name.span, "not an element of this class")
+        .class(class);
+        d = match nearest(name.name.as_str(), known.iter().map(|n| n.as_str())) {
+            Some(near) => d.help(format!("did you mean `{near}`?")),
+            None => d.help(list_names("it has", known)),
+        };
+        self.report(d);
+    }
+
+    pub(super) fn unknown_attribute(&mut self, name: Symbol, span: Span, builtin: Builtin) {
+        const ALL: [&str; 13] = [
+            "start",
+            "fixed",
+            "min",
+            "max",
+            "nominal",
+            "unit",
+            "displayUnit",
+            "quantity",
+            "stateSelect",
+            "unbounded",
+            "each",
+            "final",
+            "value",
+        ];
+        let ty = builtin_name(builtin);
+        let mut d =
+            Diagnostic::new(Code::UnknownModifier, format!("`{}` is not an attribute of `{ty}`", short(name.as_str())))
+                .at(span, "not known here");
+        if let Some(near) = nearest(name.as_str(), ALL) {
+            d = d.help(format!("did you mean `{near}`?"));
+        } else {
+            d = d.help("attributes are: start, fixed, min, max, nominal, unit, displayUnit, quantity, stateSelect");
+        }
+        self.report(d);
+    }
+}
+
+/// The Modelica name of a built-in type.
+pub fn builtin_name(b: Builtin) -> &'static str {
+    match b {
+        Builtin::Real => "Real",
+        Builtin::Integer => "Integer",
+        Builtin::Boolean => "Boolean",
+        Builtin::String => "String",
+        Builtin::Enumeration(_) => "enumeration",
+    }
+}
+
+/// "it has `a`, `b`, `c` and 4 more".
+pub fn list_names(intro: &str, names: &[Symbol]) -> String {
+    let shown: Vec<String> = names.iter().take(10).map(|n| format!("`{n}`")).collect();
+    match names.len() {
+        0 => format!("{intro} no elements"),
+        n if n > 10 => format!("{intro} {} and {} more", shown.join(", "), n - 10),
+        _ => format!("{intro} {}", shown.join(", ")),
+    }
+}

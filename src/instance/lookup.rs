@@ -1,0 +1,412 @@
+//! Names: from the innermost place outwards, through inherited elements, imports and enclosing classes (MLS 5.3).
+
+use super::modifiers::{Arg, ArgKind, Reached};
+use super::template::{Base, Element, Kind, Source, Template, What};
+use super::{ClassRef, ElementState, Enumeration, Inherited, Instance, NodeId, ROOT, Scope, ScopeId, View};
+use crate::diag::{Code, Diagnostic, Span};
+use crate::resolve::ClassId;
+use crate::syntax::ast::{self, ClassBody, Import};
+use crate::syntax::symbol::Symbol;
+use rustc_hash::{FxHashMap, FxHashSet};
+use std::rc::Rc;
+
+/// The types that need no declaration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the Modelica names")]
+pub enum Builtin {
+    Real,
+    Integer,
+    Boolean,
+    String,
+    /// Index into `Instance::enumerations`.
+    Enumeration(u32),
+}
+
+/// What a name means.
+#[derive(Clone)]
+pub enum Found<'a> {
+    /// An element that is a component.
+    Component(ScopeId, u32),
+    /// A class.
+    Class(ClassRef<'a>),
+    /// A built-in type.
+    Builtin(Builtin),
+}
+
+/// Enumerations that are always there.
+pub const STATE_SELECT: u32 = 0;
+/// `AssertionLevel`
+pub const ASSERTION_LEVEL: u32 = 1;
+
+/// The predefined enumerations, in the order of the constants above.
+pub fn predefined_enumerations() -> Vec<Enumeration> {
+    let make = |name: &str, literals: &[&str]| Enumeration {
+        name: name.into(),
+        literals: literals.iter().map(|l| Symbol::new(l)).collect(),
+    };
+    vec![
+        make("StateSelect", &["never", "avoid", "default", "prefer", "always"]),
+        make("AssertionLevel", &["warning", "error"]),
+    ]
+}
+
+fn builtin(name: Symbol) -> Option<Builtin> {
+    Some(match name.as_str() {
+        "Real" => Builtin::Real,
+        "Integer" => Builtin::Integer,
+        "Boolean" => Builtin::Boolean,
+        "String" => Builtin::String,
+        "StateSelect" => Builtin::Enumeration(STATE_SELECT),
+        "AssertionLevel" => Builtin::Enumeration(ASSERTION_LEVEL),
+        _ => return None,
+    })
+}
+
+impl<'a> Instance<'a, '_> {
+    /// What a simple name means at a place.
+    pub fn lookup(&mut self, mut view: View, name: Symbol) -> Option<Found<'a>> {
+        while view != ROOT {
+            let template = self.scope(view.scope).template.clone();
+            let base = &template.bases[view.base as usize];
+            if !base.short {
+                if base.names.contains(&name) {
+                    if let Some(&i) = template.by_name.get(&name) {
+                        return Some(self.found(view.scope, &template, i));
+                    }
+                }
+                if let Some(class) = self.library.child(base.class, name) {
+                    return Some(Found::Class(ClassRef { class, parent: view, args: Rc::from([]) }));
+                }
+                if let Some(found) = self.imported(base, name) {
+                    return Some(found);
+                }
+            }
+            view = if base.ast.prefixes.encapsulated { ROOT } else { base.parent };
+        }
+        self.lookup_top(name)
+    }
+
+    fn lookup_top(&mut self, name: Symbol) -> Option<Found<'a>> {
+        if let Some(b) = builtin(name) {
+            return Some(Found::Builtin(b));
+        }
+        self.library.top(name).map(|class| Found::Class(ClassRef { class, parent: ROOT, args: Rc::from([]) }))
+    }
+
+    fn imported(&mut self, base: &Base<'a>, name: Symbol) -> Option<Found<'a>> {
+        for import in &base.imports {
+            let found = match import {
+                Import::Single { alias, path } => {
+                    let known = alias.as_ref().or(path.parts.last()).map(|i| i.name);
+                    if known == Some(name) { self.lookup_full(&path.parts, None) } else { None }
+                }
+                Import::Some(path, names) if names.iter().any(|n| n.name == name) => {
+                    self.lookup_full(&path.parts, Some(name))
+                }
+                Import::Some(..) => None,
+                Import::All(path) => self.lookup_full(&path.parts, Some(name)),
+            };
+            if found.is_some() {
+                return found;
+            }
+        }
+        None
+    }
+
+    fn lookup_full(&mut self, parts: &[ast::Ident], last: Option<Symbol>) -> Option<Found<'a>> {
+        let mut found = self.lookup_top(parts[0].name)?;
+        for name in parts[1..].iter().map(|p| p.name).chain(last) {
+            found = self.member(&found, name)?;
+        }
+        Some(found)
+    }
+
+    /// The meaning of an element: its class, or the component itself.
+    fn found(&mut self, scope: ScopeId, template: &Template<'a>, index: u32) -> Found<'a> {
+        match template.elements[index as usize].kind {
+            Kind::Component(_) => Found::Component(scope, index),
+            Kind::Class(_) => Found::Class(self.class_element(scope, index)),
+        }
+    }
+
+    /// A class element of an instance, redeclarations considered.
+    fn class_element(&mut self, scope: ScopeId, index: u32) -> ClassRef<'a> {
+        if let ElementState::Class(found) = &self.scope(scope).elements[index as usize] {
+            return found.clone();
+        }
+        let reached = self.reached(scope, index);
+        let template = self.scope(scope).template.clone();
+        let element = &template.elements[index as usize];
+        let Kind::Class(declared) = element.kind else { unreachable!("the caller found a class") };
+        let own = View { scope, base: element.base };
+        let (ast, parent) = match reached.redeclare {
+            Some((ArgKind::Class(c), view, ..)) => (c, view),
+            _ => (declared, own),
+        };
+        let textual = template.bases[element.base as usize].class;
+        let class = self.library.enter(ast, Some(textual));
+        let mut args = reached.args;
+        if let Some(m) = declared.constraint.as_ref().and_then(|c| c.modification.as_ref()) {
+            let none: Rc<[_]> = Rc::from([]);
+            args.extend(m.arguments.iter().filter_map(|a| Arg::new(a, own, &none, false)));
+        }
+        let found = ClassRef { class, parent, args: args.into() };
+        self.scope_mut(scope).elements[index as usize] = ElementState::Class(found.clone());
+        found
+    }
+
+    /// A member of something found: a class in a package, a constant, an inherited class.
+    pub fn member(&mut self, found: &Found<'a>, name: Symbol) -> Option<Found<'a>> {
+        let Found::Class(class) = found else { return None };
+        let scope = self.package(class);
+        let template = self.scope(scope).template.clone();
+        if let Some(&i) = template.by_name.get(&name) {
+            return Some(self.found(scope, &template, i));
+        }
+        for (base, view) in template.bases.iter().zip(0u32..) {
+            if let Some(child) = self.library.child(base.class, name) {
+                let parent = View { scope, base: view };
+                return Some(Found::Class(ClassRef { class: child, parent, args: Rc::from([]) }));
+            }
+        }
+        None
+    }
+
+    /// What a dotted name means; the error is the number of the part that is not known.
+    ///
+    /// # Errors
+    /// The index of the first part that means nothing.
+    pub fn lookup_path(&mut self, view: View, path: &ast::Path) -> Result<Found<'a>, usize> {
+        let first = path.parts[0].name;
+        let start = if path.global { self.lookup_top(first) } else { self.lookup(view, first) };
+        let mut found = start.ok_or(0usize)?;
+        for (i, part) in path.parts.iter().enumerate().skip(1) {
+            found = self.member(&found, part.name).ok_or(i)?;
+        }
+        Ok(found)
+    }
+
+    /// A class by path, or a message.
+    pub fn class_at(&mut self, view: View, path: &'a ast::Path) -> Option<Found<'a>> {
+        match self.lookup_path(view, path) {
+            Ok(Found::Component(..)) => {
+                let name = dotted(path);
+                self.report(
+                    Diagnostic::new(Code::WrongClassKind, format!("`{name}` is a component, not a class"))
+                        .at(path.span, "a class is needed here"),
+                );
+                None
+            }
+            Ok(found) => Some(found),
+            Err(part) => {
+                self.unknown_class_at(view, path, part);
+                None
+            }
+        }
+    }
+
+    /// The base class named in an `extends` clause or short class: looked up beside and around the class, not in what
+    /// it inherits.
+    pub(super) fn find_base(&mut self, class: ClassId, parent: View, path: &ast::Path) -> Option<Found<'a>> {
+        let own = !path.global && matches!(self.library.class(class).body, ClassBody::Long(_));
+        if own {
+            let bare = self.bare_scope(class, parent);
+            return self.lookup_path(View { scope: bare, base: 0 }, path).ok();
+        }
+        self.lookup_path(parent, path).ok()
+    }
+
+    /// A scope that knows only the classes and imports written in a class itself.
+    fn bare_scope(&mut self, class: ClassId, parent: View) -> ScopeId {
+        let ast = self.library.class(class);
+        let ClassBody::Long(body) = &ast.body else { unreachable!("the caller checked") };
+        let mut base = Base {
+            class,
+            ast,
+            parent,
+            names: FxHashSet::default(),
+            imports: Vec::new(),
+            short: false,
+            broken_connects: Vec::new(),
+        };
+        let mut elements = Vec::new();
+        for e in &body.elements {
+            match &e.kind {
+                ast::ElementKind::Import(i) => base.imports.push(i),
+                ast::ElementKind::Class(c) if !c.prefixes.redeclare => {
+                    self.library.enter(c, Some(class));
+                    base.names.insert(c.name.name);
+                    elements.push(Element {
+                        name: c.name.name,
+                        kind: Kind::Class(c),
+                        base: 0,
+                        modified: Vec::new(),
+                        protected: e.protected,
+                        span: e.span,
+                    });
+                }
+                _ => {}
+            }
+        }
+        let by_name: FxHashMap<_, _> = elements.iter().map(|e| e.name).zip(0u32..).collect();
+        let template = Template {
+            class,
+            bases: vec![base],
+            elements,
+            by_name,
+            builtin: None,
+            builtin_args: Vec::new(),
+            dims: Vec::new(),
+            prefix: ast::TypePrefix::default(),
+            kind: ast.kind,
+            broken: false,
+        };
+        let name = self.library.full_name(class);
+        self.new_scope(Rc::new(template), name, Rc::from([]), None, ast.name.span)
+    }
+
+    pub(super) fn new_scope(
+        &mut self,
+        template: Rc<Template<'a>>,
+        name: String,
+        args: Rc<[Arg<'a>]>,
+        owner: Option<ScopeId>,
+        span: Span,
+    ) -> ScopeId {
+        let elements = vec![ElementState::Unknown; template.elements.len()];
+        let prefix = Inherited::default();
+        self.scopes.push(Scope {
+            template,
+            name,
+            args,
+            binding: None,
+            owner,
+            elements,
+            prefix,
+            span,
+            component: false,
+        });
+        ScopeId(u32::try_from(self.scopes.len() - 1).expect("fewer than 2^32 instances"))
+    }
+
+    /// The scope of a package, or of a class used as one.
+    pub fn package(&mut self, class: &ClassRef<'a>) -> ScopeId {
+        let key = (class.class, class.parent);
+        if class.args.is_empty() {
+            if let Some(&scope) = self.packages.get(&key) {
+                return scope;
+            }
+        } else if let Some(&(_, scope)) =
+            self.dynamic_packages.iter().find(|(c, _)| (c.class, c.parent) == key && Rc::ptr_eq(&c.args, &class.args))
+        {
+            return scope;
+        }
+        let template = self.template(class.class, class.parent);
+        let name = self.library.full_name(class.class);
+        let span = self.library.class(class.class).name.span;
+        let scope = self.new_scope(template, name, class.args.clone(), None, span);
+        if class.args.is_empty() {
+            self.packages.insert(key, scope);
+        } else {
+            self.dynamic_packages.push((class.clone(), scope));
+        }
+        scope
+    }
+
+    /// The enumeration type of a class.
+    pub(super) fn enumeration(&mut self, class: ClassId) -> u32 {
+        if let Some(&i) = self.enumeration_index.get(&class) {
+            return i;
+        }
+        let literals = match &self.library.class(class).body {
+            ClassBody::Enumeration(Some(literals)) => literals.iter().map(|l| l.name.name).collect(),
+            _ => Vec::new(),
+        };
+        let name = self.library.full_name(class);
+        self.enumerations.push(Enumeration { name, literals });
+        let i = u32::try_from(self.enumerations.len() - 1).expect("fewer than 2^32 types");
+        self.enumeration_index.insert(class, i);
+        i
+    }
+
+    /// All modifications that reach an element, and its value.
+    pub fn reached(&mut self, scope: ScopeId, index: u32) -> Reached<'a> {
+        let s = self.scope(scope);
+        let template = s.template.clone();
+        let element = &template.elements[index as usize];
+        let mut reached = Reached::default();
+        let args = s.args.clone();
+        let binding = s.binding.clone();
+        let mut outer: Option<Span> = None;
+        for arg in args.iter().filter(|a| a.target() == element.name) {
+            reached.take(arg);
+            outer = outer.or(Some(arg.span));
+        }
+        if let (Some(b), Kind::Component(_), None) = (&binding, element.kind, &reached.binding) {
+            let access = b.access.iter().copied().chain([super::modifiers::Access::Field(element.name)]).collect();
+            reached.binding = Some(super::modifiers::Binding { access, ..b.clone() });
+        }
+        let none: Rc<[_]> = Rc::from([]);
+        for source in &element.modified {
+            let view = View { scope, base: source.base };
+            let Some(arg) = source_arg(source, view, &none) else { continue };
+            self.check_final(arg.final_, outer, arg.span, element.name);
+            reached.take(&arg);
+            outer = outer.or(Some(arg.span));
+        }
+        if let Kind::Component(c) = element.kind {
+            self.check_final(c.prefixes.final_, outer, c.name.span, element.name);
+            let redeclared = matches!(reached.redeclare, Some((ArgKind::Component(_), ..)));
+            let constraint = c.constraint.as_ref().and_then(|k| k.modification.as_ref());
+            let view = View { scope, base: element.base };
+            if let Some(m) = constraint {
+                reached.modification(m, view, &none, false, false, element.span);
+            }
+            if let Some(m) = c.modification.as_ref().filter(|_| !(redeclared && c.constraint.is_some())) {
+                reached.modification(m, view, &none, false, c.prefixes.final_, element.span);
+            }
+        }
+        reached
+    }
+
+    fn check_final(&mut self, final_: bool, outer: Option<Span>, span: Span, name: Symbol) {
+        if let (true, Some(outer)) = (final_, outer) {
+            self.report(
+                Diagnostic::new(Code::FinalModified, format!("`{name}` is final and cannot be modified"))
+                    .at(outer, "modified here")
+                    .at(span, "declared `final` here")
+                    .help("remove the modifier, or the `final`"),
+            );
+        }
+    }
+
+    /// The component that an `outer` element means: the nearest `inner` of that name above.
+    pub(super) fn inner_of(&mut self, scope: ScopeId, name: Symbol) -> Option<NodeId> {
+        let mut at = self.scope(scope).owner;
+        while let Some(owner) = at {
+            let template = self.scope(owner).template.clone();
+            if let Some(&i) = template.by_name.get(&name) {
+                if matches!(template.elements[i as usize].kind, Kind::Component(c) if c.prefixes.inner) {
+                    return self.component(owner, i);
+                }
+            }
+            at = self.scope(owner).owner;
+        }
+        self.inner_declared.get(&(self.root, name)).copied()
+    }
+}
+
+/// A modification by a base class as an argument.
+fn source_arg<'a>(source: &Source<'a>, view: View, none: &Rc<[super::modifiers::Access]>) -> Option<Arg<'a>> {
+    let made = |kind, span| Arg { kind, view, access: none.clone(), each: false, final_: false, span };
+    match source.what {
+        What::Argument(a) => Arg::new(a, view, none, false),
+        What::Component(c) => Some(made(ArgKind::Component(c), c.name.span)),
+        What::Class(c) => Some(made(ArgKind::Class(c), c.name.span)),
+    }
+}
+
+/// A dotted name as text.
+pub fn dotted(path: &ast::Path) -> String {
+    path.parts.iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(".")
+}

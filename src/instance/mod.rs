@@ -1,0 +1,280 @@
+//! From a class to the component tree with its modifiers: every scalar variable, with its attributes still as written.
+//!
+//! [`instantiate`] builds the tree; [`Instance`] is also the place where expressions are evaluated, because names have
+//! a meaning only inside an instance. The files: [`template`] (what a class holds, inherited elements included),
+//! [`modifiers`] (which modifier reaches which element), [`lookup`] (names), [`build`] (components), [`value`] and
+//! [`evaluate`] (expressions), [`builtin`], [`call`] and [`algorithm`] (functions).
+
+pub mod algorithm;
+pub mod build;
+pub mod builtin;
+pub mod call;
+mod errors;
+pub mod evaluate;
+pub mod lookup;
+pub mod modifiers;
+mod procedure;
+pub mod reference;
+pub mod template;
+pub mod value;
+
+pub use build::{ModelRequest, Override, instantiate};
+
+use crate::diag::{Diagnostic, Span};
+use crate::expr::{ExprId, Exprs, VarId};
+use crate::flat::{StateSelect, Type, Variability};
+use crate::resolve::{ClassId, Library};
+use crate::syntax::ast;
+use crate::syntax::symbol::Symbol;
+use modifiers::{Arg, Binding};
+use rustc_hash::FxHashMap;
+use std::rc::Rc;
+use template::Template;
+use value::Val;
+
+/// Index of a [`Scope`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct ScopeId(pub u32);
+
+/// Index of a [`Node`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct NodeId(pub u32);
+
+/// Where names are looked up: in an instance, as seen from one of the classes it is made of.
+///
+/// Base 0 is the instance's own class; the others are the classes it extends. A name written in a base class means an
+/// element of the instance if that base knows it, else something around the base class.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct View {
+    /// The instance.
+    pub scope: ScopeId,
+    /// The base class: index into `Template::bases`.
+    pub base: u32,
+}
+
+/// The scope of top-level names.
+pub const ROOT: View = View { scope: ScopeId(0), base: 0 };
+
+/// A class as found by name: the text, where it stands, and what modifies it.
+#[derive(Clone)]
+pub struct ClassRef<'a> {
+    /// The class.
+    pub class: ClassId,
+    /// Where names in it are looked up after its own elements.
+    pub parent: View,
+    /// Modifications, outermost first (of a redeclared or replaceable class).
+    pub args: Rc<[Arg<'a>]>,
+}
+
+/// An instance of a class: a component, a package or a function's body.
+pub struct Scope<'a> {
+    /// What the class holds.
+    pub template: Rc<Template<'a>>,
+    /// Full dotted name of the component, class name of a package.
+    pub name: String,
+    /// Modifications of elements, outermost first.
+    pub args: Rc<[Arg<'a>]>,
+    /// Value of the whole instance, for records.
+    pub binding: Option<Binding<'a>>,
+    /// The instance it is a component of.
+    pub owner: Option<ScopeId>,
+    /// The state of each element.
+    pub elements: Vec<ElementState<'a>>,
+    /// Inherited prefixes.
+    pub prefix: Inherited,
+    /// Where the component is declared.
+    pub span: Span,
+    /// True for component instances, false for packages and functions.
+    pub component: bool,
+}
+
+/// What an element of a scope has become so far.
+#[derive(Clone)]
+pub enum ElementState<'a> {
+    /// Not looked at yet.
+    Unknown,
+    /// Being built; meeting it again means a circle.
+    Busy,
+    /// A component.
+    Node(NodeId),
+    /// A conditional component that is not there.
+    Absent,
+    /// A class.
+    Class(ClassRef<'a>),
+}
+
+/// A component, an array of components, or a scalar variable.
+#[derive(Clone, Debug)]
+pub enum Node {
+    /// A scalar variable: index into `Instance::variables`.
+    Var(u32),
+    /// An instance of a class.
+    Object(ScopeId),
+    /// An array. Elements in row-major order.
+    Array {
+        /// Sizes.
+        dims: Vec<usize>,
+        /// Elements.
+        elements: Vec<NodeId>,
+    },
+}
+
+/// Prefixes that a component passes on to its elements.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Inherited {
+    /// parameter, constant, discrete
+    pub variability: Option<ast::Variability>,
+    /// input, output
+    pub causality: Option<ast::Causality>,
+    /// Inside a protected element.
+    pub hidden: bool,
+    /// Below a component that is not at the top level.
+    pub nested: bool,
+}
+
+/// A scalar variable with its attributes as written.
+pub struct VarData<'a> {
+    /// Full name.
+    pub name: String,
+    /// Type.
+    pub ty: Type,
+    /// True for String parameters, which have no place in the flat model.
+    pub string: bool,
+    /// Declared variability; `Continuous` when nothing is said.
+    pub variability: Variability,
+    /// input, output
+    pub causality: Option<ast::Causality>,
+    /// A top-level input or output.
+    pub top: bool,
+    /// `flow`
+    pub flow: bool,
+    /// protected or hidden
+    pub hidden: bool,
+    /// Final, so not to be set from outside.
+    pub final_: bool,
+    /// Its value was needed to build the model.
+    pub structural: bool,
+    /// `= value`
+    pub binding: Option<Binding<'a>>,
+    /// start, fixed, min, max, nominal, unit, ... as written, outermost first.
+    pub attributes: Vec<(Symbol, Binding<'a>)>,
+    /// stateSelect
+    pub state_select: StateSelect,
+    /// Description.
+    pub description: Option<&'a str>,
+    /// Place of the declaration.
+    pub span: Span,
+    /// The instance that holds it.
+    pub scope: ScopeId,
+    /// Value as far as it had to be known.
+    pub constant: Option<Result<Val, ()>>,
+    /// Being evaluated.
+    pub busy: bool,
+    /// Number in the flat model, given after the tree is complete.
+    pub id: VarId,
+}
+
+/// An enumeration type.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Enumeration {
+    /// Full name.
+    pub name: String,
+    /// Literals.
+    pub literals: Vec<Symbol>,
+}
+
+/// The component tree of one model, and everything needed to evaluate expressions in it.
+pub struct Instance<'a, 'l> {
+    /// Where classes come from.
+    pub library: &'l mut Library<'a>,
+    /// Instances; 0 is the scope of top-level names, 1 the model.
+    pub scopes: Vec<Scope<'a>>,
+    /// Components.
+    pub nodes: Vec<Node>,
+    /// Scalar variables in the order in which they were met.
+    pub variables: Vec<VarData<'a>>,
+    /// Variables in declaration order: `VarId` -> index into `variables`.
+    pub order: Vec<u32>,
+    /// All expressions.
+    pub exprs: Exprs,
+    /// Enumeration types.
+    pub enumerations: Vec<Enumeration>,
+    enumeration_index: FxHashMap<ClassId, u32>,
+    /// The model itself.
+    pub root: ScopeId,
+    /// Messages so far.
+    pub diagnostics: Vec<Diagnostic>,
+    templates: FxHashMap<(ClassId, View), Rc<Template<'a>>>,
+    packages: FxHashMap<(ClassId, View), ScopeId>,
+    dynamic_packages: Vec<(ClassRef<'a>, ScopeId)>,
+    array_values: FxHashMap<(*const ast::Expr, View, bool), Val>,
+    inner_declared: FxHashMap<(ScopeId, Symbol), NodeId>,
+    procedures: FxHashMap<String, (crate::expr::FunctionId, Vec<Val>)>,
+    variabilities: Vec<Variability>,
+    eval: evaluate::State,
+}
+
+impl<'a> Instance<'a, '_> {
+    /// The instance behind an id.
+    pub fn scope(&self, id: ScopeId) -> &Scope<'a> {
+        &self.scopes[id.0 as usize]
+    }
+
+    fn scope_mut(&mut self, id: ScopeId) -> &mut Scope<'a> {
+        &mut self.scopes[id.0 as usize]
+    }
+
+    /// The component behind an id.
+    pub fn node(&self, id: NodeId) -> &Node {
+        &self.nodes[id.0 as usize]
+    }
+
+    fn add_node(&mut self, node: Node) -> NodeId {
+        self.nodes.push(node);
+        NodeId(u32::try_from(self.nodes.len() - 1).expect("fewer than 2^32 components"))
+    }
+
+    /// The scalar variable behind a number of the flat model.
+    pub fn variable(&self, id: VarId) -> &VarData<'a> {
+        &self.variables[self.order[id.index()] as usize]
+    }
+
+    fn report(&mut self, diagnostic: Diagnostic) {
+        self.diagnostics.push(diagnostic);
+    }
+
+    /// When an expression may change.
+    pub fn variability(&mut self, e: ExprId) -> Variability {
+        use crate::expr::Node as N;
+        while self.variabilities.len() <= e.index() {
+            let id = ExprId(u32::try_from(self.variabilities.len()).expect("fewer than 2^32 nodes"));
+            let v = match self.exprs.node(id) {
+                N::Num(_) => Variability::Constant,
+                N::Time | N::Der(_) => Variability::Continuous,
+                N::Var(v) => self.leaf_variability(v),
+                N::Pre(_) | N::Sample(..) | N::Initial | N::Terminal => Variability::Discrete,
+                N::EventRel(..) | N::EventFloor(_) => {
+                    let below = self.operand_variability(id);
+                    below.min(Variability::Discrete)
+                }
+                _ => self.operand_variability(id),
+            };
+            self.variabilities.push(v);
+        }
+        self.variabilities[e.index()]
+    }
+
+    fn leaf_variability(&self, v: VarId) -> Variability {
+        // Numbers past the flat variables are locals of a function being translated.
+        if v.index() >= self.order.len() {
+            return Variability::Continuous;
+        }
+        let data = self.variable(v);
+        if data.ty != Type::Real { data.variability.min(Variability::Discrete) } else { data.variability }
+    }
+
+    fn operand_variability(&self, e: ExprId) -> Variability {
+        let operands = self.exprs.operands(e);
+        operands.as_slice().iter().map(|o| self.variabilities[o.index()]).max().unwrap_or(Variability::Constant)
+    }
+}

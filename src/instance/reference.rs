@@ -1,0 +1,753 @@
+//! Component references: `a.b[i].c` to the variables it means.
+
+use super::errors::{list_names, nearest, short};
+use super::evaluate::{Pick, QUANTITY};
+use super::lookup::{Builtin, Found};
+use super::template::Kind;
+use super::value::Val;
+use super::{ElementState, Instance, Node, NodeId, ScopeId, View};
+use crate::diag::{Code, Diagnostic, Span};
+use crate::flat::{Type, Variability};
+use crate::syntax::ast::{ClassKind, ExprKind, Reference, ReferencePart};
+use crate::syntax::symbol::Symbol;
+use std::rc::Rc;
+
+/// Components picked by a reference: with dimensions when arrays are passed through.
+#[derive(Clone, Debug)]
+pub struct Selection {
+    /// Sizes of the arrays passed through.
+    pub dims: Vec<usize>,
+    /// How many of the sizes, counted from the last, belong to the component named last.
+    pub own: usize,
+    /// The components, row-major.
+    pub nodes: Vec<NodeId>,
+}
+
+impl<'a> Instance<'a, '_> {
+    /// A loop variable or local of the function being evaluated.
+    pub(super) fn local(&self, name: Symbol) -> Option<usize> {
+        let frame = self.eval.frame;
+        let found = self.eval.locals[frame..].iter().rposition(|(n, _)| *n == name).map(|i| i + frame);
+        found.filter(|i| !(self.eval.before && self.eval.section.contains(i)))
+    }
+
+    /// The value of a reference.
+    pub(super) fn reference(&mut self, r: &'a Reference, view: View) -> Option<Val> {
+        let first = &r.parts[0];
+        if !r.global {
+            if let Some(i) = self.local(first.name.name) {
+                let value = self.eval.locals[i].1.clone();
+                return self.local_part(value, r, view);
+            }
+            if r.parts.len() == 1 && first.name.name == "time" {
+                return self.time(r.span);
+            }
+        }
+        match self.start(r, view)? {
+            Found::Component(scope, index) => {
+                let node = self.element_node(scope, index, r)?;
+                self.select_value(node, r, 0, view)
+            }
+            Found::Class(class) => self.class_value(Found::Class(class), r, view),
+            Found::Builtin(b) => self.class_value(Found::Builtin(b), r, view),
+        }
+    }
+
+    fn time(&mut self, span: Span) -> Option<Val> {
+        if self.eval.constant {
+            return self.fail(Code::NotConstant, "`time` is not known before the run", span);
+        }
+        Some(Val::Scalar(self.exprs.time(), Type::Real))
+    }
+
+    /// Fields and indices of a local.
+    fn local_part(&mut self, mut value: Val, r: &'a Reference, view: View) -> Option<Val> {
+        value = self.subscript(value, &r.parts[0].subscripts, view, r.span)?;
+        for part in &r.parts[1..] {
+            value = self.field(&value, part.name.name, part.name.span)?;
+            value = self.subscript(value, &part.subscripts, view, r.span)?;
+        }
+        Some(value)
+    }
+
+    /// A field of a record, or of every record of an array.
+    pub(super) fn field(&mut self, value: &Val, name: Symbol, span: Span) -> Option<Val> {
+        match value {
+            Val::Record(fields) => match fields.iter().find(|(n, _)| *n == name) {
+                Some((_, v)) => Some(v.clone()),
+                None => {
+                    let names: Vec<Symbol> = fields.iter().map(|(n, _)| *n).collect();
+                    self.unknown_name(name, span, &names);
+                    None
+                }
+            },
+            Val::Array { dims, elements } => {
+                let parts: Option<Vec<Val>> = elements.iter().map(|v| self.field(v, name, span)).collect();
+                let parts = parts?;
+                let inner = parts.first().map_or(Vec::new(), |v| v.dims().to_vec());
+                let all: Vec<Val> = parts.iter().flat_map(|v| v.elements().to_vec()).collect();
+                Some(Val::array(dims.iter().copied().chain(inner).collect(), all))
+            }
+            _ => self.fail(Code::UnknownName, &format!("{} has no field `{name}`", value.describe()), span),
+        }
+    }
+
+    /// What the first part of a reference means, or a message.
+    fn start(&mut self, r: &Reference, view: View) -> Option<Found<'a>> {
+        let name = r.parts[0].name;
+        let found = if r.global { self.lookup(super::ROOT, name.name) } else { self.lookup(view, name.name) };
+        if found.is_none() {
+            let names = self.visible_names(view);
+            self.unknown_name(name.name, name.span, &names);
+        }
+        found
+    }
+
+    pub(super) fn unknown_name(&mut self, name: Symbol, span: Span, names: &[Symbol]) {
+        let mut d = Diagnostic::new(Code::UnknownName, format!("there is no `{}` here", short(name.as_str())))
+            .at(span, "not found");
+        d = match nearest(name.as_str(), names.iter().map(|n| n.as_str())) {
+            Some(near) => d.help(format!("did you mean `{near}`?")),
+            None => d.help(list_names("known here are", names)),
+        };
+        self.report(d);
+    }
+
+    fn visible_names(&self, view: View) -> Vec<Symbol> {
+        let frame = self.eval.frame;
+        let mut names: Vec<Symbol> = self.eval.locals[frame..].iter().map(|(n, _)| *n).collect();
+        names.extend(self.scope(view.scope).template.elements.iter().map(|e| e.name));
+        names
+    }
+
+    /// The node of an element, with a message when it is absent.
+    fn element_node(&mut self, scope: ScopeId, index: u32, r: &Reference) -> Option<NodeId> {
+        let busy = matches!(self.scope(scope).elements[index as usize], ElementState::Busy);
+        if let Some(node) = self.component(scope, index) {
+            return Some(node);
+        }
+        let name = self.scope(scope).template.elements[index as usize].name;
+        if busy {
+            self.report(
+                Diagnostic::new(Code::CyclicParameter, format!("`{name}` is needed to build itself"))
+                    .at(r.span, "used here while its size or condition is being found"),
+            );
+        } else if !self.diagnostics.iter().any(Diagnostic::is_error) {
+            self.report(
+                Diagnostic::new(Code::UnknownName, format!("the conditional component `{name}` is not there"))
+                    .at(r.span, "its condition is false")
+                    .help("use it only in `connect`, which vanishes with it, or under the same condition"),
+            );
+        }
+        None
+    }
+
+    /// A node as a selection.
+    pub fn selection(&self, node: NodeId) -> Selection {
+        match self.node(node) {
+            Node::Array { dims, elements } => {
+                Selection { dims: dims.clone(), own: dims.len(), nodes: elements.clone() }
+            }
+            _ => Selection { dims: Vec::new(), own: 0, nodes: vec![node] },
+        }
+    }
+
+    /// Follows a reference from a component; `part` is the part that named it.
+    fn select_value(&mut self, node: NodeId, r: &'a Reference, part: usize, view: View) -> Option<Val> {
+        let mut at = self.selection(node);
+        for (i, p) in r.parts.iter().enumerate().skip(part) {
+            if i > part {
+                match self.descend(&at, p) {
+                    Descent::Nodes(next) => at = next,
+                    Descent::Class(found) => {
+                        let rest = Reference { global: false, parts: r.parts[i..].to_vec(), span: r.span };
+                        return self.class_tail(found, &rest, view);
+                    }
+                    Descent::Failed => return None,
+                }
+            }
+            if !p.subscripts.is_empty() {
+                match self.subscript_selection(&at, p, view, r.span)? {
+                    Ok(next) => at = next,
+                    // An index known at run time only: continue with values.
+                    Err(()) => return self.dynamic_selection(&at, r, i, view),
+                }
+            }
+        }
+        self.selection_value(&at, r.span)
+    }
+
+    fn dynamic_selection(&mut self, at: &Selection, r: &'a Reference, part: usize, view: View) -> Option<Val> {
+        let mut value = self.selection_value(at, r.span)?;
+        value = self.subscript(value, &r.parts[part].subscripts, view, r.span)?;
+        for p in &r.parts[part + 1..] {
+            value = self.field(&value, p.name.name, p.name.span)?;
+            value = self.subscript(value, &p.subscripts, view, r.span)?;
+        }
+        Some(value)
+    }
+
+    fn subscript_selection(
+        &mut self,
+        at: &Selection,
+        p: &'a ReferencePart,
+        view: View,
+        span: Span,
+    ) -> Option<Result<Selection, ()>> {
+        if p.subscripts.len() > at.own {
+            let message = if at.own == 0 {
+                format!("`{}` is not an array", p.name.name)
+            } else {
+                format!("`{}` has {} dimensions, not {}", p.name.name, at.own, p.subscripts.len())
+            };
+            return self.fail(Code::BadIndex, &message, span);
+        }
+        // Indices belong to the component just named: the last dimensions came with it.
+        let own = at.dims.len() - at.own;
+        let mut picks: Vec<Pick> = at.dims[..own].iter().map(|&n| Pick::Many((0..n).collect())).collect();
+        for (s, &size) in p.subscripts.iter().zip(&at.dims[own..]) {
+            match self.index(s, size, view, span)? {
+                Pick::Symbolic(_) => return Some(Err(())),
+                known => picks.push(known),
+            }
+        }
+        picks.extend(at.dims[picks.len()..].iter().map(|&n| Pick::Many((0..n).collect())));
+        let indices: Vec<Val> = (0..at.nodes.len()).map(|i| self.integer(i as f64)).collect();
+        let chosen = super::evaluate::pick(&at.dims, &indices, &picks);
+        let number = |v: &Val| v.as_number(&self.exprs).map_or(0, |x| x as usize);
+        let nodes = chosen.elements().iter().map(|v| at.nodes[number(v)]).collect();
+        Some(Ok(Selection { dims: chosen.dims().to_vec(), own: 0, nodes }))
+    }
+
+    /// One step down: a component or class inside the selected components.
+    fn descend(&mut self, at: &Selection, p: &ReferencePart) -> Descent<'a> {
+        let name = p.name.name;
+        let mut nodes = Vec::new();
+        let mut inner: Option<Vec<usize>> = None;
+        for &node in &at.nodes {
+            let Node::Object(scope) = *self.node(node) else {
+                let whole = self.node_name(node);
+                self.report(
+                    Diagnostic::new(Code::UnknownName, format!("`{whole}` has no element `{}`", short(name.as_str())))
+                        .at(p.name.span, "it is a simple variable"),
+                );
+                return Descent::Failed;
+            };
+            let template = self.scope(scope).template.clone();
+            let Some(&i) = template.by_name.get(&name) else {
+                self.unknown_member(scope, name, p.name.span);
+                return Descent::Failed;
+            };
+            if matches!(template.elements[i as usize].kind, Kind::Class(_)) {
+                let owner = View { scope, base: 0 };
+                return match self.lookup(owner, name) {
+                    Some(found) => Descent::Class(found),
+                    None => Descent::Failed,
+                };
+            }
+            let child = match self.component(scope, i) {
+                Some(c) => c,
+                None => {
+                    if !self.diagnostics.iter().any(Diagnostic::is_error) {
+                        let whole = self.scope(scope).name.clone();
+                        self.report(
+                            Diagnostic::new(
+                                Code::UnknownName,
+                                format!("the conditional component `{name}` of `{whole}` is not there"),
+                            )
+                            .at(p.name.span, "its condition is false"),
+                        );
+                    }
+                    return Descent::Failed;
+                }
+            };
+            let chosen = self.selection(child);
+            if inner.as_ref().is_some_and(|d| *d != chosen.dims) {
+                self.fail::<()>(
+                    Code::SizeMismatch,
+                    "the elements of this array have parts of different sizes",
+                    p.name.span,
+                );
+                return Descent::Failed;
+            }
+            inner = Some(chosen.dims);
+            nodes.extend(chosen.nodes);
+        }
+        let inner = inner.unwrap_or_default();
+        let own = inner.len();
+        let dims = at.dims.iter().copied().chain(inner).collect();
+        Descent::Nodes(Selection { dims, own, nodes })
+    }
+
+    fn unknown_member(&mut self, scope: ScopeId, name: Symbol, span: Span) {
+        let s = self.scope(scope);
+        let template = s.template.clone();
+        let instance = s.name.clone();
+        let class = self.library.full_name(template.class);
+        let names: Vec<Symbol> = template.elements.iter().filter(|e| !e.protected).map(|e| e.name).collect();
+        let mut d = Diagnostic::new(Code::UnknownName, format!("`{instance}` has no `{}`", short(name.as_str())))
+            .at(span, format!("`{class}` has no element of this name"))
+            .instance(instance)
+            .class(class);
+        d = match nearest(name.as_str(), names.iter().map(|n| n.as_str())) {
+            Some(near) => d.help(format!("did you mean `{near}`?")),
+            None => d.help(list_names("it has", &names)),
+        };
+        self.report(d);
+    }
+
+    /// The name of a component as the user knows it.
+    pub fn node_name(&self, node: NodeId) -> String {
+        match self.node(node) {
+            Node::Var(i) => self.variables[*i as usize].name.clone(),
+            Node::Object(s) => self.scope(*s).name.clone(),
+            Node::Array { elements, .. } => {
+                let first = elements.first().map_or(String::new(), |&e| self.node_name(e));
+                first.rsplit_once('[').map_or(first.clone(), |(head, _)| head.to_string())
+            }
+        }
+    }
+
+    /// The value of a class reference: a constant of a package, a literal of an enumeration.
+    fn class_value(&mut self, mut found: Found<'a>, r: &'a Reference, view: View) -> Option<Val> {
+        for (i, part) in r.parts.iter().enumerate().skip(1) {
+            if let Some(v) = self.literal(&found, part.name.name) {
+                return Some(v);
+            }
+            match self.member(&found, part.name.name) {
+                Some(Found::Component(scope, index)) => {
+                    let node = self.element_node(scope, index, r)?;
+                    return self.package_constant(node, r, i, view);
+                }
+                Some(next) => found = next,
+                None => {
+                    self.unknown_in_class(&found, part);
+                    return None;
+                }
+            }
+        }
+        self.fail(Code::WrongClassKind, "this is a class, and a value is needed here", r.span)
+    }
+
+    /// The rest of a reference that reached a class inside a component.
+    fn class_tail(&mut self, mut found: Found<'a>, r: &Reference, _view: View) -> Option<Val> {
+        for part in &r.parts[1..] {
+            if let Some(v) = self.literal(&found, part.name.name) {
+                return Some(v);
+            }
+            match self.member(&found, part.name.name)? {
+                Found::Component(scope, index) => {
+                    let node = self.element_node(scope, index, r)?;
+                    let at = self.selection(node);
+                    return self.by_value(|s| s.selection_value(&at, r.span));
+                }
+                next => found = next,
+            }
+        }
+        self.fail(Code::WrongClassKind, "this is a class, and a value is needed here", r.span)
+    }
+
+    fn package_constant(&mut self, node: NodeId, r: &'a Reference, part: usize, view: View) -> Option<Val> {
+        self.by_value(|s| s.select_value(node, r, part, view))
+    }
+
+    fn by_value<T>(&mut self, f: impl FnOnce(&mut Self) -> T) -> T {
+        let before = std::mem::replace(&mut self.eval.constant, true);
+        let value = f(self);
+        self.eval.constant = before;
+        value
+    }
+
+    fn literal(&mut self, found: &Found<'a>, name: Symbol) -> Option<Val> {
+        let builtin = match found {
+            Found::Builtin(b) => *b,
+            Found::Class(c) => self.template(c.class, c.parent).builtin?,
+            Found::Component(..) => return None,
+        };
+        let Builtin::Enumeration(i) = builtin else { return None };
+        let k = self.enumerations[i as usize].literals.iter().position(|l| *l == name)?;
+        Some(Val::Scalar(self.exprs.num(k as f64 + 1.0), Type::Enumeration(i)))
+    }
+
+    fn unknown_in_class(&mut self, found: &Found<'a>, part: &ReferencePart) {
+        let (class, mut names) = match found {
+            Found::Class(c) => {
+                let t = self.template(c.class, c.parent);
+                let literals = match t.builtin {
+                    Some(Builtin::Enumeration(i)) => self.enumerations[i as usize].literals.clone(),
+                    _ => Vec::new(),
+                };
+                let names: Vec<Symbol> = t.elements.iter().map(|e| e.name).chain(literals).collect();
+                (self.library.full_name(c.class), names)
+            }
+            Found::Builtin(Builtin::Enumeration(i)) => {
+                let e = &self.enumerations[*i as usize];
+                (e.name.clone(), e.literals.clone())
+            }
+            _ => ("this type".into(), Vec::new()),
+        };
+        if let Found::Class(c) = found {
+            names.extend(self.library.folder_members(c.class));
+        }
+        let name = part.name.name;
+        let mut d = Diagnostic::new(Code::UnknownName, format!("`{class}` has no `{}`", short(name.as_str())))
+            .at(part.name.span, "not found");
+        d = match nearest(name.as_str(), names.iter().map(|n| n.as_str())) {
+            Some(near) => d.help(format!("did you mean `{near}`?")),
+            None => d.help(list_names("it has", &names)),
+        };
+        self.report(d);
+    }
+
+    /// The value of selected components.
+    pub(super) fn selection_value(&mut self, at: &Selection, span: Span) -> Option<Val> {
+        let values: Option<Vec<Val>> = at.nodes.iter().map(|&n| self.node_value(n, span)).collect();
+        let mut values = values?;
+        if at.dims.is_empty() {
+            return values.pop();
+        }
+        Some(Val::array(at.dims.clone(), values))
+    }
+
+    /// The value of a component: a variable, or a record.
+    pub fn node_value(&mut self, node: NodeId, span: Span) -> Option<Val> {
+        match self.node(node) {
+            Node::Var(i) => self.variable_value(*i, span),
+            Node::Array { .. } => {
+                let at = self.selection(node);
+                self.selection_value(&at, span)
+            }
+            Node::Object(scope) => self.record_value(*scope, span),
+        }
+    }
+
+    fn record_value(&mut self, scope: ScopeId, span: Span) -> Option<Val> {
+        let template = self.scope(scope).template.clone();
+        if !matches!(template.kind, ClassKind::Record { .. } | ClassKind::Connector { .. }) {
+            let name = self.scope(scope).name.clone();
+            let class = self.library.full_name(template.class);
+            self.report(
+                Diagnostic::new(Code::TypeMismatch, format!("`{name}` is a component, not a value"))
+                    .at(span, format!("an instance of `{class}`"))
+                    .help("name one of its variables"),
+            );
+            return None;
+        }
+        let mut fields = Vec::new();
+        for (i, element) in (0u32..).zip(&template.elements) {
+            if matches!(element.kind, Kind::Component(_)) {
+                if let Some(node) = self.component(scope, i) {
+                    fields.push((element.name, self.node_value(node, span)?));
+                }
+            }
+        }
+        Some(Val::Record(Rc::new(fields)))
+    }
+
+    /// The value of a scalar variable: itself, or its number where values count.
+    fn variable_value(&mut self, i: u32, span: Span) -> Option<Val> {
+        let data = &self.variables[i as usize];
+        // Constants of packages are not part of the model, so only their value can stand in it.
+        let by_value = data.string
+            || (data.variability <= Variability::Parameter && (self.eval.constant || data.id.0 == u32::MAX));
+        if by_value {
+            return self.known_value(i, span);
+        }
+        if self.eval.constant {
+            let name = data.name.clone();
+            let declared = data.span;
+            self.report(
+                Diagnostic::new(Code::NotConstant, format!("`{name}` is not known before the run"))
+                    .at(span, "a constant or parameter is needed here")
+                    .at(declared, "declared here as a variable")
+                    .help(format!("declare `{name}` as `parameter`, or use something that is one")),
+            );
+            return None;
+        }
+        let (id, ty) = (data.id, data.ty);
+        debug_assert!(id.0 != u32::MAX, "variables are numbered before expressions are built");
+        Some(Val::Scalar(self.exprs.var(id), ty))
+    }
+
+    /// The value of a constant or parameter.
+    pub(super) fn known_value(&mut self, i: u32, span: Span) -> Option<Val> {
+        let data = &mut self.variables[i as usize];
+        if let Some(known) = &data.constant {
+            return known.clone().ok();
+        }
+        if data.busy {
+            let (name, declared) = (data.name.clone(), data.span);
+            self.report(
+                Diagnostic::new(Code::CyclicParameter, format!("`{name}` depends on itself"))
+                    .at(declared, "its value leads back to itself")
+                    .at(span, "used here")
+                    .help("give one of the parameters of the circle a number"),
+            );
+            return None;
+        }
+        data.busy = true;
+        data.structural = true;
+        let value = self.find_known(i, span);
+        let data = &mut self.variables[i as usize];
+        data.busy = false;
+        data.constant = Some(value.clone().ok_or(()));
+        value
+    }
+
+    fn find_known(&mut self, i: u32, span: Span) -> Option<Val> {
+        let data = &self.variables[i as usize];
+        let (name, declared, ty) = (data.name.clone(), data.span, data.ty);
+        let start = data.attributes.iter().find(|(n, _)| *n == "start").map(|(_, b)| b.clone());
+        match data.binding.clone().or(start) {
+            Some(b) => {
+                let value = self.bound(i, &b, true)?;
+                self.coerce(value, ty, &name, b.expr.span)
+            }
+            None => {
+                self.report(
+                    Diagnostic::new(Code::NoValue, format!("`{name}` has no value"))
+                        .at(declared, "declared without `= value`")
+                        .at(span, "its value is needed here")
+                        .instance(name.clone())
+                        .help(format!(
+                            "give it one where it is used, as in `({} = ...)`, or with `--set {name}=...`",
+                            name.rsplit('.').next().unwrap_or(&name)
+                        )),
+                );
+                None
+            }
+        }
+    }
+
+    /// The value bound to a variable; a quantity given from outside is converted to the variable's unit.
+    pub fn bound(&mut self, i: u32, b: &super::modifiers::Binding<'a>, constant: bool) -> Option<Val> {
+        if Some(b.expr.span.file) == self.eval.override_file {
+            if let Some(v) = self.outside_value(i, b) {
+                return v;
+            }
+        }
+        self.binding_value(b, constant)
+    }
+
+    /// Values from outside may be quantities with units, and literals of the variable's own enumeration.
+    fn outside_value(&mut self, i: u32, b: &super::modifiers::Binding<'a>) -> Option<Option<Val>> {
+        match &b.expr.kind {
+            ExprKind::Call { function, args, .. } if function.parts[0].name.name == QUANTITY => {
+                let (number, unit) = (self.eval(&args[0], b.view)?, self.eval(&args[1], b.view)?);
+                let x = number.as_number(&self.exprs)?;
+                let unit = unit.as_text(&self.exprs)?;
+                Some(self.converted(i, x, &unit).map(|x| Val::Scalar(self.exprs.num(x), Type::Real)))
+            }
+            ExprKind::Reference(r) if r.parts.len() == 1 => {
+                let Type::Enumeration(e) = self.variables[i as usize].ty else { return None };
+                let at = self.enumerations[e as usize].literals.iter().position(|l| *l == r.parts[0].name.name)?;
+                Some(Some(Val::Scalar(self.exprs.num(at as f64 + 1.0), Type::Enumeration(e))))
+            }
+            _ => None,
+        }
+    }
+
+    fn converted(&mut self, i: u32, x: f64, unit: &str) -> Option<f64> {
+        let name = self.variables[i as usize].name.clone();
+        let own = self.text_attribute(i, "unit").unwrap_or_default();
+        let parsed = (crate::units::Unit::parse(unit), crate::units::Unit::parse(&own));
+        let converted = match parsed {
+            (Ok(from), Ok(to)) => from.convert(x, &to),
+            _ => None,
+        };
+        if converted.is_none() {
+            self.report(
+                Diagnostic::new(Code::BadSet, format!("`{x} {unit}` cannot be given to `{name}`"))
+                    .note(if own.is_empty() {
+                        format!("`{name}` has no unit")
+                    } else {
+                        format!("`{name}` is in `{own}`")
+                    })
+                    .help("give a plain number in the variable's own unit, or a unit of the same kind"),
+            );
+        }
+        converted
+    }
+
+    /// An attribute that is a text, such as `unit`.
+    pub fn text_attribute(&mut self, i: u32, attribute: &str) -> Option<String> {
+        let found = self.variables[i as usize].attributes.iter().find(|(n, _)| *n == attribute);
+        let b = found.map(|(_, b)| b.clone())?;
+        if let (ExprKind::String(s), true) = (&b.expr.kind, b.access.is_empty()) {
+            return Some(s.to_string());
+        }
+        self.binding_value(&b, true)?.as_text(&self.exprs)
+    }
+
+    /// Checks a value against the type of the variable that takes it.
+    pub fn coerce(&mut self, value: Val, ty: Type, name: &str, span: Span) -> Option<Val> {
+        match &value {
+            Val::Text(_) => Some(value),
+            Val::Scalar(e, own) => match (own, ty) {
+                (a, b) if *a == b => Some(value),
+                (Type::Integer, Type::Real) => Some(Val::Scalar(*e, Type::Real)),
+                _ => {
+                    let d = Diagnostic::new(
+                        Code::TypeMismatch,
+                        format!("`{name}` is {} and cannot take {}", type_name(ty), value.describe()),
+                    )
+                    .at(span, "the value");
+                    self.report(d.instance(name.to_string()));
+                    None
+                }
+            },
+            _ => {
+                let d = Diagnostic::new(
+                    Code::SizeMismatch,
+                    format!("`{name}` is a single {} and cannot take {}", type_name(ty), value.describe()),
+                )
+                .at(span, "the value");
+                self.report(d.instance(name.to_string()));
+                None
+            }
+        }
+    }
+}
+
+fn type_name(ty: Type) -> &'static str {
+    match ty {
+        Type::Real => "a Real",
+        Type::Integer => "an Integer",
+        Type::Boolean => "a Boolean",
+        Type::Enumeration(_) => "an enumeration",
+    }
+}
+
+enum Descent<'a> {
+    Nodes(Selection),
+    Class(Found<'a>),
+    Failed,
+}
+
+impl<'a> Instance<'a, '_> {
+    /// The ports a reference names, starting from an element; `Some(None)` if a conditional component on the way is
+    /// absent, for then the connection vanishes.
+    pub fn port_selection(
+        &mut self,
+        r: &'a Reference,
+        scope: ScopeId,
+        index: u32,
+        view: View,
+    ) -> Option<Option<Selection>> {
+        let Some(node) = self.component(scope, index) else {
+            let absent = matches!(self.scope(scope).elements[index as usize], ElementState::Absent);
+            return absent.then_some(None);
+        };
+        let mut at = self.selection(node);
+        for (i, p) in r.parts.iter().enumerate() {
+            if i > 0 {
+                if self.any_absent(&at, p.name.name) {
+                    return Some(None);
+                }
+                match self.descend(&at, p) {
+                    Descent::Nodes(next) => at = next,
+                    _ => return None,
+                }
+            }
+            if !p.subscripts.is_empty() {
+                match self.subscript_selection(&at, p, view, r.span)? {
+                    Ok(next) => at = next,
+                    Err(()) => {
+                        return self.fail(Code::NotConstant, "the index of a port must be known before the run", r.span);
+                    }
+                }
+            }
+        }
+        Some(Some(at))
+    }
+
+    fn any_absent(&mut self, at: &Selection, name: Symbol) -> bool {
+        at.nodes.iter().any(|&n| {
+            let Node::Object(s) = *self.node(n) else { return false };
+            let Some(&i) = self.scope(s).template.by_name.get(&name) else { return false };
+            matches!(self.scope(s).elements[i as usize], ElementState::Absent)
+        })
+    }
+
+    /// Runs something for every value of the iterators, innermost last.
+    pub fn for_each(
+        &mut self,
+        iterators: &'a [crate::syntax::ast::Iterator],
+        view: View,
+        body: &mut dyn FnMut(&mut Self),
+    ) {
+        let Some((first, rest)) = iterators.split_first() else { return body(self) };
+        let Some(values) = self.iterate(first, view) else { return };
+        for value in values {
+            self.eval.locals.push((first.name.name, value));
+            self.for_each(rest, view, body);
+            self.eval.locals.pop();
+        }
+    }
+}
+
+/// Doors for `flat`, which walks the equations.
+impl<'a> Instance<'a, '_> {
+    /// The values of a loop variable.
+    pub fn loop_values(&mut self, iterator: &'a crate::syntax::ast::Iterator, view: View) -> Option<Vec<Val>> {
+        self.iterate(iterator, view)
+    }
+
+    /// Enters a loop variable.
+    pub fn push_local(&mut self, name: Symbol, value: Val) {
+        self.eval.locals.push((name, value));
+    }
+
+    /// Leaves the innermost loop variable.
+    pub fn pop_local(&mut self) {
+        self.eval.locals.pop();
+    }
+
+    /// Switches events of relations off or on; returns what was before.
+    pub fn set_no_event(&mut self, off: bool) -> bool {
+        std::mem::replace(&mut self.eval.no_event, off)
+    }
+
+    /// The whole value of an element named in an algorithm section.
+    pub fn element_value(&mut self, view: View, part: &ReferencePart) -> Option<Val> {
+        match self.lookup(view, part.name.name) {
+            Some(Found::Component(scope, index)) => {
+                let node = self.component(scope, index)?;
+                self.node_value(node, part.name.span)
+            }
+            _ => {
+                let names = self.visible_names(view);
+                self.unknown_name(part.name.name, part.name.span, &names);
+                None
+            }
+        }
+    }
+
+    /// Carries out an algorithm section of the model on the `count` locals that were pushed for it.
+    pub fn run_section(
+        &mut self,
+        section: &'a [crate::syntax::ast::Statement],
+        view: View,
+        count: usize,
+    ) -> Option<()> {
+        self.eval.steps = 0;
+        self.eval.budget = 1_000_000;
+        self.eval.not_inline = false;
+        let end = self.eval.locals.len();
+        self.eval.section = end - count..end;
+        let done = self.execute(section, view).map(|_| ());
+        self.eval.section = 0..0;
+        done
+    }
+
+    /// Removes the last locals and hands out their values.
+    pub fn take_locals(&mut self, count: usize) -> Vec<Val> {
+        let at = self.eval.locals.len() - count;
+        self.eval.locals.split_off(at).into_iter().map(|(_, v)| v).collect()
+    }
+
+    /// The `when`s met since the last call.
+    pub fn take_whens(&mut self) -> Vec<super::algorithm::AlgorithmWhen> {
+        std::mem::take(&mut self.eval.whens)
+    }
+}

@@ -1,0 +1,356 @@
+//! What a class holds, inherited elements included: gathered once per class, shared by all its instances.
+
+use super::lookup::{Builtin, Found};
+use super::{ClassRef, Instance, View};
+use crate::diag::{Code, Diagnostic, Span};
+use crate::resolve::ClassId;
+use crate::syntax::ast::{self, ArgumentKind, ClassBody, ElementKind};
+use crate::syntax::symbol::Symbol;
+use rustc_hash::{FxHashMap, FxHashSet};
+use std::rc::Rc;
+
+/// The elements of a class.
+pub struct Template<'a> {
+    /// The class.
+    pub class: ClassId,
+    /// The class and everything it extends; 0 is the class itself.
+    pub bases: Vec<Base<'a>>,
+    /// Elements in declaration order, inherited ones where the `extends` stands.
+    pub elements: Vec<Element<'a>>,
+    /// Elements by name.
+    pub by_name: FxHashMap<Symbol, u32>,
+    /// The built-in type this class is a kind of.
+    pub builtin: Option<Builtin>,
+    /// Attribute modifications along the chain of types, outermost first.
+    pub builtin_args: Vec<Source<'a>>,
+    /// Array dimensions of a type such as `type Triple = Real[3]`, outermost last.
+    pub dims: Vec<(&'a [ast::Subscript], u32)>,
+    /// Prefixes of a short class (`connector In = input Real`).
+    pub prefix: ast::TypePrefix,
+    /// The class that says what is inside: itself, or the end of a chain of short classes.
+    pub kind: ast::ClassKind,
+    /// An `extends` could not be resolved, so names may be missing through no fault of the user.
+    pub broken: bool,
+}
+
+/// A class that contributes elements, equations and a place to look up names.
+pub struct Base<'a> {
+    /// The class.
+    pub class: ClassId,
+    /// Its syntax.
+    pub ast: &'a ast::Class,
+    /// What lies around it. `None` when it stands inside the instance itself.
+    pub parent: View,
+    /// Names of elements that it knows, its own and inherited.
+    pub names: FxHashSet<Symbol>,
+    /// Its imports.
+    pub imports: Vec<&'a ast::Import>,
+    /// A short class: names in its modifiers mean what they mean around it.
+    pub short: bool,
+    /// `connect` equations removed by `break` (with texts of both sides).
+    pub broken_connects: Vec<(&'a ast::Expr, &'a ast::Expr)>,
+}
+
+/// One element.
+pub struct Element<'a> {
+    /// Its name.
+    pub name: Symbol,
+    /// What it is.
+    pub kind: Kind<'a>,
+    /// The base it is declared in.
+    pub base: u32,
+    /// Modifications by `extends` clauses, outermost first.
+    pub modified: Vec<Source<'a>>,
+    /// In a protected section.
+    pub protected: bool,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// A component or a class.
+#[derive(Clone, Copy)]
+pub enum Kind<'a> {
+    /// A component.
+    Component(&'a ast::Component),
+    /// A class.
+    Class(&'a ast::Class),
+}
+
+/// A modification written in one of the bases.
+#[derive(Clone, Copy)]
+pub struct Source<'a> {
+    /// What it is.
+    pub what: What<'a>,
+    /// The base whose names it uses.
+    pub base: u32,
+}
+
+/// The forms in which a base modifies an inherited element.
+#[derive(Clone, Copy)]
+pub enum What<'a> {
+    /// An argument of `extends B(...)`.
+    Argument(&'a ast::Argument),
+    /// `redeclare T x;` as an element.
+    Component(&'a ast::Component),
+    /// `redeclare model M = N;` as an element.
+    Class(&'a ast::Class),
+}
+
+/// The longest chain of `extends`.
+const DEEPEST: usize = 100;
+
+impl<'a> Instance<'a, '_> {
+    /// The template of a class at a place.
+    pub fn template(&mut self, class: ClassId, parent: View) -> Rc<Template<'a>> {
+        if let Some(t) = self.templates.get(&(class, parent)) {
+            return t.clone();
+        }
+        let ast = self.library.class(class);
+        let mut t = Template {
+            class,
+            bases: Vec::new(),
+            elements: Vec::new(),
+            by_name: FxHashMap::default(),
+            builtin: None,
+            builtin_args: Vec::new(),
+            dims: Vec::new(),
+            prefix: ast::TypePrefix::default(),
+            kind: ast.kind,
+            broken: false,
+        };
+        self.gather(&mut t, class, parent, &mut Vec::new());
+        let t = Rc::new(t);
+        self.templates.insert((class, parent), t.clone());
+        t
+    }
+
+    /// Adds a class and what it extends to the template; returns the index of its base.
+    fn gather(&mut self, t: &mut Template<'a>, class: ClassId, parent: View, chain: &mut Vec<ClassId>) -> u32 {
+        let ast = self.library.class(class);
+        let base = u32::try_from(t.bases.len()).expect("fewer than 2^32 bases");
+        let short = !matches!(ast.body, ClassBody::Long(_));
+        let (names, imports) = (FxHashSet::default(), Vec::new());
+        t.bases.push(Base { class, ast, parent, names, imports, short, broken_connects: Vec::new() });
+        if chain.contains(&class) || chain.len() > DEEPEST {
+            let name = self.library.full_name(class);
+            self.report(
+                Diagnostic::new(Code::CyclicExtends, format!("`{name}` extends itself"))
+                    .at(ast.name.span, "this class is among its own bases")
+                    .class(name)
+                    .help("remove one of the `extends` clauses of the circle"),
+            );
+            t.broken = true;
+            return base;
+        }
+        chain.push(class);
+        match &ast.body {
+            ClassBody::Long(body) => self.gather_long(t, base, body, chain),
+            ClassBody::Short { prefix, base: path, subscripts, modification } => {
+                t.prefix = *prefix;
+                if !subscripts.is_empty() {
+                    t.dims.push((subscripts, base));
+                }
+                self.gather_extends(t, base, path, modification.as_ref(), chain);
+            }
+            ClassBody::Enumeration(_) => t.builtin = Some(Builtin::Enumeration(self.enumeration(class))),
+            ClassBody::Derivative { .. } => self.unsupported(ast.span, "a function defined by `der(...)`"),
+        }
+        chain.pop();
+        base
+    }
+
+    fn gather_long(&mut self, t: &mut Template<'a>, base: u32, body: &'a ast::LongBody, chain: &mut Vec<ClassId>) {
+        if body.class_extends.is_some() {
+            self.unsupported(t.bases[base as usize].ast.name.span, "`class extends`");
+        }
+        for element in &body.elements {
+            match &element.kind {
+                ElementKind::Import(import) => t.bases[base as usize].imports.push(import),
+                ElementKind::Extends(e) => {
+                    self.gather_extends(t, base, &e.base, e.modification.as_ref(), chain);
+                }
+                ElementKind::Component(c) => {
+                    let redeclare = c.prefixes.redeclare;
+                    self.add_element(t, base, element, c.name, Kind::Component(c), redeclare);
+                }
+                ElementKind::Class(c) => {
+                    self.library.enter(c, Some(t.bases[base as usize].class));
+                    self.add_element(t, base, element, c.name, Kind::Class(c), c.prefixes.redeclare);
+                }
+            }
+        }
+    }
+
+    fn add_element(
+        &mut self,
+        t: &mut Template<'a>,
+        base: u32,
+        element: &'a ast::Element,
+        name: ast::Ident,
+        kind: Kind<'a>,
+        redeclare: bool,
+    ) {
+        t.bases[base as usize].names.insert(name.name);
+        if let Some(&i) = t.by_name.get(&name.name) {
+            let old = &mut t.elements[i as usize];
+            if redeclare {
+                let what = match kind {
+                    Kind::Component(c) => What::Component(c),
+                    Kind::Class(c) => What::Class(c),
+                };
+                old.modified.insert(0, Source { what, base });
+            } else if old.base == base || !same_declaration(old.kind, kind) {
+                self.duplicate(t, i, name);
+            }
+            return;
+        }
+        if redeclare {
+            let class = self.library.full_name(t.bases[base as usize].class);
+            self.report(
+                Diagnostic::new(
+                    Code::BadRedeclare,
+                    format!("`{}` redeclares nothing that `{class}` inherits", name.name),
+                )
+                .at(name.span, "no inherited element of this name")
+                .class(class)
+                .help("remove `redeclare`, or correct the name"),
+            );
+        }
+        t.by_name.insert(name.name, u32::try_from(t.elements.len()).expect("fewer than 2^32 elements"));
+        t.elements.push(Element {
+            name: name.name,
+            kind,
+            base,
+            modified: Vec::new(),
+            protected: element.protected,
+            span: element.span,
+        });
+    }
+
+    fn duplicate(&mut self, t: &Template<'a>, old: u32, name: ast::Ident) {
+        let class = self.library.full_name(t.class);
+        let first = match t.elements[old as usize].kind {
+            Kind::Component(c) => c.name.span,
+            Kind::Class(c) => c.name.span,
+        };
+        self.report(
+            Diagnostic::new(Code::Duplicate, format!("`{}` is declared twice in `{class}`", name.name))
+                .at(name.span, "declared again here")
+                .at(first, "first declared here")
+                .class(class)
+                .help("rename or remove one of the two"),
+        );
+    }
+
+    fn gather_extends(
+        &mut self,
+        t: &mut Template<'a>,
+        base: u32,
+        path: &'a ast::Path,
+        modification: Option<&'a ast::Modification>,
+        chain: &mut Vec<ClassId>,
+    ) {
+        let (class, parent) = (t.bases[base as usize].class, t.bases[base as usize].parent);
+        let arguments = modification.map_or(&[][..], |m| m.arguments.as_slice());
+        match self.find_base(class, parent, path) {
+            Some(Found::Builtin(b)) => {
+                t.builtin = Some(b);
+                let sources = arguments.iter().map(|a| Source { what: What::Argument(a), base });
+                t.builtin_args.extend(sources);
+            }
+            Some(Found::Class(found)) => self.gather_base(t, base, &found, arguments, chain),
+            Some(_) => self.unknown_class(path, class),
+            None => {
+                t.broken = true;
+                self.unknown_base(path, class, parent);
+            }
+        }
+    }
+
+    fn gather_base(
+        &mut self,
+        t: &mut Template<'a>,
+        base: u32,
+        found: &ClassRef<'a>,
+        arguments: &'a [ast::Argument],
+        chain: &mut Vec<ClassId>,
+    ) {
+        let before = t.builtin_args.len();
+        let inner = self.gather(t, found.class, found.parent, chain);
+        let names = t.bases[inner as usize].names.clone();
+        // Outer attribute modifications come before those of the type chain.
+        let outer = arguments.iter().map(|a| Source { what: What::Argument(a), base });
+        if t.builtin.is_some() {
+            let own: Vec<_> = outer.collect();
+            t.builtin_args.splice(before..before, own);
+        } else {
+            self.modify_inherited(t, base, inner, arguments);
+        }
+        t.bases[base as usize].names.extend(names);
+    }
+
+    fn modify_inherited(&mut self, t: &mut Template<'a>, base: u32, inner: u32, arguments: &'a [ast::Argument]) {
+        let mut at: FxHashMap<Symbol, usize> = FxHashMap::default();
+        for argument in arguments {
+            let target = match &argument.kind {
+                ArgumentKind::Modify { path, .. } => path.parts[0],
+                ArgumentKind::Component(c) => c.name,
+                ArgumentKind::Class(c) => c.name,
+                ArgumentKind::BreakComponent(name) => {
+                    self.break_component(t, inner, *name);
+                    continue;
+                }
+                ArgumentKind::BreakConnect(a, b) => {
+                    for i in inner as usize..t.bases.len() {
+                        t.bases[i].broken_connects.push((a, b));
+                    }
+                    continue;
+                }
+            };
+            match t.by_name.get(&target.name).filter(|_| t.bases[inner as usize].names.contains(&target.name)) {
+                Some(&i) => {
+                    let place = at.entry(target.name).or_insert(0);
+                    let modified = &mut t.elements[i as usize].modified;
+                    modified.insert(*place, Source { what: What::Argument(argument), base });
+                    *place += 1;
+                }
+                None if t.broken => {}
+                None => {
+                    let class = self.library.full_name(t.bases[inner as usize].class);
+                    let names: Vec<Symbol> = t.elements.iter().map(|e| e.name).collect();
+                    self.unknown_modifier(target, &class, &names);
+                }
+            }
+        }
+    }
+
+    /// Selective extension (Modelica 3.6, 7.4): `extends B(break x)` leaves out `x` and its connections.
+    fn break_component(&mut self, t: &mut Template<'a>, inner: u32, name: ast::Ident) {
+        match t.by_name.remove(&name.name) {
+            Some(i) => {
+                t.elements.remove(i as usize);
+                t.by_name = (0u32..).zip(&t.elements).map(|(i, e)| (e.name, i)).collect();
+                for base in &mut t.bases[inner as usize..] {
+                    base.names.remove(&name.name);
+                }
+            }
+            None => {
+                let class = self.library.full_name(t.bases[inner as usize].class);
+                let names: Vec<Symbol> = t.elements.iter().map(|e| e.name).collect();
+                self.unknown_modifier(name, &class, &names);
+            }
+        }
+    }
+}
+
+/// Whether two declarations of one name say the same, as inheriting an element twice requires (MLS 5.6.1.2).
+fn same_declaration(a: Kind<'_>, b: Kind<'_>) -> bool {
+    match (a, b) {
+        (Kind::Component(a), Kind::Component(b)) => {
+            let last = |p: &ast::Path| p.parts.last().map(|i| i.name);
+            last(&a.class) == last(&b.class) && a.prefix == b.prefix && a.subscripts.len() == b.subscripts.len()
+        }
+        (Kind::Class(a), Kind::Class(b)) => std::ptr::eq(a, b),
+        _ => false,
+    }
+}

@@ -1,0 +1,216 @@
+//! What an expression of the language evaluates to: scalars over the pool, arrays, records, texts.
+
+use crate::expr::{ExprId, Exprs};
+use crate::flat::{MessagePart, Type};
+use crate::syntax::symbol::Symbol;
+use std::rc::Rc;
+
+/// A value.
+#[derive(Clone, Debug)]
+pub enum Val {
+    /// A number, truth value or enumeration value, known or symbolic.
+    Scalar(ExprId, Type),
+    /// A text, possibly with values in it.
+    Text(Rc<Vec<MessagePart>>),
+    /// An array, row-major; elements are not arrays.
+    Array {
+        /// Sizes.
+        dims: Vec<usize>,
+        /// Elements.
+        elements: Rc<Vec<Val>>,
+    },
+    /// A record.
+    Record(Rc<Vec<(Symbol, Val)>>),
+    /// Several outputs of a function.
+    Tuple(Rc<Vec<Val>>),
+}
+
+impl Val {
+    /// A text without values.
+    pub fn text(words: impl Into<String>) -> Val {
+        Val::Text(Rc::new(vec![MessagePart::Text(words.into())]))
+    }
+
+    /// An array.
+    pub fn array(dims: Vec<usize>, elements: Vec<Val>) -> Val {
+        debug_assert_eq!(dims.iter().product::<usize>(), elements.len());
+        Val::Array { dims, elements: Rc::new(elements) }
+    }
+
+    /// Sizes; none for anything but arrays.
+    pub fn dims(&self) -> &[usize] {
+        match self {
+            Val::Array { dims, .. } => dims,
+            _ => &[],
+        }
+    }
+
+    /// The elements in row-major order; a scalar is its own only element.
+    pub fn elements(&self) -> &[Val] {
+        match self {
+            Val::Array { elements, .. } => elements,
+            other => std::slice::from_ref(other),
+        }
+    }
+
+    /// The scalar expression and its type.
+    pub fn scalar(&self) -> Option<(ExprId, Type)> {
+        match self {
+            Val::Scalar(e, ty) => Some((*e, *ty)),
+            _ => None,
+        }
+    }
+
+    /// The number, if known.
+    pub fn as_number(&self, exprs: &Exprs) -> Option<f64> {
+        exprs.as_num(self.scalar()?.0)
+    }
+
+    /// The words, if it is a text without symbolic values.
+    pub fn as_text(&self, exprs: &Exprs) -> Option<String> {
+        let Val::Text(parts) = self else { return None };
+        let mut out = String::new();
+        for part in parts.iter() {
+            match part {
+                MessagePart::Text(words) => out.push_str(words),
+                MessagePart::Value(e, ty) => {
+                    let x = exprs.as_num(*e)?;
+                    match ty {
+                        Type::Boolean => out.push_str(if x == 0.0 { "false" } else { "true" }),
+                        _ => out.push_str(&crate::expr::print::number(x, Some(6))),
+                    }
+                }
+            }
+        }
+        Some(out)
+    }
+
+    /// The type of the first scalar inside.
+    pub fn element_type(&self) -> Option<Type> {
+        match self {
+            Val::Scalar(_, ty) => Some(*ty),
+            Val::Array { elements, .. } => elements.first().and_then(Val::element_type),
+            _ => None,
+        }
+    }
+
+    /// A few words for messages: "a Real", "an array [3]", "a record".
+    pub fn describe(&self) -> String {
+        match self {
+            Val::Scalar(_, Type::Real) => "a Real".into(),
+            Val::Scalar(_, Type::Integer) => "an Integer".into(),
+            Val::Scalar(_, Type::Boolean) => "a Boolean".into(),
+            Val::Scalar(_, Type::Enumeration(_)) => "an enumeration value".into(),
+            Val::Text(_) => "a String".into(),
+            Val::Array { dims, .. } => format!("an array of size {}", size_text(dims)),
+            Val::Record(_) => "a record".into(),
+            Val::Tuple(_) => "several values".into(),
+        }
+    }
+
+    /// All scalars inside, in order.
+    pub fn scalars(&self, out: &mut Vec<ExprId>) {
+        match self {
+            Val::Scalar(e, _) => out.push(*e),
+            Val::Array { elements, .. } => elements.iter().for_each(|v| v.scalars(out)),
+            Val::Record(fields) => fields.iter().for_each(|(_, v)| v.scalars(out)),
+            Val::Tuple(values) => values.iter().for_each(|v| v.scalars(out)),
+            Val::Text(_) => {}
+        }
+    }
+
+    /// The same shape with other scalars.
+    pub fn map(&self, change: &mut impl FnMut(ExprId, Type) -> ExprId) -> Val {
+        match self {
+            Val::Scalar(e, ty) => Val::Scalar(change(*e, *ty), *ty),
+            Val::Array { dims, elements } => {
+                Val::Array { dims: dims.clone(), elements: Rc::new(elements.iter().map(|v| v.map(change)).collect()) }
+            }
+            Val::Record(fields) => Val::Record(Rc::new(fields.iter().map(|(n, v)| (*n, v.map(change))).collect())),
+            Val::Tuple(values) => Val::Tuple(Rc::new(values.iter().map(|v| v.map(change)).collect())),
+            Val::Text(t) => Val::Text(t.clone()),
+        }
+    }
+
+    /// Combines two values of equal shape scalar by scalar; `None` if the shapes differ.
+    pub fn zip(&self, other: &Val, combine: &mut impl FnMut(ExprId, ExprId, Type) -> ExprId) -> Option<Val> {
+        Some(match (self, other) {
+            (Val::Scalar(a, ta), Val::Scalar(b, tb)) => {
+                let ty = wider(*ta, *tb)?;
+                Val::Scalar(combine(*a, *b, ty), ty)
+            }
+            (Val::Array { dims: da, elements: a }, Val::Array { dims: db, elements: b }) if da == db => {
+                let elements: Option<Vec<_>> = a.iter().zip(b.iter()).map(|(a, b)| a.zip(b, combine)).collect();
+                Val::array(da.clone(), elements?)
+            }
+            (Val::Record(a), Val::Record(b)) if a.len() == b.len() => {
+                let mut fields = Vec::with_capacity(a.len());
+                for (name, value) in a.iter() {
+                    let (_, other) = b.iter().find(|(n, _)| n == name)?;
+                    fields.push((*name, value.zip(other, combine)?));
+                }
+                Val::Record(Rc::new(fields))
+            }
+            (Val::Tuple(a), Val::Tuple(b)) if a.len() == b.len() => {
+                let values: Option<Vec<_>> = a.iter().zip(b.iter()).map(|(a, b)| a.zip(b, combine)).collect();
+                Val::Tuple(Rc::new(values?))
+            }
+            (Val::Text(a), Val::Text(_)) => Val::Text(a.clone()),
+            _ => return None,
+        })
+    }
+
+    /// A sub-array by the first index, or the element of a vector.
+    pub fn slice(&self, i: usize) -> Option<Val> {
+        let Val::Array { dims, elements } = self else { return None };
+        let inner = &dims[1..];
+        let step: usize = inner.iter().product();
+        if i >= dims[0] {
+            return None;
+        }
+        if inner.is_empty() {
+            return elements.get(i).cloned();
+        }
+        Some(Val::array(inner.to_vec(), elements[i * step..(i + 1) * step].to_vec()))
+    }
+}
+
+/// The common type of two scalars: Integer fits where Real is needed.
+pub fn wider(a: Type, b: Type) -> Option<Type> {
+    match (a, b) {
+        (a, b) if a == b => Some(a),
+        (Type::Real, Type::Integer) | (Type::Integer, Type::Real) => Some(Type::Real),
+        _ => None,
+    }
+}
+
+/// Stacks values of equal shape into an array with one more dimension.
+pub fn stack(values: Vec<Val>) -> Option<Val> {
+    let inner = values.first().map_or(Vec::new(), |v| v.dims().to_vec());
+    if values.iter().any(|v| v.dims() != inner) {
+        return None;
+    }
+    let mut dims = vec![values.len()];
+    dims.extend(&inner);
+    let elements: Vec<Val> = values.iter().flat_map(|v| v.elements().iter().cloned()).collect();
+    Some(Val::array(dims, unify(elements)))
+}
+
+/// Integers among Reals become Reals.
+fn unify(mut elements: Vec<Val>) -> Vec<Val> {
+    let real = elements.iter().any(|v| matches!(v, Val::Scalar(_, Type::Real)));
+    if real {
+        for v in &mut elements {
+            if let Val::Scalar(_, ty @ Type::Integer) = v {
+                *ty = Type::Real;
+            }
+        }
+    }
+    elements
+}
+
+/// `[2, 3]`
+pub fn size_text(dims: &[usize]) -> String {
+    let parts: Vec<String> = dims.iter().map(usize::to_string).collect();
+    format!("[{}]", parts.join(", "))
+}

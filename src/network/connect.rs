@@ -1,0 +1,362 @@
+//! `connect` equations to connection sets (MLS 9.2).
+
+use super::{Connection, FlowSet, Network, PotentialSet};
+use crate::diag::{Code, Diagnostic, Span};
+use crate::flat::{Type, Variability};
+use crate::instance::lookup::Found;
+use crate::instance::reference::Selection;
+use crate::instance::template::Kind;
+use crate::instance::{Instance, Node, NodeId, ScopeId, View};
+use crate::syntax::ast::{self, ClassBody, ClassKind, Equation, EquationKind, Expr, ExprKind};
+use rustc_hash::FxHashMap;
+
+/// Disjoint sets over numbers given on demand.
+#[derive(Default)]
+struct Sets {
+    index: FxHashMap<(u32, bool), usize>,
+    keys: Vec<((u32, bool), Span, ScopeId)>,
+    parent: Vec<usize>,
+}
+
+impl Sets {
+    fn key(&mut self, key: (u32, bool), span: Span, scope: ScopeId) -> usize {
+        *self.index.entry(key).or_insert_with(|| {
+            self.keys.push((key, span, scope));
+            self.parent.push(self.parent.len());
+            self.parent.len() - 1
+        })
+    }
+
+    fn root(&mut self, mut i: usize) -> usize {
+        while self.parent[i] != i {
+            self.parent[i] = self.parent[self.parent[i]];
+            i = self.parent[i];
+        }
+        i
+    }
+
+    fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.root(a), self.root(b));
+        // The smaller number stays the root, so that sets come out in the order of their first member.
+        self.parent[a.max(b)] = a.min(b);
+    }
+
+    fn groups(mut self) -> Vec<Vec<((u32, bool), Span, ScopeId)>> {
+        let mut place: FxHashMap<usize, usize> = FxHashMap::default();
+        let mut groups: Vec<Vec<_>> = Vec::new();
+        for i in 0..self.keys.len() {
+            let root = self.root(i);
+            let at = *place.entry(root).or_insert_with(|| {
+                groups.push(Vec::new());
+                groups.len() - 1
+            });
+            groups[at].push(self.keys[i]);
+        }
+        groups
+    }
+}
+
+/// One end of a connection.
+struct End {
+    selection: Selection,
+    outside: bool,
+}
+
+#[derive(Default)]
+pub(super) struct Collector {
+    network: Network,
+    potentials: Sets,
+    flows: Sets,
+}
+
+impl Collector {
+    pub(super) fn collect(mut self, instance: &mut Instance<'_, '_>) -> Network {
+        for scope in component_scopes(instance) {
+            self.scope(instance, scope);
+        }
+        let inside: std::collections::BTreeSet<u32> =
+            self.flows.keys.iter().filter(|(k, ..)| !k.1).map(|(k, ..)| k.0).collect();
+        self.network.potentials = self
+            .potentials
+            .groups()
+            .into_iter()
+            .map(|g| PotentialSet { scope: g[0].2, members: g.into_iter().map(|(k, span, _)| (k.0, span)).collect() })
+            .collect();
+        self.network.flows = self
+            .flows
+            .groups()
+            .into_iter()
+            .map(|g| FlowSet { span: g[0].1, scope: g[0].2, members: g.into_iter().map(|(k, ..)| k).collect() })
+            .collect();
+        let all = 0..u32::try_from(instance.variables.len()).expect("limited sizes");
+        self.network.open = all
+            .filter(|i| {
+                let v = &instance.variables[*i as usize];
+                v.flow && v.id.0 != u32::MAX && !inside.contains(i)
+            })
+            .collect();
+        self.network
+    }
+
+    fn scope<'a>(&mut self, instance: &mut Instance<'a, '_>, scope: ScopeId) {
+        let template = instance.scope(scope).template.clone();
+        for (base, i) in template.bases.iter().zip(0u32..) {
+            let ClassBody::Long(body) = &base.ast.body else { continue };
+            let view = View { scope, base: i };
+            self.equations(instance, &body.equations, view, &base.broken_connects);
+        }
+    }
+
+    fn equations<'a>(
+        &mut self,
+        instance: &mut Instance<'a, '_>,
+        equations: &'a [Equation],
+        view: View,
+        broken: &[(&Expr, &Expr)],
+    ) {
+        for e in equations {
+            match &e.kind {
+                EquationKind::Connect(a, b) => {
+                    if !broken.iter().any(|(x, y)| same_pair((a, b), (x, y))) {
+                        self.connect(instance, a, b, view, e.span);
+                    }
+                }
+                EquationKind::For { iterators, body } => {
+                    if has_connect(body) {
+                        instance.for_each(iterators, view, &mut |instance| {
+                            self.equations(instance, body, view, broken);
+                        });
+                    }
+                }
+                EquationKind::If { branches, otherwise } => {
+                    let connects = branches.iter().any(|(_, b)| has_connect(b)) || has_connect(otherwise);
+                    if connects {
+                        if let Some(body) = choose(instance, branches, otherwise, view) {
+                            self.equations(instance, body, view, broken);
+                        }
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+
+    fn connect<'a>(&mut self, instance: &mut Instance<'a, '_>, a: &'a Expr, b: &'a Expr, view: View, span: Span) {
+        let (x, y) = (end(instance, a, view), end(instance, b, view));
+        let (Some(Some(x)), Some(Some(y))) = (x, y) else { return };
+        if x.selection.dims != y.selection.dims {
+            let text = crate::instance::value::size_text;
+            instance.diagnostics.push(
+                Diagnostic::new(Code::BadConnect, "arrays of ports of different size cannot be joined")
+                    .at(span, format!("sizes {} and {}", text(&x.selection.dims), text(&y.selection.dims)))
+                    .help("connect slices of equal size, or single elements in a `for`"),
+            );
+            return;
+        }
+        for (&m, &n) in x.selection.nodes.iter().zip(&y.selection.nodes) {
+            let place = Place { span, scope: view.scope, a: a.span, b: b.span };
+            self.join(instance, (m, x.outside), (n, y.outside), &place);
+            self.network.connections.push(Connection { a: m, b: n, span, scope: view.scope });
+        }
+    }
+
+    fn join(&mut self, instance: &mut Instance<'_, '_>, a: (NodeId, bool), b: (NodeId, bool), at: &Place) {
+        match (instance.node(a.0).clone(), instance.node(b.0).clone()) {
+            (Node::Var(x), Node::Var(y)) => self.join_variables(instance, (x, a.1), (y, b.1), at),
+            (Node::Array { dims: da, elements: x }, Node::Array { dims: db, elements: y }) if da == db => {
+                for (&x, &y) in x.iter().zip(&y) {
+                    self.join(instance, (x, a.1), (y, b.1), at);
+                }
+            }
+            (Node::Object(x), Node::Object(y)) => self.join_objects(instance, (x, a.1), (y, b.1), at),
+            _ => mismatch(instance, a.0, b.0, at),
+        }
+    }
+
+    fn join_objects(&mut self, instance: &mut Instance<'_, '_>, a: (ScopeId, bool), b: (ScopeId, bool), at: &Place) {
+        let (ta, tb) = (instance.scope(a.0).template.clone(), instance.scope(b.0).template.clone());
+        let fits =
+            ta.elements.len() == tb.elements.len() && ta.elements.iter().all(|e| tb.by_name.contains_key(&e.name));
+        let connectors =
+            [&ta, &tb].iter().all(|t| matches!(t.kind, ClassKind::Connector { .. } | ClassKind::Record { .. }));
+        if !fits || !connectors {
+            let (na, nb) = (instance.scope(a.0).name.clone(), instance.scope(b.0).name.clone());
+            let (ca, cb) = (instance.library.full_name(ta.class), instance.library.full_name(tb.class));
+            let code = if connectors { Code::DomainMismatch } else { Code::BadConnect };
+            let names = |t: &crate::instance::template::Template<'_>| {
+                t.elements.iter().map(|e| format!("`{}`", e.name)).collect::<Vec<_>>().join(", ")
+            };
+            instance.diagnostics.push(
+                Diagnostic::new(code, format!("`{na}` and `{nb}` are of different kinds and cannot be joined"))
+                    .at(at.a, format!("a `{ca}` with {}", names(&ta)))
+                    .at(at.b, format!("a `{cb}` with {}", names(&tb)))
+                    .help("connect ports of the same kind, or put a component between them that changes one into the other"),
+            );
+            return;
+        }
+        for (e, i) in ta.elements.iter().zip(0u32..) {
+            if !matches!(e.kind, Kind::Component(_)) {
+                continue;
+            }
+            let (x, y) = (instance.component(a.0, i), instance.component(b.0, tb.by_name[&e.name]));
+            if let (Some(x), Some(y)) = (x, y) {
+                self.join(instance, (x, a.1), (y, b.1), at);
+            }
+        }
+    }
+
+    fn join_variables(&mut self, instance: &mut Instance<'_, '_>, a: (u32, bool), b: (u32, bool), at: &Place) {
+        let (x, y) = (&instance.variables[a.0 as usize], &instance.variables[b.0 as usize]);
+        if x.flow != y.flow || x.ty != y.ty {
+            let (nx, ny) = (x.name.clone(), y.name.clone());
+            instance.diagnostics.push(
+                Diagnostic::new(Code::BadConnect, format!("`{nx}` and `{ny}` cannot be joined")).at(
+                    at.span,
+                    if x.flow == y.flow { "they are of different types" } else { "only one of them is a flow" },
+                ),
+            );
+            return;
+        }
+        if different_units(instance, a.0, b.0, at) {
+            return;
+        }
+        let (x, y) = (&instance.variables[a.0 as usize], &instance.variables[b.0 as usize]);
+        if x.variability <= Variability::Parameter && y.variability <= Variability::Parameter {
+            return;
+        }
+        let flow = x.flow;
+        let sets = if flow { &mut self.flows } else { &mut self.potentials };
+        let side = |s: (u32, bool)| if flow { s } else { (s.0, false) };
+        let i = sets.key(side(a), at.span, at.scope);
+        let j = sets.key(side(b), at.span, at.scope);
+        sets.join(i, j);
+    }
+}
+
+struct Place {
+    span: Span,
+    scope: ScopeId,
+    a: Span,
+    b: Span,
+}
+
+/// Component instances, parents before children, in declaration order.
+pub fn component_scopes(instance: &Instance<'_, '_>) -> Vec<ScopeId> {
+    let all = (0u32..).zip(&instance.scopes).filter(|(_, s)| s.component);
+    all.map(|(i, _)| ScopeId(i)).collect()
+}
+
+fn has_connect(equations: &[Equation]) -> bool {
+    equations.iter().any(|e| match &e.kind {
+        EquationKind::Connect(..) => true,
+        EquationKind::For { body, .. } => has_connect(body),
+        EquationKind::If { branches, otherwise } => {
+            branches.iter().any(|(_, b)| has_connect(b)) || has_connect(otherwise)
+        }
+        _ => false,
+    })
+}
+
+fn choose<'a>(
+    instance: &mut Instance<'a, '_>,
+    branches: &'a [(Expr, Vec<Equation>)],
+    otherwise: &'a [Equation],
+    view: View,
+) -> Option<&'a [Equation]> {
+    for (condition, body) in branches {
+        if instance.constant_boolean(condition, view)? {
+            return Some(body);
+        }
+    }
+    Some(otherwise)
+}
+
+/// The ports a side of `connect` names: `None` after a message, `Some(None)` if a conditional component is absent.
+fn end<'a>(instance: &mut Instance<'a, '_>, e: &'a Expr, view: View) -> Option<Option<End>> {
+    let ExprKind::Reference(r) = &e.kind else {
+        instance.diagnostics.push(
+            Diagnostic::new(Code::BadConnect, "only ports can be connected")
+                .at(e.span, "this is not the name of a port")
+                .help("write `connect(a.port, b.port)`; for other relations write an equation"),
+        );
+        return None;
+    };
+    let Some(Found::Component(scope, index)) = instance.lookup(view, r.parts[0].name.name) else {
+        // The general evaluation knows how to say what is wrong.
+        instance.eval(e, view);
+        if !instance.diagnostics.iter().any(Diagnostic::is_error) {
+            instance.diagnostics.push(Diagnostic::new(Code::BadConnect, "only ports can be connected").at(e.span, ""));
+        }
+        return None;
+    };
+    let outside = is_connector(instance, scope, index, view);
+    let Some(selection) = instance.port_selection(r, scope, index, view)? else { return Some(None) };
+    Some(Some(End { selection, outside }))
+}
+
+/// Whether an element is itself a connector, so that it is seen from inside its component.
+fn is_connector(instance: &mut Instance<'_, '_>, scope: ScopeId, index: u32, view: View) -> bool {
+    if scope != view.scope {
+        return false;
+    }
+    let template = instance.scope(scope).template.clone();
+    let element = &template.elements[index as usize];
+    let Kind::Component(c) = element.kind else { return false };
+    if c.prefixes.outer {
+        return false;
+    }
+    match instance.lookup_path(View { scope, base: element.base }, &c.class) {
+        Ok(Found::Class(class)) => {
+            let t = instance.template(class.class, class.parent);
+            matches!(t.kind, ClassKind::Connector { .. })
+        }
+        _ => c.prefix.causality.is_some(),
+    }
+}
+
+fn mismatch(instance: &mut Instance<'_, '_>, a: NodeId, b: NodeId, at: &Place) {
+    let (x, y) = (instance.node_name(a), instance.node_name(b));
+    instance.diagnostics.push(
+        Diagnostic::new(Code::DomainMismatch, format!("`{x}` and `{y}` are of different kinds and cannot be joined"))
+            .at(at.a, "")
+            .at(at.b, ""),
+    );
+}
+
+/// Ports whose variables have units of different dimension belong to different domains.
+fn different_units(instance: &mut Instance<'_, '_>, a: u32, b: u32, at: &Place) -> bool {
+    if instance.variables[a as usize].ty != Type::Real {
+        return false;
+    }
+    let units = [a, b].map(|i| instance.text_attribute(i, "unit").filter(|u| !u.is_empty()));
+    let [Some(ua), Some(ub)] = units else { return false };
+    if ua == ub {
+        return false;
+    }
+    let (Ok(x), Ok(y)) = (crate::units::Unit::parse(&ua), crate::units::Unit::parse(&ub)) else { return false };
+    if x.dimension == y.dimension {
+        return false;
+    }
+    let names = [a, b].map(|i| instance.variables[i as usize].name.clone());
+    instance.diagnostics.push(
+        Diagnostic::new(
+            Code::DomainMismatch,
+            format!("`{}` in `{ua}` and `{}` in `{ub}` cannot be joined", names[0], names[1]),
+        )
+        .at(at.a, "")
+        .at(at.b, "")
+        .help("connect ports of the same domain"),
+    );
+    true
+}
+
+fn same_pair(a: (&Expr, &Expr), b: (&Expr, &Expr)) -> bool {
+    let text = |e: &Expr| match &e.kind {
+        ExprKind::Reference(r) => {
+            r.parts.iter().map(|p: &ast::ReferencePart| p.name.name.as_str()).collect::<Vec<_>>().join(".")
+        }
+        _ => String::new(),
+    };
+    let (a, b) = ((text(a.0), text(a.1)), (text(b.0), text(b.1)));
+    a == b || (a.0 == b.1 && a.1 == b.0)
+}
