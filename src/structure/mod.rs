@@ -3,6 +3,28 @@
 //! [`Dae`] holds three sorted systems over one set of variables: `continuous` (the right-hand side between events),
 //! `event` (the same with all discrete equations, solved at events) and `initial` (solved once at the start).
 
+mod alias;
+mod analysis;
+mod blt;
+mod discrete;
+mod draft;
+mod dulmage_mendelsohn;
+mod dummy_derivatives;
+mod events;
+mod incidence;
+mod initial;
+mod matching;
+mod messages;
+mod pantelides;
+mod parameters;
+mod print;
+mod regularity;
+mod solve_block;
+mod sorting;
+mod tearing;
+
+pub use analysis::analyze;
+
 use crate::expr::{ExprId, Exprs, Rel, VarId};
 use crate::flat;
 
@@ -53,6 +75,9 @@ pub struct Dae {
     pub asserts: Vec<flat::Assert>,
     /// Groups among which the states were chosen; the solver asks for another choice when a group's pivots degenerate.
     pub selections: Vec<Selection>,
+    /// Expressions that must vanish at the start, each with its equation: fixed starts of variables that constraints
+    /// tie to others, which hold only if they are consistent. Checked after the initial system is solved.
+    pub initial_checks: Vec<(ExprId, u32)>,
     /// Start values the compiler chose to make the initial system determined, for notes.
     pub chosen_starts: Vec<VarId>,
 }
@@ -195,3 +220,6 @@ pub struct StateChoice {
     /// Candidates to take as states.
     pub preferred: Vec<VarId>,
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,270 @@
+//! The steps of the analysis in their order.
+
+use super::draft::{Draft, Role, RowKind};
+use super::incidence::{NONE, Scanner};
+use super::matching::{Matching, maximum};
+use super::pantelides::Reduction;
+use super::parameters::Known;
+use super::solve_block::BlockSolver;
+use super::sorting::{System, SystemRow};
+use super::{
+    ActionKind, Alias, Assign, Block, Dae, Selection, StateChoice, Unknown, alias, discrete, dummy_derivatives, events,
+    initial, messages, parameters, regularity,
+};
+use crate::diag::{Checked, Diagnostic};
+use crate::expr::{Node, VarId};
+use crate::flat::{Equation, FlatModel, Origin, OriginKind, StateSelect};
+
+/// Sorts a flat model into a [`Dae`].
+///
+/// Errors: circles of parameters (E214), singular structure (E301, E302, E303), constraints that cannot be
+/// differentiated (E304), start values that contradict each other (E401). A note lists start values that were chosen.
+pub fn analyze(flat: &FlatModel, choice: &StateChoice) -> Checked<Dae> {
+    let mut diagnostics = Vec::new();
+    match run(flat, choice, &mut diagnostics) {
+        Ok(dae) if !diagnostics.iter().any(Diagnostic::is_error) => Checked::new(dae, diagnostics),
+        Ok(_) => Checked::failed(diagnostics),
+        Err(error) => {
+            diagnostics.push(error);
+            Checked::failed(diagnostics)
+        }
+    }
+}
+
+fn run(flat: &FlatModel, choice: &StateChoice, diagnostics: &mut Vec<Diagnostic>) -> Result<Dae, Diagnostic> {
+    let mut draft = Draft::new(flat);
+    let order = parameters::order(&mut draft)?;
+    let values = parameters::values(&draft, &order);
+    let mut known = Known::new(values.clone());
+    events::extract(&mut draft);
+    discrete::translate_whens(&mut draft);
+    prefer_reinitialized(&mut draft);
+    let aliases = alias::eliminate(&mut draft, &mut known, diagnostics);
+    discrete::classify(&mut draft);
+    regularity::check(&draft).map_err(|found| messages::singular(&draft, &aliases, &found))?;
+
+    let mut reduction = Reduction::new(&mut draft);
+    reduction.reduce(&mut draft)?;
+    let chosen = dummy_derivatives::select(&mut draft, &reduction, &values, choice);
+    let states = settle_states(&mut draft, &mut reduction, &chosen.dummies);
+    replace_linked_derivatives(&mut draft);
+    let running = running_system(&draft, &reduction, &states)?;
+
+    let mut blocks = Blocks::sort_running(&mut draft, &mut known, &running, &states.states);
+    let model = initial::Model { running: &running, states: &states.states, demoted: &states.demoted };
+    let start = initial::assemble(&mut draft, &model);
+    diagnostics.extend(start.diagnostics);
+    blocks.sort_initial(&mut draft, &mut known, &start.system);
+    let rest = Rest { order, aliases, states: states.states, selections: chosen.selections };
+    let mut dae = assemble(flat, draft, blocks, rest);
+    dae.chosen_starts = start.chosen;
+    dae.initial_checks.extend(start.checks);
+    Ok(dae)
+}
+
+/// What `reinit` sets must be a state if that is possible.
+fn prefer_reinitialized(draft: &mut Draft) {
+    for action in &draft.actions {
+        if let ActionKind::Reinit(v, _) = action.kind {
+            let select = &mut draft.variables[v.index()].state_select;
+            *select = (*select).max(StateSelect::Prefer);
+        }
+    }
+}
+
+/// The outcome of state selection.
+struct States {
+    /// Ascending.
+    states: Vec<VarId>,
+    /// Differentiated, but not states; ascending.
+    demoted: Vec<VarId>,
+    /// By column: known when the continuous system is solved.
+    is_state: Vec<bool>,
+}
+
+/// Every variable with a derivative that is no dummy is a state. Dummies become variables.
+fn settle_states(draft: &mut Draft, reduction: &mut Reduction, dummies: &[u32]) -> States {
+    let mut is_dummy = vec![false; reduction.columns.len()];
+    for &c in dummies {
+        is_dummy[c as usize] = true;
+        reduction.materialize(draft, c);
+    }
+    let mut found = States { states: Vec::new(), demoted: Vec::new(), is_state: vec![false; reduction.columns.len()] };
+    for c in 0..reduction.columns.len() {
+        let (derivative, variable) = (reduction.columns[c].derivative, reduction.variable(c as u32));
+        let (Some(v), true) = (variable, derivative != NONE) else { continue };
+        if is_dummy[derivative as usize] {
+            found.demoted.push(v);
+        } else {
+            found.is_state[c] = true;
+            found.states.push(v);
+        }
+    }
+    found.states.sort_unstable();
+    found.demoted.sort_unstable();
+    found
+}
+
+/// After this `Der` stands only for derivatives of states that are no variables themselves.
+fn replace_linked_derivatives(draft: &mut Draft) {
+    let links = draft.derivative.clone();
+    if links.iter().all(Option::is_none) {
+        return;
+    }
+    let map = draft.rewritten(|pool, node| match node {
+        Node::Der(v) => links[v.index()].map(|w| {
+            let e = pool.var(w.variable);
+            if w.negated { pool.neg(e) } else { e }
+        }),
+        _ => None,
+    });
+    draft.map_expressions(&map);
+}
+
+/// All equations between events, matched; discrete ones behind the continuous ones.
+fn running_system(draft: &Draft, reduction: &Reduction, states: &States) -> Result<System, Diagnostic> {
+    let mut system = System::default();
+    let (mut of_var, mut of_der) = (vec![NONE; draft.variables.len()], vec![NONE; draft.variables.len()]);
+    for (c, column) in reduction.columns.iter().enumerate() {
+        if states.is_state[c] {
+            continue;
+        }
+        match column.unknown {
+            Unknown::Var(v) => of_var[v.index()] = system.columns.len() as u32,
+            Unknown::Der(v) => of_der[v.index()] = system.columns.len() as u32,
+        }
+        system.columns.push(column.unknown);
+    }
+    let continuous_columns = system.columns.len() as u32;
+    for v in draft.with_role(Role::Discrete) {
+        of_var[v.index()] = system.columns.len() as u32;
+        system.columns.push(Unknown::Var(v));
+    }
+    let column = |node: Node| {
+        let found = match node {
+            Node::Var(v) => of_var[v.index()],
+            Node::Der(v) => of_der[v.index()],
+            _ => NONE,
+        };
+        (found != NONE).then_some(found)
+    };
+    let mut scanner = Scanner::default();
+    for continuous in [true, false] {
+        for (i, (&equation, &kind)) in draft.equations.iter().zip(&draft.kinds).enumerate() {
+            if (kind == RowKind::Continuous) != continuous {
+                continue;
+            }
+            let sides = [equation.lhs, equation.rhs];
+            if continuous {
+                scanner.push(&draft.exprs, sides, column, |c| c < continuous_columns, &mut system.incidence);
+            } else {
+                let lone = discrete::lone_unknowns(draft, &equation, kind);
+                let lone: Vec<u32> = lone.iter().map(|v| of_var[v.index()]).collect();
+                scanner.push_discrete(&draft.exprs, sides, &lone, column, &mut system.incidence);
+            }
+            system.rows.push(SystemRow { equation, index: i as u32, discrete: !continuous });
+        }
+    }
+    system.matching = maximum(&system.incidence, system.columns.len());
+    check_matched(draft, &system)?;
+    Ok(system)
+}
+
+/// The regularity check has seen to it that the counts fit; what is left are constraints that depend on each other.
+fn check_matched(draft: &Draft, system: &System) -> Result<(), Diagnostic> {
+    let Matching { column_of, row_of } = &system.matching;
+    if column_of.iter().chain(row_of).all(|&p| p != NONE) {
+        return Ok(());
+    }
+    let parts = super::dulmage_mendelsohn::decompose(&system.incidence, &system.matching);
+    let equations: Vec<Equation> = parts.over.rows.iter().map(|&r| system.rows[r as usize].equation).collect();
+    let unknowns: Vec<Unknown> = parts.under.columns.iter().map(|&c| system.columns[c as usize]).collect();
+    Err(messages::dependent_constraints(draft, &equations, &unknowns))
+}
+
+/// The three sorted systems.
+#[derive(Default)]
+struct Blocks {
+    continuous: Vec<Block>,
+    event: Vec<Block>,
+    initial: Vec<Block>,
+    /// `der(x) := w` of states whose derivative is a variable.
+    derivatives: Vec<Block>,
+}
+
+impl Blocks {
+    fn sort_running(draft: &mut Draft, known: &mut Known, system: &System, states: &[VarId]) -> Blocks {
+        let mut made = Blocks { derivatives: linked_derivatives(draft, states), ..Blocks::default() };
+        let mut solver = BlockSolver::new(draft, known);
+        let (components, blocks) = system.continuous_blocks(&mut solver);
+        made.event = system.with_discrete(&mut solver, &components, &blocks);
+        made.continuous = blocks;
+        made.event.extend_from_slice(&made.derivatives);
+        made.continuous.extend_from_slice(&made.derivatives);
+        made
+    }
+
+    fn sort_initial(&mut self, draft: &mut Draft, known: &mut Known, system: &System) {
+        let mut solver = BlockSolver::new(draft, known);
+        let (components, blocks) = system.continuous_blocks(&mut solver);
+        self.initial = system.with_discrete(&mut solver, &components, &blocks);
+        self.initial.extend_from_slice(&self.derivatives);
+    }
+}
+
+fn linked_derivatives(draft: &mut Draft, states: &[VarId]) -> Vec<Block> {
+    let mut blocks = Vec::new();
+    for &x in states {
+        let Some(w) = draft.derivative[x.index()] else { continue };
+        let lhs = draft.exprs.der(x);
+        let var = draft.exprs.var(w.variable);
+        let rhs = if w.negated { draft.exprs.neg(var) } else { var };
+        let origin = Origin { kind: OriginKind::Made, ..draft.variables[w.variable.index()].origin };
+        draft.add_equation(Equation { lhs, rhs, origin }, RowKind::Definition);
+        let equation = draft.equations.len() as u32 - 1;
+        blocks.push(Block::Assign(Assign { unknown: Unknown::Der(x), value: rhs, equation }));
+    }
+    blocks
+}
+
+/// What the steps found beside blocks.
+struct Rest {
+    order: Vec<VarId>,
+    aliases: Vec<Alias>,
+    states: Vec<VarId>,
+    selections: Vec<Selection>,
+}
+
+fn assemble(flat: &FlatModel, mut draft: Draft, blocks: Blocks, rest: Rest) -> Dae {
+    let checks = std::mem::take(&mut draft.initial_checks);
+    let mut initial_checks = Vec::with_capacity(checks.len());
+    for (e, origin) in checks {
+        draft.add_equation(Equation { lhs: e, rhs: crate::expr::Exprs::ZERO, origin }, RowKind::Definition);
+        initial_checks.push((e, draft.equations.len() as u32 - 1));
+    }
+    Dae {
+        class: flat.class.clone(),
+        instances: flat.instances.clone(),
+        enumerations: flat.enumerations.clone(),
+        experiment: flat.experiment,
+        parameters: rest.order,
+        free_parameters: draft.with_role(Role::FreeParameter),
+        inputs: (0..flat.variables.len() as u32).map(VarId).filter(|v| flat.variables[v.index()].input).collect(),
+        aliases: rest.aliases,
+        states: rest.states,
+        discrete: draft.with_role(Role::Discrete),
+        continuous: blocks.continuous,
+        event: blocks.event,
+        initial: blocks.initial,
+        selections: rest.selections,
+        chosen_starts: Vec::new(),
+        initial_checks,
+        crossings: draft.crossings,
+        samples: draft.samples,
+        actions: draft.actions,
+        asserts: draft.asserts,
+        exprs: draft.exprs,
+        variables: draft.variables,
+        equations: draft.equations,
+    }
+}

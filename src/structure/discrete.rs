@@ -1,0 +1,172 @@
+//! `when` clauses become discrete equations `v = if fires then value else pre(v)` and actions.
+
+use super::draft::{Draft, Role, RowKind};
+use super::{Action, ActionKind};
+use crate::expr::{ExprId, Exprs, Node, VarId};
+use crate::flat::{Equation, Origin, OriginKind, Type, When, WhenAction, WhenBranch};
+use rustc_hash::FxHashMap;
+
+/// Translates all `when` clauses, which leaves none.
+pub(super) fn translate_whens(draft: &mut Draft) {
+    let whens = std::mem::take(&mut draft.whens);
+    let mut conditions = Conditions::default();
+    for when in &whens {
+        let fires: Vec<ExprId> = when.branches.iter().map(|b| conditions.fires(draft, b, when.origin)).collect();
+        assign_variables(draft, when, &fires);
+        add_actions(draft, when, &fires);
+    }
+}
+
+/// The condition variables made so far, by expression.
+#[derive(Default)]
+struct Conditions {
+    made: FxHashMap<ExprId, VarId>,
+}
+
+impl Conditions {
+    /// True in the event iteration in which one of the branch's conditions becomes true.
+    fn fires(&mut self, draft: &mut Draft, branch: &WhenBranch, origin: Origin) -> ExprId {
+        let mut fires = Exprs::ZERO;
+        for &condition in &branch.conditions {
+            let one = match draft.exprs.node(condition) {
+                Node::Initial => condition,
+                _ => self.becomes_true(draft, condition, origin),
+            };
+            fires = draft.exprs.or(fires, one);
+        }
+        fires
+    }
+
+    /// `not initial() and c and not pre(c)`
+    fn becomes_true(&mut self, draft: &mut Draft, condition: ExprId, origin: Origin) -> ExprId {
+        let v = self.variable(draft, condition, origin);
+        let pool = &mut draft.exprs;
+        let (now, before, initial) = (pool.var(v), pool.pre(v), pool.intern(Node::Initial));
+        let (not_before, running) = (pool.not(before), pool.not(initial));
+        let edge = pool.and(now, not_before);
+        pool.and(running, edge)
+    }
+
+    /// The discrete variable that is the condition, or one made for it.
+    fn variable(&mut self, draft: &mut Draft, condition: ExprId, origin: Origin) -> VarId {
+        if let Node::Var(v) = draft.exprs.node(condition)
+            && matches!(draft.role(v), Role::Discrete | Role::Sample)
+        {
+            return v;
+        }
+        if let Some(&v) = self.made.get(&condition) {
+            return v;
+        }
+        let origin = Origin { kind: OriginKind::WhenCondition, ..origin };
+        let name = draft.text(condition);
+        let v = draft.make_variable(name, Type::Boolean, Role::Discrete, origin);
+        let lhs = draft.exprs.var(v);
+        draft.add_equation(Equation { lhs, rhs: condition, origin }, RowKind::Definition);
+        self.made.insert(condition, v);
+        v
+    }
+}
+
+/// One equation for each variable that the clause assigns, in order of first appearance.
+fn assign_variables(draft: &mut Draft, when: &When, fires: &[ExprId]) {
+    let mut done: Vec<VarId> = Vec::new();
+    for action in when.branches.iter().flat_map(|b| &b.actions) {
+        if let WhenAction::Assign { variable, origin, .. } = action
+            && !done.contains(variable)
+        {
+            done.push(*variable);
+            let rhs = chosen_value(draft, when, fires, *variable);
+            let lhs = draft.exprs.var(*variable);
+            draft.add_equation(Equation { lhs, rhs, origin: *origin }, RowKind::Definition);
+        }
+    }
+}
+
+/// The value by the first branch that fires; a branch that does not assign the variable leaves it.
+fn chosen_value(draft: &mut Draft, when: &When, fires: &[ExprId], variable: VarId) -> ExprId {
+    let before = draft.exprs.pre(variable);
+    let mut value = before;
+    for (branch, &fires) in when.branches.iter().zip(fires).rev() {
+        let assigned = branch.actions.iter().rev().find_map(|action| match action {
+            WhenAction::Assign { variable: v, value, .. } if *v == variable => Some(*value),
+            _ => None,
+        });
+        value = draft.exprs.if_(fires, assigned.unwrap_or(before), value);
+    }
+    value
+}
+
+/// `reinit`, `assert` and `terminate`, each happening when its branch is the first that fires.
+fn add_actions(draft: &mut Draft, when: &When, fires: &[ExprId]) {
+    let mut earlier = Exprs::ZERO;
+    for (branch, &fires) in when.branches.iter().zip(fires) {
+        let none = draft.exprs.not(earlier);
+        let first = draft.exprs.and(fires, none);
+        earlier = draft.exprs.or(earlier, fires);
+        for action in &branch.actions {
+            let (kind, origin) = match action {
+                WhenAction::Assign { .. } => continue,
+                WhenAction::Reinit { variable, value, origin } => (ActionKind::Reinit(*variable, *value), *origin),
+                WhenAction::Assert(assert) => (ActionKind::Assert(assert.clone()), assert.origin),
+                WhenAction::Terminate { message, origin } => (ActionKind::Terminate(message.clone()), *origin),
+            };
+            draft.actions.push(Action { fires: first, kind, origin });
+        }
+    }
+}
+
+/// Finds the equations that determine discrete unknowns.
+///
+/// A lone discrete unknown on the left makes the equation a discrete one, and so does one on the right when the left
+/// holds no continuous unknown. What a `when` assigns is determined there and nowhere else.
+pub(super) fn classify(draft: &mut Draft) {
+    for i in 0..draft.equations.len() {
+        if draft.kinds[i] == RowKind::Continuous && is_discrete(draft, &draft.equations[i]) {
+            draft.kinds[i] = RowKind::Discrete;
+        }
+    }
+}
+
+/// Whether an equation determines a discrete unknown.
+pub(super) fn is_discrete(draft: &Draft, equation: &Equation) -> bool {
+    let [left, right] = [equation.lhs, equation.rhs].map(|e| lone_discrete(draft, e));
+    if left.is_some_and(|v| may_solve(draft, v)) {
+        return true;
+    }
+    // A left side that is a discrete Real of a `when`: the other side tells.
+    if left.is_some() {
+        return right.is_some() || !has_continuous(draft, equation.rhs);
+    }
+    right.is_some() && !has_continuous(draft, equation.lhs)
+}
+
+/// Whether an expression depends on a continuous unknown.
+pub(super) fn has_continuous(draft: &Draft, e: ExprId) -> bool {
+    let found = draft.exprs.dependencies(&[e]);
+    !found.ders.is_empty() || found.vars.iter().any(|&v| draft.role(v) == Role::Continuous)
+}
+
+/// Whether equations outside `when` may determine a discrete unknown.
+pub(super) fn may_solve(draft: &Draft, v: VarId) -> bool {
+    !draft.when_assigned[v.index()]
+}
+
+/// The discrete unknown that an expression is.
+pub(super) fn lone_discrete(draft: &Draft, e: ExprId) -> Option<VarId> {
+    match draft.exprs.node(e) {
+        Node::Var(v) if draft.role(v) == Role::Discrete => Some(v),
+        _ => None,
+    }
+}
+
+/// The discrete unknowns that a row may be solved for: none for a continuous one.
+pub(super) fn lone_unknowns(draft: &Draft, equation: &Equation, kind: RowKind) -> Vec<VarId> {
+    match kind {
+        RowKind::Continuous => Vec::new(),
+        RowKind::Definition => lone_discrete(draft, equation.lhs).into_iter().collect(),
+        RowKind::Discrete => {
+            let sides = [equation.lhs, equation.rhs];
+            sides.iter().filter_map(|&e| lone_discrete(draft, e)).filter(|&v| may_solve(draft, v)).collect()
+        }
+    }
+}

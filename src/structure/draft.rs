@@ -1,0 +1,247 @@
+//! The system while it is being analysed: one pool, all variables and equations, and what is known about them so far.
+
+use super::{Action, ActionKind, Crossing, CrossingKind, Sample};
+use crate::expr::{ExprId, Exprs, Node, VarId};
+use crate::flat::{self, FlatModel, Type, Variability};
+
+/// What a variable is to the sorted systems.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Role {
+    /// A constant, or a parameter whose value is known before the run.
+    Parameter,
+    /// A parameter found at initialization.
+    FreeParameter,
+    /// Comes from outside.
+    Input,
+    /// Set by the solver at events: the mode of a `sample`.
+    Sample,
+    /// Unknown, changes at events only.
+    Discrete,
+    /// Unknown, changes at any time.
+    Continuous,
+    /// Equals another variable.
+    Alias,
+}
+
+/// Which unknowns an equation may be solved for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum RowKind {
+    /// Any continuous unknown.
+    Continuous,
+    /// A lone discrete unknown on either side.
+    Discrete,
+    /// The variable on its left side only.
+    Definition,
+}
+
+/// A variable or its negative.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Signed {
+    pub variable: VarId,
+    pub negated: bool,
+}
+
+/// The system in the making.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Draft {
+    pub exprs: Exprs,
+    pub variables: Vec<flat::Variable>,
+    pub roles: Vec<Role>,
+    /// Assigned in a `when`, so that no other equation can determine it.
+    pub when_assigned: Vec<bool>,
+    /// The variable that is the derivative of a variable, if there is one.
+    pub derivative: Vec<Option<Signed>>,
+    pub equations: Vec<flat::Equation>,
+    /// Parallel to `equations`.
+    pub kinds: Vec<RowKind>,
+    pub initial_equations: Vec<flat::Equation>,
+    pub whens: Vec<flat::When>,
+    pub asserts: Vec<flat::Assert>,
+    pub crossings: Vec<Crossing>,
+    pub samples: Vec<Sample>,
+    pub actions: Vec<Action>,
+    pub instances: Vec<flat::InstanceInfo>,
+    /// Expressions that must vanish at the start, each with the equation or the start value it comes from.
+    pub initial_checks: Vec<(ExprId, flat::Origin)>,
+}
+
+impl Draft {
+    /// The flat model with every variable's role, equations not yet classified.
+    pub fn new(flat: &FlatModel) -> Self {
+        let mut when_assigned = vec![false; flat.variables.len()];
+        for action in flat.whens.iter().flat_map(|w| &w.branches).flat_map(|b| &b.actions) {
+            if let flat::WhenAction::Assign { variable, .. } = action {
+                when_assigned[variable.index()] = true;
+            }
+        }
+        let roles = flat.variables.iter().zip(&when_assigned).map(|(v, &assigned)| role(v, assigned)).collect();
+        Draft {
+            exprs: flat.exprs.clone(),
+            variables: flat.variables.clone(),
+            roles,
+            when_assigned,
+            derivative: vec![None; flat.variables.len()],
+            equations: flat.equations.clone(),
+            kinds: vec![RowKind::Continuous; flat.equations.len()],
+            initial_equations: flat.initial_equations.clone(),
+            whens: flat.whens.clone(),
+            asserts: flat.asserts.clone(),
+            instances: flat.instances.clone(),
+            ..Draft::default()
+        }
+    }
+
+    /// The role of a variable.
+    pub fn role(&self, v: VarId) -> Role {
+        self.roles[v.index()]
+    }
+
+    /// All variables of a role, in order.
+    pub fn with_role(&self, role: Role) -> Vec<VarId> {
+        (0..self.variables.len()).filter(|&i| self.roles[i] == role).map(|i| VarId(i as u32)).collect()
+    }
+
+    /// Adds a variable made by the compiler.
+    pub fn make_variable(&mut self, name: String, ty: Type, role: Role, origin: flat::Origin) -> VarId {
+        let variability = if role == Role::Continuous { Variability::Continuous } else { Variability::Discrete };
+        self.variables.push(flat::Variable {
+            name,
+            ty,
+            variability,
+            input: false,
+            output: false,
+            flow: false,
+            hidden: true,
+            binding: None,
+            start: None,
+            fixed: false,
+            min: None,
+            max: None,
+            nominal: None,
+            unit: None,
+            display_unit: None,
+            description: None,
+            state_select: flat::StateSelect::Default,
+            origin,
+        });
+        self.roles.push(role);
+        self.when_assigned.push(false);
+        self.derivative.push(None);
+        VarId(self.variables.len() as u32 - 1)
+    }
+
+    /// An expression as the user would write it, not too long.
+    pub fn text(&self, e: ExprId) -> String {
+        self.exprs.print_short(e, &|v| self.variables[v.index()].name.clone(), 80)
+    }
+
+    /// Adds an equation.
+    pub fn add_equation(&mut self, equation: flat::Equation, kind: RowKind) {
+        self.equations.push(equation);
+        self.kinds.push(kind);
+    }
+
+    /// Replaces every expression by what `map` says.
+    pub fn map_expressions(&mut self, map: &[ExprId]) {
+        self.each_expression(|e| *e = map[e.index()]);
+    }
+
+    /// Calls `visit` with every expression there is.
+    pub fn each_expression(&mut self, mut visit: impl FnMut(&mut ExprId)) {
+        for v in &mut self.variables {
+            [&mut v.binding, &mut v.start, &mut v.min, &mut v.max, &mut v.nominal]
+                .into_iter()
+                .flatten()
+                .for_each(&mut visit);
+        }
+        for equation in self.equations.iter_mut().chain(&mut self.initial_equations) {
+            visit(&mut equation.lhs);
+            visit(&mut equation.rhs);
+        }
+        for branch in self.whens.iter_mut().flat_map(|w| &mut w.branches) {
+            branch.conditions.iter_mut().for_each(&mut visit);
+            for action in &mut branch.actions {
+                match action {
+                    flat::WhenAction::Assign { value, .. } | flat::WhenAction::Reinit { value, .. } => visit(value),
+                    flat::WhenAction::Assert(assert) => each_of_assert(assert, &mut visit),
+                    flat::WhenAction::Terminate { message, .. } => each_of_message(message, &mut visit),
+                }
+            }
+        }
+        self.asserts.iter_mut().for_each(|assert| each_of_assert(assert, &mut visit));
+        self.crossings.iter_mut().for_each(|crossing| each_of_crossing(crossing, &mut visit));
+        for sample in &mut self.samples {
+            visit(&mut sample.start);
+            visit(&mut sample.interval);
+        }
+        self.actions.iter_mut().for_each(|action| each_of_action(action, &mut visit));
+        self.initial_checks.iter_mut().for_each(|(e, _)| visit(e));
+    }
+
+    /// The image of every node of the pool when `leaf` replaces some of them, arguments first.
+    pub fn rewritten(&mut self, mut leaf: impl FnMut(&mut Exprs, Node) -> Option<ExprId>) -> Vec<ExprId> {
+        let count = self.exprs.len();
+        let mut map = Vec::with_capacity(count);
+        for i in 0..count as u32 {
+            let node = self.exprs.node(ExprId(i));
+            let image = match leaf(&mut self.exprs, node) {
+                Some(image) => image,
+                None => carried(&mut self.exprs, ExprId(i), &map),
+            };
+            map.push(image);
+        }
+        map
+    }
+}
+
+/// The node with its arguments replaced; itself when they stay.
+pub(super) fn carried(pool: &mut Exprs, e: ExprId, map: &[ExprId]) -> ExprId {
+    if pool.operands(e).as_slice().iter().all(|&a| map[a.index()] == a) {
+        return e;
+    }
+    pool.with_operands(e, |a| map[a.index()])
+}
+
+fn role(v: &flat::Variable, when_assigned: bool) -> Role {
+    match v.variability {
+        Variability::Constant => Role::Parameter,
+        Variability::Parameter if v.fixed || v.binding.is_some() && v.start.is_none() => Role::Parameter,
+        Variability::Parameter => Role::FreeParameter,
+        _ if v.input => Role::Input,
+        Variability::Discrete => Role::Discrete,
+        Variability::Continuous if v.ty != Type::Real || when_assigned => Role::Discrete,
+        Variability::Continuous => Role::Continuous,
+    }
+}
+
+fn each_of_message(message: &mut flat::Message, visit: &mut impl FnMut(&mut ExprId)) {
+    for part in &mut message.parts {
+        if let flat::MessagePart::Value(e, _) = part {
+            visit(e);
+        }
+    }
+}
+
+fn each_of_assert(assert: &mut flat::Assert, visit: &mut impl FnMut(&mut ExprId)) {
+    visit(&mut assert.condition);
+    each_of_message(&mut assert.message, visit);
+}
+
+fn each_of_crossing(crossing: &mut Crossing, visit: &mut impl FnMut(&mut ExprId)) {
+    match &mut crossing.kind {
+        CrossingKind::Relation(_, a, b) => {
+            visit(a);
+            visit(b);
+        }
+        CrossingKind::Time(_, e) | CrossingKind::Floor(e) => visit(e),
+    }
+}
+
+fn each_of_action(action: &mut Action, visit: &mut impl FnMut(&mut ExprId)) {
+    visit(&mut action.fires);
+    match &mut action.kind {
+        ActionKind::Reinit(_, value) => visit(value),
+        ActionKind::Terminate(message) => each_of_message(message, visit),
+        ActionKind::Assert(assert) => each_of_assert(assert, visit),
+    }
+}

@@ -1,0 +1,122 @@
+//! The over- and under-determined parts of a system (Dulmage and Mendelsohn, 1958).
+//!
+//! Both parts are the same for every maximum matching, so messages do not depend on the order of declarations.
+
+use super::incidence::{Incidence, NONE};
+use super::matching::Matching;
+
+/// Some equations with some unknowns.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(super) struct Part {
+    /// Equations, ascending.
+    pub rows: Vec<u32>,
+    /// Unknowns, ascending.
+    pub columns: Vec<u32>,
+}
+
+/// The coarse decomposition; what is in neither part is well determined.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(super) struct Decomposition {
+    /// More equations than unknowns.
+    pub over: Part,
+    /// More unknowns than equations.
+    pub under: Part,
+}
+
+/// Splits a system with a maximum matching.
+pub(super) fn decompose(incidence: &Incidence, matching: &Matching) -> Decomposition {
+    Decomposition { over: over(incidence, matching), under: under(incidence, matching) }
+}
+
+/// Everything reachable from unmatched rows: row to any of its columns, column to its matched row.
+fn over(incidence: &Incidence, matching: &Matching) -> Part {
+    let mut row_seen = vec![false; matching.column_of.len()];
+    let mut column_seen = vec![false; matching.row_of.len()];
+    let mut stack: Vec<u32> = unmatched(&matching.column_of);
+    for &row in &stack {
+        row_seen[row as usize] = true;
+    }
+    while let Some(row) = stack.pop() {
+        for &c in incidence.solvable(row) {
+            column_seen[c as usize] = true;
+            let owner = matching.row_of[c as usize];
+            if owner != NONE && !std::mem::replace(&mut row_seen[owner as usize], true) {
+                stack.push(owner);
+            }
+        }
+    }
+    Part { rows: marked(&row_seen), columns: marked(&column_seen) }
+}
+
+/// Everything reachable from unmatched columns: column to any of its rows, row to its matched column.
+fn under(incidence: &Incidence, matching: &Matching) -> Part {
+    let mut row_seen = vec![false; matching.column_of.len()];
+    let mut column_seen = vec![false; matching.row_of.len()];
+    let (starts, rows) = incidence.transposed(matching.row_of.len());
+    let mut stack: Vec<u32> = unmatched(&matching.row_of);
+    for &c in &stack {
+        column_seen[c as usize] = true;
+    }
+    while let Some(c) = stack.pop() {
+        for &row in &rows[starts[c as usize] as usize..starts[c as usize + 1] as usize] {
+            row_seen[row as usize] = true;
+            let partner = matching.column_of[row as usize];
+            if partner != NONE && !std::mem::replace(&mut column_seen[partner as usize], true) {
+                stack.push(partner);
+            }
+        }
+    }
+    Part { rows: marked(&row_seen), columns: marked(&column_seen) }
+}
+
+fn unmatched(partners: &[u32]) -> Vec<u32> {
+    (0..partners.len() as u32).filter(|&i| partners[i as usize] == NONE).collect()
+}
+
+fn marked(seen: &[bool]) -> Vec<u32> {
+    (0..seen.len() as u32).filter(|&i| seen[i as usize]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::structure::matching::maximum;
+    use proptest::prelude::*;
+
+    #[test]
+    fn parts_of_a_small_system() {
+        // Unknown 0 twice, unknowns 1 and 2 share one equation, unknown 3 is fine.
+        let incidence = Incidence::of(&[vec![0], vec![0], vec![1, 2], vec![0, 3]]);
+        let found = decompose(&incidence, &maximum(&incidence, 4));
+        assert_eq!(found.over, Part { rows: vec![0, 1], columns: vec![0] });
+        assert_eq!(found.under, Part { rows: vec![2], columns: vec![1, 2] });
+    }
+
+    proptest! {
+        #[test]
+        fn relabelling_changes_nothing(
+            rows in prop::collection::vec(prop::collection::btree_set(0..8_u32, 0..4), 1..9),
+            seed in any::<u64>(),
+        ) {
+            let rows: Vec<Vec<u32>> = rows.into_iter().map(|r| r.into_iter().collect()).collect();
+            let turn = (seed % 8) as u32;
+            let mut order: Vec<usize> = (0..rows.len()).collect();
+            order.rotate_left(seed as usize % rows.len());
+            let relabelled: Vec<Vec<u32>> =
+                order.iter().map(|&r| rows[r].iter().map(|c| (c + turn) % 8).collect()).collect();
+            let parts = |rows: &[Vec<u32>]| {
+                let incidence = Incidence::of(rows);
+                decompose(&incidence, &maximum(&incidence, 8))
+            };
+            let (here, there) = (parts(&rows), parts(&relabelled));
+            let back = |part: &Part| {
+                let mut rows: Vec<u32> = part.rows.iter().map(|&r| order[r as usize] as u32).collect();
+                let mut columns: Vec<u32> = part.columns.iter().map(|c| (c + 8 - turn) % 8).collect();
+                rows.sort_unstable();
+                columns.sort_unstable();
+                Part { rows, columns }
+            };
+            prop_assert_eq!(here, Decomposition { over: back(&there.over), under: back(&there.under) });
+        }
+    }
+}

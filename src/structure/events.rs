@@ -1,0 +1,170 @@
+//! Relations, `floor` and `sample` become discrete mode variables with something to watch.
+
+use super::draft::{Draft, Role, RowKind, carried};
+use super::{Crossing, CrossingKind, Sample};
+use crate::expr::{ExprId, Exprs, Node, Rel, VarId};
+use crate::flat::{Equation, Origin, OriginKind, Type};
+
+/// How an expression varies, by how much has to be watched.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Varies {
+    /// Never, or at events only.
+    AtEvents,
+    /// With time alone, and at events.
+    WithTime,
+    /// With anything.
+    Continuously,
+}
+
+/// Replaces event-making nodes everywhere. In asserts, `when` bodies and initial equations a relation becomes the mode
+/// of the same relation elsewhere if there is one, and else is evaluated as it stands.
+pub(super) fn extract(draft: &mut Draft) {
+    let origins = eventful_origins(draft);
+    let mut extraction = Extraction { map: Vec::with_capacity(origins.len()), varies: Vec::new() };
+    for (i, origin) in origins.iter().enumerate() {
+        let image = extraction.image(draft, ExprId(i as u32), *origin);
+        extraction.map.push(image);
+        let varies = extraction.variation(draft, ExprId(i as u32));
+        extraction.varies.push(varies);
+    }
+    draft.map_expressions(&extraction.map);
+}
+
+/// For every node where an event may come from: the origin of the first equation or condition that holds it.
+fn eventful_origins(draft: &Draft) -> Vec<Option<Origin>> {
+    let mut origins = vec![None; draft.exprs.len()];
+    let mut mark = |roots: &[ExprId], origin: Origin| {
+        let mut stack = roots.to_vec();
+        while let Some(e) = stack.pop() {
+            let seen: &mut Option<Origin> = &mut origins[e.index()];
+            if seen.is_none() {
+                *seen = Some(origin);
+                stack.extend_from_slice(draft.exprs.operands(e).as_slice());
+            }
+        }
+    };
+    for equation in &draft.equations {
+        mark(&[equation.lhs, equation.rhs], equation.origin);
+    }
+    for when in &draft.whens {
+        for branch in &when.branches {
+            mark(&branch.conditions, when.origin);
+        }
+    }
+    origins
+}
+
+struct Extraction {
+    map: Vec<ExprId>,
+    varies: Vec<Varies>,
+}
+
+impl Extraction {
+    fn image(&self, draft: &mut Draft, e: ExprId, origin: Option<Origin>) -> ExprId {
+        match draft.exprs.node(e) {
+            Node::EventRel(rel, a, b) => self.relation(draft, (rel, a, b), origin),
+            Node::EventFloor(a) => self.floor(draft, a, origin),
+            Node::Sample(start, interval) => match origin {
+                Some(origin) => self.sampling(draft, start, interval, origin),
+                None => Exprs::ZERO,
+            },
+            _ => carried(&mut draft.exprs, e, &self.map),
+        }
+    }
+
+    fn relation(&self, draft: &mut Draft, (rel, a, b): (Rel, ExprId, ExprId), origin: Option<Origin>) -> ExprId {
+        let (left, right) = (self.map[a.index()], self.map[b.index()]);
+        let varies = self.varies[a.index()].max(self.varies[b.index()]);
+        let (Some(origin), true) = (origin, varies > Varies::AtEvents) else {
+            return draft.exprs.rel(rel, left, right);
+        };
+        let timed = if varies == Varies::WithTime { time_event(draft, rel, left, right) } else { None };
+        let (kind, value) = match timed {
+            Some((rel, at)) => {
+                let time = draft.exprs.time();
+                (CrossingKind::Time(rel, at), draft.exprs.rel(rel, time, at))
+            }
+            None => (CrossingKind::Relation(rel, left, right), draft.exprs.rel(rel, left, right)),
+        };
+        match draft.exprs.node(value) {
+            Node::Num(_) => value,
+            _ => watched(draft, kind, value, Type::Boolean, origin),
+        }
+    }
+
+    fn floor(&self, draft: &mut Draft, a: ExprId, origin: Option<Origin>) -> ExprId {
+        let argument = self.map[a.index()];
+        let value = draft.exprs.floor(argument);
+        match origin {
+            Some(origin) if self.varies[a.index()] > Varies::AtEvents => {
+                watched(draft, CrossingKind::Floor(argument), value, Type::Integer, origin)
+            }
+            _ => value,
+        }
+    }
+
+    fn sampling(&self, draft: &mut Draft, start: ExprId, interval: ExprId, origin: Origin) -> ExprId {
+        let (start, interval) = (self.map[start.index()], self.map[interval.index()]);
+        let origin = Origin { kind: OriginKind::Relation, ..origin };
+        let text = draft.exprs.sample(start, interval);
+        let name = draft.text(text);
+        let mode = draft.make_variable(name, Type::Boolean, Role::Sample, origin);
+        draft.samples.push(Sample { mode, start, interval, origin });
+        draft.exprs.var(mode)
+    }
+
+    fn variation(&self, draft: &Draft, e: ExprId) -> Varies {
+        match draft.exprs.node(e) {
+            Node::Time => Varies::WithTime,
+            Node::Der(_) => Varies::Continuously,
+            Node::Var(v) => variable_variation(draft, v),
+            Node::EventRel(..) | Node::EventFloor(_) | Node::Sample(..) => Varies::AtEvents,
+            _ => {
+                let operands = draft.exprs.operands(e);
+                operands.as_slice().iter().map(|a| self.varies[a.index()]).max().unwrap_or(Varies::AtEvents)
+            }
+        }
+    }
+}
+
+fn variable_variation(draft: &Draft, v: VarId) -> Varies {
+    match draft.role(v) {
+        Role::Continuous => Varies::Continuously,
+        Role::Input if draft.variables[v.index()].ty == Type::Real => Varies::Continuously,
+        _ => Varies::AtEvents,
+    }
+}
+
+/// `left rel right` as `time rel at`, if it is affine in time with a numeric factor.
+fn time_event(draft: &mut Draft, rel: Rel, left: ExprId, right: ExprId) -> Option<(Rel, ExprId)> {
+    let pool = &mut draft.exprs;
+    let time = pool.time();
+    if left == time && !pool.contains(right, time) {
+        return Some((rel, right));
+    }
+    let (at, coefficient) = pool.solve_for(left, right, time)?;
+    let factor = pool.as_num(coefficient)?;
+    Some((if factor > 0.0 { rel } else { mirrored(rel) }, at))
+}
+
+/// The relation with its sides exchanged.
+fn mirrored(rel: Rel) -> Rel {
+    match rel {
+        Rel::Lt => Rel::Gt,
+        Rel::Le => Rel::Ge,
+        Rel::Gt => Rel::Lt,
+        Rel::Ge => Rel::Le,
+        same => same,
+    }
+}
+
+/// A mode variable with its equation and its crossing.
+fn watched(draft: &mut Draft, kind: CrossingKind, value: ExprId, ty: Type, origin: Origin) -> ExprId {
+    let origin = Origin { kind: OriginKind::Relation, ..origin };
+    let name = draft.text(value);
+    let mode = draft.make_variable(name, ty, Role::Discrete, origin);
+    draft.crossings.push(Crossing { mode, kind, origin });
+    let lhs = draft.exprs.var(mode);
+    draft.add_equation(Equation { lhs, rhs: value, origin }, RowKind::Definition);
+    lhs
+}

@@ -1,0 +1,325 @@
+//! The system that is solved once at the start: all equations, initial equations and fixed start values.
+//!
+//! Rows are matched in order of their weight: the equations of the model, initial equations, fixed starts of states,
+//! other fixed starts, `v = pre(v)` of discrete variables that nothing else determines, and at last start values that
+//! are chosen here to make the system determined.
+
+use super::draft::{Draft, Role, RowKind};
+use super::incidence::{Incidence, NONE, Scanner};
+use super::matching::{Augmenter, Matching};
+use super::sorting::{System, SystemRow};
+use super::{Unknown, discrete, messages, parameters};
+use crate::diag::Diagnostic;
+use crate::expr::{ExprId, Exprs, Node, VarId};
+use crate::flat::{Equation, Origin, OriginKind};
+
+/// The matched system and what was decided on the way.
+pub(super) struct Start {
+    pub system: System,
+    /// Variables whose start values were chosen.
+    pub chosen: Vec<VarId>,
+    /// Fixed starts that hold only if they are consistent: expressions that must vanish, with their equations.
+    pub checks: Vec<(ExprId, u32)>,
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// What the other systems have found out.
+pub(super) struct Model<'a> {
+    /// The event system: all equations with their unknowns.
+    pub running: &'a System,
+    pub states: &'a [VarId],
+    /// Differentiated variables that are not states: their fixed starts may be redundant.
+    pub demoted: &'a [VarId],
+}
+
+/// Sets up and matches the initial system.
+pub(super) fn assemble(draft: &mut Draft, model: &Model) -> Start {
+    let mut assembly = Assembly::new(draft, model);
+    assembly.model_rows(draft, model);
+    assembly.initial_equations(draft);
+    assembly.fixed_starts(draft, model);
+    assembly.discrete_defaults(draft);
+    assembly.choose_starts(draft, model);
+    assembly.finish(draft)
+}
+
+struct Assembly {
+    columns: Vec<Unknown>,
+    of_var: Vec<u32>,
+    of_der: Vec<u32>,
+    discrete_columns: Vec<bool>,
+    rows: Vec<SystemRow>,
+    incidence: Incidence,
+    matching: Matching,
+    augmenter: Augmenter,
+    scanner: Scanner,
+    /// Where `initial()` is 1 and `pre` of a variable that keeps its value is the variable.
+    map: Vec<ExprId>,
+    keeps: Vec<bool>,
+    chosen: Vec<VarId>,
+    checks: Vec<(ExprId, u32)>,
+    diagnostics: Vec<Diagnostic>,
+}
+
+impl Assembly {
+    fn new(draft: &mut Draft, model: &Model) -> Self {
+        let count = draft.variables.len();
+        let mut columns: Vec<Unknown> = model.running.columns.clone();
+        columns.extend(model.states.iter().map(|&v| Unknown::Var(v)));
+        columns.extend(draft.with_role(Role::FreeParameter).into_iter().map(Unknown::Var));
+        let (mut of_var, mut of_der) = (vec![NONE; count], vec![NONE; count]);
+        for (i, unknown) in columns.iter().enumerate() {
+            match unknown {
+                Unknown::Var(v) => of_var[v.index()] = i as u32,
+                Unknown::Der(v) => of_der[v.index()] = i as u32,
+            }
+        }
+        let is_discrete = |u: &Unknown| matches!(u, Unknown::Var(v) if draft.role(*v) == Role::Discrete);
+        let discrete_columns: Vec<bool> = columns.iter().map(is_discrete).collect();
+        let matching = Matching::empty(0, columns.len());
+        let (keeps, map) = at_start(draft, model.running);
+        Assembly {
+            columns,
+            of_var,
+            of_der,
+            discrete_columns,
+            rows: Vec::new(),
+            incidence: Incidence::default(),
+            matching,
+            augmenter: Augmenter::default(),
+            scanner: Scanner::default(),
+            map,
+            keeps,
+            chosen: Vec::new(),
+            checks: Vec::new(),
+            diagnostics: Vec::new(),
+        }
+    }
+
+    fn mapped(&self, equation: Equation) -> Equation {
+        let image = |e: ExprId| self.map.get(e.index()).copied().unwrap_or(e);
+        Equation { lhs: image(equation.lhs), rhs: image(equation.rhs), origin: equation.origin }
+    }
+
+    /// Appends a row without matching it.
+    fn push(&mut self, draft: &Draft, equation: Equation, index: u32, lone: Option<Vec<u32>>) -> u32 {
+        let (of_var, of_der) = (&self.of_var, &self.of_der);
+        let column = |node: Node| {
+            let found = match node {
+                Node::Var(v) => of_var[v.index()],
+                Node::Der(v) => of_der[v.index()],
+                _ => NONE,
+            };
+            (found != NONE).then_some(found)
+        };
+        let sides = [equation.lhs, equation.rhs];
+        let discrete = lone.is_some();
+        match lone {
+            Some(lone) => self.scanner.push_discrete(&draft.exprs, sides, &lone, column, &mut self.incidence),
+            None => {
+                let continuous = |c: u32| !self.discrete_columns[c as usize];
+                self.scanner.push(&draft.exprs, sides, column, continuous, &mut self.incidence);
+            }
+        }
+        self.rows.push(SystemRow { equation, index, discrete });
+        self.matching.column_of.push(NONE);
+        self.rows.len() as u32 - 1
+    }
+
+    fn augment(&mut self, row: u32) -> bool {
+        self.augmenter.augment(&self.incidence, &mut self.matching, row, |_| true)
+    }
+
+    /// The equations of the model, matched as they are when the model runs wherever possible.
+    fn model_rows(&mut self, draft: &Draft, model: &Model) {
+        let running = model.running;
+        let mut open = Vec::new();
+        for (i, row) in running.rows.iter().enumerate() {
+            let partner = running.matching.column_of[i];
+            if row.discrete && self.is_default(row, running.columns[partner as usize]) {
+                continue;
+            }
+            let lone = row.discrete.then(|| vec![partner]);
+            let made = self.push(draft, self.mapped(row.equation), row.index, lone);
+            if self.incidence.solvable(made).contains(&partner) {
+                self.matching.join(made, partner);
+            } else {
+                open.push(made);
+            }
+        }
+        for row in open {
+            if !self.augment(row) {
+                self.report(draft, row);
+            }
+        }
+    }
+
+    /// A discrete equation that says `v = pre(v)` at the start.
+    fn is_default(&self, row: &SystemRow, unknown: Unknown) -> bool {
+        matches!(unknown, Unknown::Var(v) if self.keeps[v.index()]) && row.discrete
+    }
+
+    fn initial_equations(&mut self, draft: &mut Draft) {
+        for equation in draft.initial_equations.clone() {
+            draft.equations.push(equation);
+            let index = draft.equations.len() as u32 - 1;
+            let equation = self.mapped(equation);
+            let lone = self.lone_columns(draft, &equation);
+            let row = self.push(draft, equation, index, lone);
+            if !self.augment(row) {
+                self.report(draft, row);
+            }
+        }
+        draft.kinds.resize(draft.equations.len(), RowKind::Continuous);
+    }
+
+    /// The discrete unknowns an initial equation can be solved for, if it is a discrete one.
+    fn lone_columns(&self, draft: &Draft, equation: &Equation) -> Option<Vec<u32>> {
+        let lone = [equation.lhs, equation.rhs].map(|e| discrete::lone_discrete(draft, e));
+        let left_is_continuous = lone[0].is_none() && discrete::has_continuous(draft, equation.lhs);
+        let found: Vec<u32> = lone.iter().flatten().map(|v| self.of_var[v.index()]).collect();
+        (!found.is_empty() && !left_is_continuous).then_some(found)
+    }
+
+    /// `x = start` for fixed continuous unknowns, states first.
+    fn fixed_starts(&mut self, draft: &mut Draft, model: &Model) {
+        let is_state = |v: &VarId| model.states.binary_search(v).is_ok();
+        let fixed = draft.with_role(Role::Continuous).into_iter().filter(|v| draft.variables[v.index()].fixed);
+        let (states, others): (Vec<VarId>, Vec<VarId>) = fixed.partition(is_state);
+        for v in states.into_iter().chain(others) {
+            let row = self.push_start(draft, v);
+            if self.augment(row) {
+                continue;
+            }
+            if model.demoted.binary_search(&v).is_ok() {
+                let SystemRow { equation, index, .. } = self.rows[row as usize];
+                let difference = draft.exprs.sub(equation.lhs, equation.rhs);
+                self.checks.push((difference, index));
+            } else {
+                self.report(draft, row);
+            }
+        }
+    }
+
+    fn push_start(&mut self, draft: &mut Draft, v: VarId) -> u32 {
+        let variable = &draft.variables[v.index()];
+        let origin = Origin { kind: OriginKind::Start, ..variable.origin };
+        let (start, ty) = (variable.start, variable.ty);
+        let rhs = match start {
+            Some(e) => e,
+            None => draft.exprs.num(parameters::default_start(ty)),
+        };
+        let lhs = draft.exprs.var(v);
+        let equation = Equation { lhs, rhs, origin };
+        draft.add_equation(equation, RowKind::Continuous);
+        self.push(draft, equation, draft.equations.len() as u32 - 1, None)
+    }
+
+    /// `v = pre(v)` for discrete unknowns that no initial equation determines.
+    fn discrete_defaults(&mut self, draft: &mut Draft) {
+        for v in draft.with_role(Role::Discrete) {
+            if !self.keeps[v.index()] {
+                continue;
+            }
+            let origin = Origin { kind: OriginKind::Start, ..draft.variables[v.index()].origin };
+            let (lhs, rhs) = (draft.exprs.var(v), draft.exprs.pre(v));
+            let equation = Equation { lhs, rhs, origin };
+            draft.add_equation(equation, RowKind::Definition);
+            let lone = Some(vec![self.of_var[v.index()]]);
+            let row = self.push(draft, equation, draft.equations.len() as u32 - 1, lone);
+            if !self.augment(row) && draft.variables[v.index()].fixed {
+                self.report(draft, row);
+            }
+        }
+    }
+
+    /// Starts of states, best first, then of other unknowns, until everything is determined.
+    fn choose_starts(&mut self, draft: &mut Draft, model: &Model) {
+        let mut missing = self.matching.row_of.iter().filter(|&&r| r == NONE).count();
+        if missing == 0 {
+            return;
+        }
+        for v in self.start_candidates(draft, model) {
+            if missing == 0 {
+                return;
+            }
+            let row = self.push_start(draft, v);
+            if self.augment(row) {
+                self.chosen.push(v);
+                missing -= 1;
+            }
+        }
+        let open = (0..self.columns.len()).filter(|&c| self.matching.row_of[c] == NONE);
+        let open: Vec<Unknown> = open.map(|c| self.columns[c]).collect();
+        if !open.is_empty() {
+            self.diagnostics.push(messages::initially_undetermined(draft, &open));
+        }
+    }
+
+    fn start_candidates(&self, draft: &Draft, model: &Model) -> Vec<VarId> {
+        let mut found: Vec<VarId> = Vec::new();
+        let mut states = model.states.to_vec();
+        let wish = |v: VarId| {
+            let v = &draft.variables[v.index()];
+            (v.state_select, v.start.is_some())
+        };
+        states.sort_by_key(|&v| std::cmp::Reverse(wish(v)));
+        found.extend(states);
+        let is_state = |v: &VarId| model.states.binary_search(v).is_ok();
+        let mut others: Vec<VarId> = draft.with_role(Role::Continuous).into_iter().filter(|v| !is_state(v)).collect();
+        others.sort_by_key(|&v| std::cmp::Reverse(wish(v)));
+        found.extend(others);
+        found.extend(draft.with_role(Role::FreeParameter));
+        found.retain(|&v| !draft.variables[v.index()].fixed);
+        found
+    }
+
+    fn report(&mut self, draft: &Draft, row: u32) {
+        let mut rows = self.augmenter.rows_seen.clone();
+        rows.sort_unstable();
+        let equations: Vec<Equation> = rows.iter().map(|&r| self.rows[r as usize].equation).collect();
+        let diagnostic = messages::initially_contradicting(draft, &self.rows[row as usize].equation, &equations);
+        self.diagnostics.push(diagnostic);
+    }
+
+    /// Keeps the matched rows.
+    fn finish(self, draft: &Draft) -> Start {
+        let mut system = System { columns: self.columns, ..System::default() };
+        system.matching = Matching::empty(0, system.columns.len());
+        for (i, row) in self.rows.iter().enumerate() {
+            let column = self.matching.column_of[i];
+            if column == NONE {
+                continue;
+            }
+            let solvable = self.incidence.solvable(i as u32);
+            system.incidence.push(solvable, &self.incidence.all(i as u32)[solvable.len()..]);
+            system.rows.push(*row);
+            system.matching.column_of.push(NONE);
+            system.matching.join(system.rows.len() as u32 - 1, column);
+        }
+        let mut diagnostics = self.diagnostics;
+        if diagnostics.is_empty() && !self.chosen.is_empty() {
+            diagnostics.push(messages::chosen_starts(draft, &self.chosen));
+        }
+        Start { system, chosen: self.chosen, checks: self.checks, diagnostics }
+    }
+}
+
+/// Which discrete unknowns keep their value at the start, and the image of every expression there.
+fn at_start(draft: &mut Draft, running: &System) -> (Vec<bool>, Vec<ExprId>) {
+    let initial = draft.rewritten(|_, node| (node == Node::Initial).then_some(Exprs::ONE));
+    let mut keeps = vec![false; draft.variables.len()];
+    for (row, &column) in running.rows.iter().zip(&running.matching.column_of) {
+        if let (true, Unknown::Var(v)) = (row.discrete, running.columns[column as usize]) {
+            let before = draft.exprs.pre(v);
+            keeps[v.index()] = initial[row.equation.rhs.index()] == before && row.equation.lhs == draft.exprs.var(v);
+        }
+    }
+    let keeping = keeps.clone();
+    let map = draft.rewritten(|pool, node| match node {
+        Node::Initial => Some(Exprs::ONE),
+        Node::Pre(v) if keeping[v.index()] => Some(pool.var(v)),
+        _ => None,
+    });
+    (keeps, map)
+}

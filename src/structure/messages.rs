@@ -1,0 +1,386 @@
+//! What the analysis says when a model cannot be solved: whole groups, by name, with the reason where a known pattern
+//! shows it.
+
+use super::draft::{Draft, Role};
+use super::dulmage_mendelsohn::Part;
+use super::parameters::Known;
+use super::regularity::Singularity;
+use super::{Alias, Unknown};
+use crate::diag::{Code, Diagnostic, Severity};
+use crate::expr::{ExprId, VarId};
+use crate::flat::{Equation, OriginKind};
+
+/// Lists are cut after so many items.
+const MOST_ITEMS: usize = 10;
+
+/// Parameters whose bindings use each other.
+pub(super) fn cyclic_parameters(draft: &Draft, circle: &[VarId]) -> Diagnostic {
+    let names: Vec<String> = circle.iter().map(|&v| name(draft, v)).collect();
+    let message = match names.as_slice() {
+        [one] => format!("parameter {one} depends on itself"),
+        _ => format!("parameters depend on each other in a circle: {}", listed(&names)),
+    };
+    let mut made = Diagnostic::new(Code::CyclicParameter, message);
+    for &v in circle.iter().take(MOST_ITEMS) {
+        let variable = &draft.variables[v.index()];
+        let text = variable.binding.map(|e| format!("`{}` = `{}`", variable.name, draft.text(e))).unwrap_or_default();
+        made = made.at(variable.origin.span, text);
+    }
+    made.help("give one of them a value that does not use the others")
+}
+
+/// Two names of one quantity with different fixed starts.
+pub(super) fn contradicting_aliases(draft: &Draft, known: &mut Known, alias: Alias) -> Diagnostic {
+    let mut value = |v: VarId| {
+        let start = draft.variables[v.index()].start;
+        start.map_or(Some(0.0), |e| known.value(&draft.exprs, e)).map_or("?".to_owned(), |x| format!("{x}"))
+    };
+    let (a, b) = (alias.target, alias.variable);
+    let sign = if alias.negated { "-" } else { "" };
+    let message = format!("{} and {sign}{} are equal but start at different values", name(draft, a), name(draft, b));
+    let (at_a, at_b) = (format!("starts at {}, fixed", value(a)), format!("starts at {}, fixed", value(b)));
+    let [at_first, at_second] = [a, b].map(|v| draft.variables[v.index()].origin.span);
+    Diagnostic::new(Code::InitialOver, message)
+        .at(at_first, at_a)
+        .at(at_second, at_b)
+        .help("fix the start of one of them only")
+}
+
+/// A constraint that would have to be differentiated but cannot be.
+pub(super) fn not_differentiable(draft: &Draft, equation: &Equation, v: VarId) -> Diagnostic {
+    let input = draft.role(v) == Role::Input;
+    let message = if input {
+        format!("the derivative of the input {} is needed, but inputs have none", name(draft, v))
+    } else {
+        format!("a derivative of {} of too high an order is needed", name(draft, v))
+    };
+    let made = Diagnostic::new(Code::IndexReduction, message).at(
+        equation.origin.span,
+        format!("`{}` fixes a quantity whose derivative is used elsewhere", sides(draft, equation)),
+    );
+    located(draft, made, equation).help(if input {
+        "pass the input through a filter (a first-order lag), or give its derivative as an input of its own"
+    } else {
+        "write the constraint without the derivative"
+    })
+}
+
+/// Constraints that no choice of states satisfies.
+pub(super) fn dependent_constraints(draft: &Draft, equations: &[Equation], unknowns: &[Unknown]) -> Diagnostic {
+    let made = Diagnostic::new(Code::Overdetermined, "constraints and their derivatives depend on each other");
+    let made = with_equations(draft, made, equations);
+    let names: Vec<String> = unknowns.iter().map(|&u| unknown_name(draft, u)).collect();
+    if names.is_empty() { made } else { made.note(format!("nothing is left to determine {}", listed(&names))) }
+}
+
+/// Initial equations and fixed starts that say too much.
+pub(super) fn initially_contradicting(draft: &Draft, extra: &Equation, group: &[Equation]) -> Diagnostic {
+    let conditions: Vec<Equation> = group.iter().filter(|e| is_condition(draft, e)).copied().collect();
+    let message = if extra.origin.kind == OriginKind::Start {
+        format!("the fixed start of `{}` is one condition too many", draft.text(extra.lhs))
+    } else {
+        format!("the initial equation `{}` is one condition too many", sides(draft, extra))
+    };
+    let made = Diagnostic::new(Code::InitialOver, message);
+    let others: Vec<Equation> = conditions.iter().filter(|e| *e != extra).copied().collect();
+    let made = with_equations(draft, made.at(extra.origin.span, "this one is too much"), &others);
+    made.note(format!("{} start conditions determine {} unknowns", conditions.len(), conditions.len().max(1) - 1))
+        .help("remove one of these conditions, for instance by `fixed = false`")
+}
+
+fn is_condition(draft: &Draft, equation: &Equation) -> bool {
+    let initial = &draft.initial_equations;
+    equation.origin.kind == OriginKind::Start || initial.iter().any(|e| e.origin == equation.origin)
+}
+
+/// Unknowns that nothing determines at the start.
+pub(super) fn initially_undetermined(draft: &Draft, open: &[Unknown]) -> Diagnostic {
+    let names: Vec<String> = open.iter().map(|&u| unknown_name(draft, u)).collect();
+    let made = Diagnostic::new(Code::InitialFailed, format!("nothing determines {} at the start", listed(&names)));
+    made.help("add an initial equation or a fixed start value")
+}
+
+/// Start values that the compiler fixed to make the start determined.
+pub(super) fn chosen_starts(draft: &Draft, chosen: &[VarId]) -> Diagnostic {
+    let names: Vec<String> = chosen.iter().map(|&v| name(draft, v)).collect();
+    let text = format!("start values used although not `fixed`: {}", listed(&names));
+    let mut made = Diagnostic::new(Code::InitialUnder, text);
+    // Many good models rely on this, so it is no warning.
+    made.severity = Severity::Note;
+    if let Some(&first) = chosen.first() {
+        made = made.at(draft.variables[first.index()].origin.span, "");
+    }
+    made
+}
+
+/// A structurally singular system.
+pub(super) fn singular(draft: &Draft, aliases: &[Alias], found: &Singularity) -> Diagnostic {
+    let report = Report { draft, aliases, found };
+    let made = report.headline();
+    report.with_facts(made)
+}
+
+struct Report<'a> {
+    draft: &'a Draft,
+    aliases: &'a [Alias],
+    found: &'a Singularity,
+}
+
+impl Report<'_> {
+    fn under(&self) -> &Part {
+        &self.found.parts.under
+    }
+
+    fn over(&self) -> &Part {
+        &self.found.parts.over
+    }
+
+    fn variables(&self, part: &Part) -> Vec<VarId> {
+        part.columns.iter().map(|&c| self.found.overview.columns[c as usize]).collect()
+    }
+
+    fn equations(&self, part: &Part) -> Vec<Equation> {
+        part.rows.iter().map(|&r| self.draft.equations[r as usize]).collect()
+    }
+
+    /// The recognised pattern, or just the parts.
+    fn headline(&self) -> Diagnostic {
+        let unknowns = self.variables(self.under());
+        let empty: Vec<Equation> = self.equations(self.over()).into_iter().filter(|e| self.holds_nothing(e)).collect();
+        if let Some(first) = empty.first() {
+            return self.without_unknowns(first);
+        }
+        if !unknowns.is_empty() && unknowns.iter().all(|&v| self.is_potential(v)) {
+            return self.no_reference(&unknowns);
+        }
+        let twice = self.variables(self.over());
+        if twice.len() == 1 || !twice.is_empty() && twice.iter().all(|&v| self.is_potential(v)) {
+            return self.determined_twice(&twice);
+        }
+        self.general(&unknowns)
+    }
+
+    fn general(&self, unknowns: &[VarId]) -> Diagnostic {
+        let unused: Vec<String> =
+            unknowns.iter().filter(|&&v| self.is_unused(v)).map(|&v| name(self.draft, v)).collect();
+        if !unused.is_empty() {
+            let message = format!("no equation mentions {}", listed(&unused));
+            return self.labelled(Diagnostic::new(Code::Singular, message), unknowns);
+        }
+        let message = match (unknowns.is_empty(), self.over().rows.is_empty()) {
+            (false, _) => {
+                let names: Vec<String> = unknowns.iter().map(|&v| name(self.draft, v)).collect();
+                format!(
+                    "{} equations cannot determine {} unknowns: {}",
+                    self.under().rows.len(),
+                    unknowns.len(),
+                    listed(&names)
+                )
+            }
+            _ => format!("{} equations for {} unknowns", self.over().rows.len(), self.over().columns.len()),
+        };
+        let code = if unknowns.is_empty() { Code::Overdetermined } else { Code::Singular };
+        let made = self.labelled(Diagnostic::new(code, message), unknowns);
+        if unknowns.is_empty() { with_equations(self.draft, made, &self.equations(self.over())) } else { made }
+    }
+
+    /// An equation of parameters, inputs and numbers only.
+    fn without_unknowns(&self, equation: &Equation) -> Diagnostic {
+        let used = self.draft.exprs.dependencies(&[equation.lhs, equation.rhs]).vars;
+        let names: Vec<String> = used.iter().map(|&v| name(self.draft, v)).collect();
+        let message = format!("the equation `{}` holds no unknown", sides(self.draft, equation));
+        let mut made = located(self.draft, Diagnostic::new(Code::Overdetermined, message), equation);
+        made = made.at(equation.origin.span, "everything in it is known already");
+        if names.is_empty() {
+            return made.note("its sides cancel, so another equation says the same already");
+        }
+        made.note(format!("known before the run: {}", listed(&names)))
+            .help("if one of them is meant to be found by this equation, declare it without `parameter` or `input`")
+    }
+
+    /// Only levels of connected nodes are undetermined.
+    fn no_reference(&self, unknowns: &[VarId]) -> Diagnostic {
+        let (level, advice) = kind_of_level(self.draft, unknowns);
+        let components = self.components_of(unknowns);
+        let message = format!("nothing fixes the {level} of {{{}}}", cut(&components, ", "));
+        let made = Diagnostic::new(Code::NoReference, message).help(advice);
+        let Part { rows, columns } = self.over();
+        let made = self.labelled(made, unknowns);
+        if rows.is_empty() {
+            return made;
+        }
+        let names: Vec<String> = self.variables(self.over()).iter().map(|&v| name(self.draft, v)).collect();
+        made.note(format!(
+            "{} equations determine only {} unknowns beside: {}",
+            rows.len(),
+            columns.len(),
+            listed(&names)
+        ))
+    }
+
+    fn determined_twice(&self, twice: &[VarId]) -> Diagnostic {
+        let equations = self.equations(self.over());
+        let mut owners: Vec<String> = equations.iter().map(|e| self.owner(e)).filter(|o| !o.is_empty()).collect();
+        owners.dedup();
+        let quantity = name(self.draft, twice[0]);
+        let message = match owners.as_slice() {
+            [a, b] => format!("{quantity} is determined by both `{a}` and `{b}`"),
+            _ => format!("{quantity} is determined {} times", equations.len().max(2)),
+        };
+        with_equations(self.draft, Diagnostic::new(Code::Overdetermined, message), &equations)
+            .help("two ideal sources cannot act on the same quantity: put a resistance or a storage between them, or remove one")
+    }
+
+    fn with_facts(&self, made: Diagnostic) -> Diagnostic {
+        let overview = &self.found.overview;
+        let pairs = overview.matching.column_of.iter().filter(|&&c| c != super::incidence::NONE).count();
+        let rows = overview.incidence.rows();
+        let made = made
+            .note(format!("{rows} equations and {} unknowns, but only {pairs} pairs match", overview.columns.len()));
+        let made = self.part_note(made, "too few equations for", self.under());
+        self.part_note(made, "too many equations for", self.over())
+    }
+
+    /// The unknowns of a part, grouped by component.
+    fn part_note(&self, made: Diagnostic, title: &str, part: &Part) -> Diagnostic {
+        if part.columns.is_empty() {
+            return made;
+        }
+        let names: Vec<String> =
+            self.variables(part).iter().map(|&v| self.draft.variables[v.index()].name.clone()).collect();
+        let head = format!("{title} these unknowns ({} equations, {} unknowns): ", part.rows.len(), part.columns.len());
+        made.note(head + &cut(&names, ", "))
+    }
+
+    fn labelled(&self, mut made: Diagnostic, unknowns: &[VarId]) -> Diagnostic {
+        for &v in unknowns.iter().take(MOST_ITEMS) {
+            let variable = &self.draft.variables[v.index()];
+            made = made.at(variable.origin.span, format!("`{}` is undetermined", variable.name));
+        }
+        match unknowns.first() {
+            Some(&v) => {
+                let instance = &self.draft.instances[self.draft.variables[v.index()].origin.instance as usize];
+                made.instance(instance.name.clone()).class(instance.class.clone())
+            }
+            None => made,
+        }
+    }
+
+    fn owner(&self, equation: &Equation) -> String {
+        self.draft.instances[equation.origin.instance as usize].name.clone()
+    }
+
+    fn holds_nothing(&self, equation: &Equation) -> bool {
+        let found = self.draft.exprs.dependencies(&[equation.lhs, equation.rhs]);
+        let unknown = |v: &VarId| matches!(self.draft.role(*v), Role::Continuous | Role::Discrete);
+        !found.vars.iter().chain(&found.ders).any(unknown)
+    }
+
+    fn is_unused(&self, v: VarId) -> bool {
+        let overview = &self.found.overview;
+        let column = overview.columns.iter().position(|&c| c == v).map(|c| c as u32);
+        column.is_some_and(|c| {
+            (0..overview.incidence.rows() as u32).all(|r| !overview.incidence.solvable(r).contains(&c))
+        })
+    }
+
+    /// All names of a quantity.
+    fn names_of(&self, v: VarId) -> impl Iterator<Item = VarId> {
+        let others = self.aliases.iter().filter(move |a| a.target == v).map(|a| a.variable);
+        std::iter::once(v).chain(others)
+    }
+
+    /// The potential of a connector, or equal to one.
+    fn is_potential(&self, v: VarId) -> bool {
+        self.names_of(v).any(|v| {
+            let variable = &self.draft.variables[v.index()];
+            !variable.flow && self.has_flow(variable.origin.instance)
+        })
+    }
+
+    /// Whether an instance is a connector: it has a flow variable of its own.
+    fn has_flow(&self, instance: u32) -> bool {
+        self.draft.variables.iter().any(|v| v.flow && v.origin.instance == instance)
+    }
+
+    /// The components whose connectors carry these potentials, in order.
+    fn components_of(&self, unknowns: &[VarId]) -> Vec<String> {
+        let mut found: Vec<u32> = Vec::new();
+        for v in unknowns.iter().flat_map(|&v| self.names_of(v)) {
+            let instance = self.draft.variables[v.index()].origin.instance;
+            if self.has_flow(instance) {
+                found.push(self.draft.instances[instance as usize].parent);
+            }
+        }
+        found.sort_unstable();
+        found.dedup();
+        found.iter().map(|&i| self.draft.instances[i as usize].name.clone()).filter(|n| !n.is_empty()).collect()
+    }
+}
+
+/// What the potentials are called, and what fixes them.
+fn kind_of_level(draft: &Draft, unknowns: &[VarId]) -> (&'static str, &'static str) {
+    let unit = unknowns.iter().find_map(|v| draft.variables[v.index()].unit.as_deref());
+    match unit {
+        Some("Pa" | "bar") => ("pressure level", "connect a tank, a volume or a fixed pressure to one of these nodes"),
+        Some("V") => ("potential", "connect a ground to one of these nodes"),
+        Some("K" | "degC") => ("temperature", "connect a heat capacity or a fixed temperature to one of these nodes"),
+        Some("rad" | "deg") => ("angle", "put an inertia, a spring or a fixed support at one of these flanges"),
+        Some("m") => ("position", "put a mass, a spring or a fixed support at one of these flanges"),
+        _ => ("level", "connect a source, a storage or a fixed reference to one of these nodes"),
+    }
+}
+
+fn with_equations(draft: &Draft, mut made: Diagnostic, equations: &[Equation]) -> Diagnostic {
+    for equation in equations.iter().take(MOST_ITEMS) {
+        made = made.at(equation.origin.span, format!("`{}`{}", sides(draft, equation), reason(equation.origin.kind)));
+    }
+    if equations.len() > MOST_ITEMS {
+        made = made.note(format!("and {} more equations", equations.len() - MOST_ITEMS));
+    }
+    match equations.first() {
+        Some(first) => located(draft, made, first),
+        None => made,
+    }
+}
+
+fn located(draft: &Draft, made: Diagnostic, equation: &Equation) -> Diagnostic {
+    let instance = &draft.instances[equation.origin.instance as usize];
+    made.instance(instance.name.clone()).class(instance.class.clone())
+}
+
+fn reason(kind: OriginKind) -> &'static str {
+    match kind {
+        OriginKind::ConnectPotential => ", from a connection",
+        OriginKind::ConnectFlow => ", the sum of flows at a node",
+        OriginKind::OpenPort => ", because the port is open",
+        OriginKind::Differentiated => ", the derivative of this equation",
+        OriginKind::Start => ", a fixed start",
+        _ => "",
+    }
+}
+
+fn sides(draft: &Draft, equation: &Equation) -> String {
+    let side = |e: ExprId| draft.text(e);
+    format!("{} = {}", side(equation.lhs), side(equation.rhs))
+}
+
+fn name(draft: &Draft, v: VarId) -> String {
+    format!("`{}`", draft.variables[v.index()].name)
+}
+
+fn unknown_name(draft: &Draft, unknown: Unknown) -> String {
+    match unknown {
+        Unknown::Var(v) => name(draft, v),
+        Unknown::Der(v) => format!("`der({})`", draft.variables[v.index()].name),
+    }
+}
+
+fn listed(names: &[String]) -> String {
+    cut(names, ", ")
+}
+
+fn cut(names: &[String], separator: &str) -> String {
+    let shown = names[..names.len().min(MOST_ITEMS)].join(separator);
+    if names.len() > MOST_ITEMS { format!("{shown} and {} more", names.len() - MOST_ITEMS) } else { shown }
+}

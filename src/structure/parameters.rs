@@ -1,0 +1,300 @@
+//! Parameters: the order in which bindings are evaluated, their values, and what follows for expressions of them.
+
+use super::draft::{Draft, Role};
+use super::{blt, messages};
+use crate::diag::Diagnostic;
+use crate::expr::{ExprId, Exprs, Node, VarId};
+use crate::flat::Equation;
+use crate::flat::{OriginKind, Type};
+
+/// Sorts the parameters so that each binding refers to earlier ones only, after moving those that depend on free
+/// parameters to the free ones: their bindings become initial equations. The error is a circle of bindings.
+pub(super) fn order(draft: &mut Draft) -> Result<Vec<VarId>, Diagnostic> {
+    let bound = draft.with_role(Role::Parameter);
+    let mut position = vec![u32::MAX; draft.variables.len()];
+    for (i, v) in bound.iter().enumerate() {
+        position[v.index()] = i as u32;
+    }
+    let uses = Uses::of(draft);
+    let sorted = blt::components(bound.len(), |node, out| {
+        let used = uses.of_variable(bound[node as usize]).iter();
+        out.extend(used.map(|u| position[u.index()]).filter(|&p| p != u32::MAX));
+    });
+    for members in sorted.iter() {
+        let first = bound[members[0] as usize];
+        if members.len() > 1 || uses.of_variable(first).contains(&first) {
+            let circle: Vec<VarId> = members.iter().map(|&m| bound[m as usize]).collect();
+            return Err(messages::cyclic_parameters(draft, &circle));
+        }
+    }
+    let order: Vec<VarId> = sorted.iter().map(|members| bound[members[0] as usize]).collect();
+    Ok(without_free(draft, &uses, order))
+}
+
+/// Moves dependents of free parameters to the free ones.
+fn without_free(draft: &mut Draft, uses: &Uses, order: Vec<VarId>) -> Vec<VarId> {
+    let mut kept = Vec::with_capacity(order.len());
+    for v in order {
+        if !uses.of_variable(v).iter().any(|u| draft.role(*u) == Role::FreeParameter) {
+            kept.push(v);
+            continue;
+        }
+        draft.roles[v.index()] = Role::FreeParameter;
+        if let Some(binding) = draft.variables[v.index()].binding.take() {
+            let lhs = draft.exprs.var(v);
+            let origin = crate::flat::Origin { kind: OriginKind::Binding, ..draft.variables[v.index()].origin };
+            draft.initial_equations.push(Equation { lhs, rhs: binding, origin });
+        }
+    }
+    kept
+}
+
+/// The variables that each binding uses.
+struct Uses {
+    starts: Vec<u32>,
+    used: Vec<VarId>,
+}
+
+impl Uses {
+    fn of(draft: &Draft) -> Self {
+        let mut found = Uses { starts: Vec::with_capacity(draft.variables.len() + 1), used: Vec::new() };
+        let mut walk = crate::expr::visit::Walk::default();
+        for (v, role) in draft.variables.iter().zip(&draft.roles) {
+            found.starts.push(found.used.len() as u32);
+            if let (Some(binding), Role::Parameter) = (v.binding, role) {
+                walk.each(&draft.exprs, &[binding], |_, node| {
+                    if let Node::Var(u) = node {
+                        found.used.push(u);
+                    }
+                    true
+                });
+            }
+        }
+        found.starts.push(found.used.len() as u32);
+        found
+    }
+
+    fn of_variable(&self, v: VarId) -> &[VarId] {
+        &self.used[self.starts[v.index()] as usize..self.starts[v.index() + 1] as usize]
+    }
+}
+
+/// The values of all parameters as they stand in the model; 0 where there is none (flatten has reported that).
+pub(super) fn values(draft: &Draft, order: &[VarId]) -> Vec<f64> {
+    let mut values = vec![f64::NAN; draft.variables.len()];
+    let mut evaluation = crate::expr::eval::Evaluation::default();
+    for &v in order {
+        let variable = &draft.variables[v.index()];
+        let given = variable.binding.or(variable.start);
+        values[v.index()] = match given {
+            Some(e) => evaluation.value(&draft.exprs, e, &mut |node| match node {
+                Node::Var(u) => values[u.index()],
+                _ => f64::NAN,
+            }),
+            None => default_start(variable.ty),
+        };
+    }
+    values
+}
+
+/// The start value of a type when none is given.
+pub(super) fn default_start(ty: Type) -> f64 {
+    if matches!(ty, Type::Enumeration(_)) { 1.0 } else { 0.0 }
+}
+
+/// What is known about the value of an expression.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Sign {
+    Unknown,
+    Positive,
+    Negative,
+    NotNegative,
+    NotPositive,
+    NotZero,
+}
+
+/// Signs and parameter values of all nodes of a growing pool.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Known {
+    variables: Vec<f64>,
+    values: Vec<f64>,
+    signs: Vec<Sign>,
+}
+
+impl Known {
+    /// From the parameters' values; NaN for all other variables.
+    pub fn new(variables: Vec<f64>) -> Self {
+        Known { variables, values: Vec::new(), signs: Vec::new() }
+    }
+
+    /// The value of an expression of parameters.
+    pub fn value(&mut self, pool: &Exprs, e: ExprId) -> Option<f64> {
+        self.extend(pool);
+        Some(self.values[e.index()]).filter(|v| !v.is_nan())
+    }
+
+    /// True when an expression cannot vanish, whatever variables and time are, with the parameters as they are.
+    pub fn is_nonzero(&mut self, pool: &Exprs, e: ExprId) -> bool {
+        self.extend(pool);
+        matches!(self.signs[e.index()], Sign::Positive | Sign::Negative | Sign::NotZero)
+    }
+
+    fn extend(&mut self, pool: &Exprs) {
+        for i in self.values.len()..pool.len() {
+            let e = ExprId(i as u32);
+            let value = self.node_value(pool, e);
+            let sign = if value.is_finite() { sign_of(value) } else { self.node_sign(pool, e) };
+            self.values.push(value);
+            self.signs.push(sign);
+        }
+    }
+
+    fn node_value(&self, pool: &Exprs, e: ExprId) -> f64 {
+        let node = pool.node(e);
+        let operands = pool.operands(e);
+        let known =
+            !operands.as_slice().is_empty() && operands.as_slice().iter().all(|a| !self.values[a.index()].is_nan());
+        match node {
+            Node::Num(bits) => f64::from_bits(bits),
+            Node::Var(v) => self.variables.get(v.index()).copied().unwrap_or(f64::NAN),
+            Node::If(c, a, b) if !self.values[c.index()].is_nan() => {
+                self.values[if self.values[c.index()] == 0.0 { b } else { a }.index()]
+            }
+            Node::Sample(..) => f64::NAN,
+            _ if known => self.combined(pool, e),
+            _ => f64::NAN,
+        }
+    }
+
+    /// The value of a node of which all arguments are known.
+    fn combined(&self, pool: &Exprs, e: ExprId) -> f64 {
+        let leaf = |node: Node| match node {
+            Node::Var(v) => self.variables.get(v.index()).copied().unwrap_or(f64::NAN),
+            _ => f64::NAN,
+        };
+        match pool.node(e) {
+            Node::Unary(op, a) => crate::expr::math::unary(op, self.values[a.index()]),
+            Node::Binary(op, a, b) => crate::expr::math::binary(op, self.values[a.index()], self.values[b.index()]),
+            _ => pool.eval(e, &mut { leaf }),
+        }
+    }
+
+    fn node_sign(&self, pool: &Exprs, e: ExprId) -> Sign {
+        use crate::expr::{Binary, Unary};
+        let of = |a: ExprId| self.signs[a.index()];
+        match pool.node(e) {
+            Node::Unary(op, a) => match op {
+                Unary::Neg => opposite(of(a)),
+                Unary::Exp | Unary::Cosh => Sign::Positive,
+                Unary::Abs if nonzero(of(a)) => Sign::Positive,
+                Unary::Sqrt if of(a) == Sign::Positive => Sign::Positive,
+                Unary::Abs | Unary::Sqrt | Unary::Not => Sign::NotNegative,
+                Unary::Sinh | Unary::Tanh | Unary::Atan | Unary::Sign => of(a),
+                _ => Sign::Unknown,
+            },
+            Node::Binary(op, a, b) => match op {
+                Binary::Add => sum(of(a), of(b)),
+                Binary::Sub => sum(of(a), opposite(of(b))),
+                Binary::Mul if a == b => {
+                    if nonzero(of(a)) {
+                        Sign::Positive
+                    } else {
+                        Sign::NotNegative
+                    }
+                }
+                // A quotient of something that is not 0 is not 0 either, unless it overflows.
+                Binary::Mul | Binary::Div => product(of(a), of(b)),
+                Binary::Pow => self.power(of(a), b),
+                Binary::Max if of(a) == Sign::Positive || of(b) == Sign::Positive => Sign::Positive,
+                Binary::Max if not_negative(of(a)) || not_negative(of(b)) => Sign::NotNegative,
+                Binary::Min if of(a) == Sign::Negative || of(b) == Sign::Negative => Sign::Negative,
+                Binary::Min | Binary::Max => either(of(a), of(b)),
+                _ => Sign::Unknown,
+            },
+            Node::If(_, a, b) | Node::Homotopy(a, b) => either(of(a), of(b)),
+            Node::Rel(..) => Sign::NotNegative,
+            _ => Sign::Unknown,
+        }
+    }
+
+    fn power(&self, base: Sign, exponent: ExprId) -> Sign {
+        let even = self.values[exponent.index()] % 2.0 == 0.0;
+        match base {
+            Sign::Positive => Sign::Positive,
+            _ if even && nonzero(base) => Sign::Positive,
+            _ if even => Sign::NotNegative,
+            Sign::NotNegative => Sign::NotNegative,
+            _ => Sign::Unknown,
+        }
+    }
+}
+
+fn sign_of(value: f64) -> Sign {
+    if value > 0.0 {
+        Sign::Positive
+    } else if value < 0.0 {
+        Sign::Negative
+    } else {
+        Sign::NotNegative
+    }
+}
+
+fn nonzero(s: Sign) -> bool {
+    matches!(s, Sign::Positive | Sign::Negative | Sign::NotZero)
+}
+
+fn not_negative(s: Sign) -> bool {
+    matches!(s, Sign::Positive | Sign::NotNegative)
+}
+
+fn not_positive(s: Sign) -> bool {
+    matches!(s, Sign::Negative | Sign::NotPositive)
+}
+
+fn opposite(s: Sign) -> Sign {
+    match s {
+        Sign::Positive => Sign::Negative,
+        Sign::Negative => Sign::Positive,
+        Sign::NotNegative => Sign::NotPositive,
+        Sign::NotPositive => Sign::NotNegative,
+        other => other,
+    }
+}
+
+fn sum(a: Sign, b: Sign) -> Sign {
+    let strict = nonzero(a) || nonzero(b);
+    if not_negative(a) && not_negative(b) {
+        if strict { Sign::Positive } else { Sign::NotNegative }
+    } else if not_positive(a) && not_positive(b) {
+        if strict { Sign::Negative } else { Sign::NotPositive }
+    } else {
+        Sign::Unknown
+    }
+}
+
+fn product(a: Sign, b: Sign) -> Sign {
+    let same = not_negative(a) && not_negative(b) || not_positive(a) && not_positive(b);
+    let other = not_negative(a) && not_positive(b) || not_positive(a) && not_negative(b);
+    match (nonzero(a) && nonzero(b), same, other) {
+        (true, true, _) => Sign::Positive,
+        (true, _, true) => Sign::Negative,
+        (true, ..) => Sign::NotZero,
+        (false, true, _) => Sign::NotNegative,
+        (false, _, true) => Sign::NotPositive,
+        _ => Sign::Unknown,
+    }
+}
+
+fn either(a: Sign, b: Sign) -> Sign {
+    if a == b {
+        a
+    } else if nonzero(a) && nonzero(b) {
+        Sign::NotZero
+    } else if not_negative(a) && not_negative(b) {
+        Sign::NotNegative
+    } else if not_positive(a) && not_positive(b) {
+        Sign::NotPositive
+    } else {
+        Sign::Unknown
+    }
+}
