@@ -36,12 +36,11 @@ fn run(flat: &FlatModel, choice: &StateChoice, diagnostics: &mut Vec<Diagnostic>
     let order = parameters::order(&mut draft)?;
     let values = parameters::values(&draft, &order);
     let mut known = Known::new(values.clone());
-    events::extract(&mut draft);
-    discrete::translate_whens(&mut draft);
+    make_discrete_equations(&mut draft);
     prefer_reinitialized(&mut draft);
     let aliases = alias::eliminate(&mut draft, &mut known, diagnostics);
     discrete::classify(&mut draft);
-    regularity::check(&draft).map_err(|found| messages::singular(&draft, &aliases, &found))?;
+    regularity::check(&draft).map_err(|found| explain_singular(flat, &draft, &found))?;
 
     let mut reduction = Reduction::new(&mut draft);
     reduction.reduce(&mut draft)?;
@@ -60,6 +59,23 @@ fn run(flat: &FlatModel, choice: &StateChoice, diagnostics: &mut Vec<Diagnostic>
     dae.chosen_starts = start.chosen;
     dae.initial_checks.extend(start.checks);
     Ok(dae)
+}
+
+fn make_discrete_equations(draft: &mut Draft) {
+    events::extract(draft);
+    discrete::translate_whens(draft);
+}
+
+/// Explains with all equations and unknowns as the user wrote them, before aliases were eliminated, if they show the
+/// fault too.
+fn explain_singular(flat: &FlatModel, reduced: &Draft, found: &regularity::Singularity) -> Diagnostic {
+    let mut whole = Draft::new(flat);
+    make_discrete_equations(&mut whole);
+    discrete::classify(&mut whole);
+    match regularity::check(&whole) {
+        Err(found) => messages::singular(&whole, &found),
+        Ok(()) => messages::singular(reduced, found),
+    }
 }
 
 /// What `reinit` sets must be a state if that is possible.

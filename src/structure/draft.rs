@@ -141,9 +141,9 @@ impl Draft {
         self.kinds.push(kind);
     }
 
-    /// Replaces every expression by what `map` says.
+    /// Replaces every expression by what `map` says; those beyond it were made along with the map.
     pub fn map_expressions(&mut self, map: &[ExprId]) {
-        self.each_expression(|e| *e = map[e.index()]);
+        self.each_expression(|e| *e = map.get(e.index()).copied().unwrap_or(*e));
     }
 
     /// Calls `visit` with every expression there is.

@@ -180,10 +180,13 @@ fn integral_variable(reduction: &Reduction, column: u32) -> VarId {
 /// The values of the Jacobian where the run starts; entries that vanish there by accident or cannot be evaluated are
 /// tried again at some other point if the rank is too low.
 fn eliminate(draft: &Draft, rows: &[&Row], order: &[Ranked], parameters: &[f64]) -> Vec<u32> {
-    let at_start = Point { draft, parameters, shift: 0.0 };
-    let found = pivots(rows, order, &mut at_start.values(rows));
-    if found.len() == rows.len() {
-        return found;
+    // What the solver asks for fits the point that the run has come to, not the start.
+    if !order.iter().any(|(wish, _)| wish.asked) {
+        let at_start = Point { draft, parameters, shift: 0.0 };
+        let found = pivots(rows, order, &mut at_start.values(rows));
+        if found.len() == rows.len() {
+            return found;
+        }
     }
     let elsewhere = Point { draft, parameters, shift: 1.0 };
     pivots(rows, order, &mut elsewhere.values(rows))

@@ -251,7 +251,7 @@ impl Assembly {
         }
         let open = (0..self.columns.len()).filter(|&c| self.matching.row_of[c] == NONE);
         let open: Vec<Unknown> = open.map(|c| self.columns[c]).collect();
-        if !open.is_empty() {
+        if !open.is_empty() && self.diagnostics.is_empty() {
             self.diagnostics.push(messages::initially_undetermined(draft, &open));
         }
     }
@@ -274,7 +274,11 @@ impl Assembly {
         found
     }
 
+    /// The first contradiction is reported; later ones may follow from it.
     fn report(&mut self, draft: &Draft, row: u32) {
+        if !self.diagnostics.is_empty() {
+            return;
+        }
         let mut rows = self.augmenter.rows_seen.clone();
         rows.sort_unstable();
         let equations: Vec<Equation> = rows.iter().map(|&r| self.rows[r as usize].equation).collect();

@@ -114,15 +114,14 @@ pub(super) fn chosen_starts(draft: &Draft, chosen: &[VarId]) -> Diagnostic {
 }
 
 /// A structurally singular system.
-pub(super) fn singular(draft: &Draft, aliases: &[Alias], found: &Singularity) -> Diagnostic {
-    let report = Report { draft, aliases, found };
+pub(super) fn singular(draft: &Draft, found: &Singularity) -> Diagnostic {
+    let report = Report { draft, found };
     let made = report.headline();
     report.with_facts(made)
 }
 
 struct Report<'a> {
     draft: &'a Draft,
-    aliases: &'a [Alias],
     found: &'a Singularity,
 }
 
@@ -147,8 +146,9 @@ impl Report<'_> {
     fn headline(&self) -> Diagnostic {
         let unknowns = self.variables(self.under());
         let empty: Vec<Equation> = self.equations(self.over()).into_iter().filter(|e| self.holds_nothing(e)).collect();
-        if let Some(first) = empty.first() {
-            return self.without_unknowns(first);
+        let all_known = empty.iter().find(|e| !self.draft.exprs.dependencies(&[e.lhs, e.rhs]).vars.is_empty());
+        if let Some(equation) = all_known {
+            return self.without_unknowns(equation);
         }
         if !unknowns.is_empty() && unknowns.iter().all(|&v| self.is_potential(v)) {
             return self.no_reference(&unknowns);
@@ -157,7 +157,10 @@ impl Report<'_> {
         if twice.len() == 1 || !twice.is_empty() && twice.iter().all(|&v| self.is_potential(v)) {
             return self.determined_twice(&twice);
         }
-        self.general(&unknowns)
+        match empty.first() {
+            Some(equation) => self.without_unknowns(equation),
+            None => self.general(&unknowns),
+        }
     }
 
     fn general(&self, unknowns: &[VarId]) -> Diagnostic {
@@ -284,18 +287,10 @@ impl Report<'_> {
         })
     }
 
-    /// All names of a quantity.
-    fn names_of(&self, v: VarId) -> impl Iterator<Item = VarId> {
-        let others = self.aliases.iter().filter(move |a| a.target == v).map(|a| a.variable);
-        std::iter::once(v).chain(others)
-    }
-
-    /// The potential of a connector, or equal to one.
+    /// The potential of a connector.
     fn is_potential(&self, v: VarId) -> bool {
-        self.names_of(v).any(|v| {
-            let variable = &self.draft.variables[v.index()];
-            !variable.flow && self.has_flow(variable.origin.instance)
-        })
+        let variable = &self.draft.variables[v.index()];
+        !variable.flow && self.has_flow(variable.origin.instance)
     }
 
     /// Whether an instance is a connector: it has a flow variable of its own.
@@ -306,7 +301,7 @@ impl Report<'_> {
     /// The components whose connectors carry these potentials, in order.
     fn components_of(&self, unknowns: &[VarId]) -> Vec<String> {
         let mut found: Vec<u32> = Vec::new();
-        for v in unknowns.iter().flat_map(|&v| self.names_of(v)) {
+        for v in unknowns {
             let instance = self.draft.variables[v.index()].origin.instance;
             if self.has_flow(instance) {
                 found.push(self.draft.instances[instance as usize].parent);

@@ -169,13 +169,13 @@ impl Model {
         self
     }
 
-    /// Branches of conditions (separated by commas) and assignments; `reinit(x, e)` is written `reinit x = e`.
+    /// Branches of conditions (separated by bars) and assignments; `reinit(x, e)` is written `reinit x = e`.
     pub fn when(&mut self, branches: &[(&str, &str)]) -> &mut Self {
         let origin = origin(0, OriginKind::Declared);
         let branches = branches
             .iter()
             .map(|(conditions, actions)| WhenBranch {
-                conditions: conditions.split(',').map(|c| self.expr(c)).collect(),
+                conditions: conditions.split('|').map(|c| self.expr(c)).collect(),
                 actions: pieces(actions).map(|a| self.action(a)).collect(),
             })
             .collect();
@@ -304,7 +304,9 @@ impl Parser<'_> {
         if word.starts_with(|c: char| c.is_ascii_digit()) {
             return self.model.flat.exprs.num(word.parse().expect("a number"));
         }
-        if self.take("(") { self.call(&word) } else { self.name(&word) }
+        let call = self.peek() == "(" && !matches!(word.as_str(), "and" | "or");
+        self.at += usize::from(call);
+        if call { self.call(&word) } else { self.name(&word) }
     }
 
     fn name(&mut self, word: &str) -> ExprId {
