@@ -22,7 +22,7 @@ partial model Machine "Displacement machine in four quadrants: delivery and torq
   SI.VolumeFlowRate Q_leak(nominal = 1e-7) "Internal leakage from A to B, at the density of the high side";
   SI.Torque T_sh(nominal = 1) "Torque that the shaft gives to the machine";
   SI.Torque T_loss(nominal = 0.1) "Part of it that is lost";
-  SI.Power lossPower(nominal = 10) "Power lost: shaft power less dp*Q_A";
+  SI.Power lossPower(nominal = 10) "Power lost: shaft power less dp times the flow of the high side";
 protected
   constant Real pi = Modelica.Constants.pi;
   parameter Real D(unit = "m3/rad") = V/(2*pi) "Displacement per radian";
@@ -71,14 +71,14 @@ equation
   rho_a*Q_A = m_ideal - rho_high*Q_leak;
   port_a.q = -Q_A;
   rho_a*port_a.q + rho_b*port_b.q = 0;
-  T_sh = D*dp + T_loss;
+  T_sh = fill*D*dp + T_loss;
   flange.tau = T_sh;
-  lossPower = T_sh*w - dp*Q_A;
+  lossPower = T_sh*w - dp*Q_A*rho_a/rho_high;
   annotation(Documentation(info = "<html>
 <p>Positive speed pushes oil from B to A. With <code>dp = p_A - p_B</code>, dp and speed of equal sign are pumping, of opposite sign motoring; a motor is the same machine.</p>
 <p><b>Delivery.</b> A chamber closes at the inlet with the density there and its dead volume returns what it holds at the outlet, so that a revolution carries the mass
 <code>rho_in (V + V_d) - rho_out V_d</code>. In one formula for both directions of rotation: <code>V (n (rho_A + rho_B)/2 - |n| (1/2 + V_d/V)(rho_A - rho_B))</code>. Pumping this is the known compression loss
 <code>n (V + V_d) dp/beta</code>, motoring <code>n V_d dp/beta</code>; mass is conserved exactly. Without <code>compression</code> the displacement counts at the high side.</p>
-<p><b>Starvation</b>: delivery falls smoothly between <code>p_cav + p_fill</code> and <code>p_cav</code> of inlet pressure.</p>
+<p><b>Starvation</b>: delivery falls smoothly between <code>p_cav + p_fill</code> and <code>p_cav</code> of inlet pressure, and the torque with it.</p>
 <p>Sources: J. Ivantysyn and M. Ivantysynova, Hydrostatic Pumps and Motors, 2001; compression: D. McCandlish and R. E. Dorey, Proc. IMechE B 198 (1984) 165.</p></html>"));
 end Machine;
