@@ -16,7 +16,7 @@ protected
   Real v_l "Volume of the oil over the volume of the air-free oil at p_0";
   Real r "Volume of a bubble over that at p_0";
 algorithm
-  p_s := max(p, 0) + p_w*log(1 + exp(-abs(p)/p_w));
+  p_s := max(p, 0) + p_w*(log(1 + exp(-abs(p)/p_w)) + 1e-6);
   floor_slope := 1/(1 + exp(min(-p/p_w, 200)));
   x := max(1 + m*(p_s - p_0)/beta_0, 1e-3);
   u := min(max((p_s - p_0)/(p_sat - p_0), 0), 1);

@@ -13,7 +13,7 @@ protected
   Real v_l "Volume of the oil over the volume of the air-free oil at p_0";
   Real v_g "Volume of the undissolved air, likewise";
 algorithm
-  p_s := max(p, 0) + p_w*log(1 + exp(-abs(p)/p_w));
+  p_s := max(p, 0) + p_w*(log(1 + exp(-abs(p)/p_w)) + 1e-6);
   floor_slope := 1/(1 + exp(min(-p/p_w, 200)));
   x := max(1 + m*(p_s - p_0)/beta_0, 1e-3);
   v_l := (1 - alpha_0)*x^(-1/m);
