@@ -13,7 +13,6 @@ const NONE: Slot = Slot::MAX;
 /// run says (time, homotopy, phase), variables, derivatives, values before the event, numbers of the text, and work.
 #[derive(Clone, Debug)]
 pub struct Layout {
-    variables: u32,
     der: Vec<Slot>,
     pre: Vec<Slot>,
     numbers: FxHashMap<u64, Slot>,
@@ -38,7 +37,6 @@ impl Layout {
     pub fn new(dae: &Dae) -> Layout {
         let variables = u32::try_from(dae.variables.len()).expect("fewer than 2^32 variables");
         let mut layout = Layout {
-            variables,
             der: vec![NONE; dae.variables.len()],
             pre: vec![NONE; dae.variables.len()],
             numbers: FxHashMap::default(),
@@ -131,7 +129,7 @@ impl Layout {
     pub(super) fn work(&mut self, count: usize) -> Slot {
         let first = self.len;
         self.len += slot(count);
-        assert!(self.len < 1 << 29, "the byte offset of every slot fits into 32 bits");
+        assert!(self.len < 1 << 28, "the byte offset of every slot fits into 31 bits");
         first
     }
 

@@ -4,18 +4,39 @@
 //! [`lower`] is the entry. How the array is laid out says [`Layout`]; which explicit variables IDA never sees says
 //! `eliminate`; how equal expressions share one kernel says `shape`.
 
-#[allow(dead_code, reason = "used by the programs that follow")]
+mod blocks;
+mod code;
+mod conditions;
+mod continuous;
+mod eliminate;
+mod interpret;
+mod jacobian;
 mod layout;
+mod native;
+mod parameters;
 mod program;
+mod shape;
 mod system;
+mod trap;
 
 pub use layout::{Layout, Slot};
 pub use program::Program;
 pub use system::System;
+pub use trap::Trap;
 
 use crate::expr::{ExprId, VarId};
 use crate::structure::{Dae, Unknown};
+use conditions::ConditionsDraft;
+use continuous::{ContinuousDraft, CrossingsDraft, Observables};
+use eliminate::Plan;
+use jacobian::Differentials;
+use layout::slot;
+use parameters::Bindings;
+use program::{Assembler, Defs, Order};
+use rustc_hash::FxHashMap;
+use shape::{Kernels, Shaper};
 use std::sync::Arc;
+use system::Programs;
 
 /// How to lower.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,17 +54,6 @@ impl Default for Options {
 /// A value that is not finite came out. [`System::trap`] finds where it was made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NonFinite;
-
-/// The first operation that made a value that is not finite.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Trap {
-    /// The operation with its numbers, as in `sqrt(-3.2)`.
-    pub operation: String,
-    /// The same operation as the user wrote it, as in `sqrt(valve.dp)`.
-    pub written: String,
-    /// Its value: infinite or NaN.
-    pub value: f64,
-}
 
 /// An unknown of the IDA system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -179,20 +189,114 @@ pub enum RowKind {
 }
 
 /// Lowers a model.
-pub fn lower(dae: Arc<Dae>, _options: &Options) -> System {
+pub fn lower(dae: Arc<Dae>, options: &Options) -> System {
     let layout = Layout::new(&dae);
-    let columns = dae.states.iter().map(|&variable| Column { variable, state: true }).collect();
-    let nothing = Conditions { program: Program::default(), holds: Vec::new(), value: Vec::new() };
-    System {
-        layout,
-        columns,
-        rows: Vec::new(),
-        pattern: Pattern::default(),
-        root_crossings: Vec::new(),
-        event: Vec::new(),
-        initial: Vec::new(),
-        actions: nothing.clone(),
-        asserts: nothing,
-        dae,
+    let plan = eliminate::plan(&dae, &layout);
+    let mut shaper = Shaper::new(&dae, layout);
+    let drafts = Drafts::new(&dae, &plan, &mut shaper);
+    let Shaper { kernels, mut layout, .. } = shaper;
+    kernels.numbers().for_each(|number| {
+        layout.number(number);
+    });
+    drafts.assemble(dae, plan, layout, kernels, options)
+}
+
+/// The definitions of all programs, before the programs are made: code needs to know all slots.
+struct Drafts {
+    bindings: (Vec<VarId>, Defs),
+    continuous: ContinuousDraft,
+    observables: Observables,
+    crossings: CrossingsDraft,
+    actions: ConditionsDraft,
+    asserts: ConditionsDraft,
+    event: Vec<blocks::Draft>,
+    initial: Vec<blocks::Draft>,
+    hoisted: Defs,
+}
+
+impl Drafts {
+    fn new(dae: &Dae, plan: &Plan, shaper: &mut Shaper) -> Drafts {
+        let inline = FxHashMap::default();
+        let modes = dae.crossings.iter().map(|crossing| crossing.mode).collect();
+        let bindings = parameters::draft(dae, shaper);
+        let continuous = continuous::draft(plan, shaper);
+        let observables = Observables::new(dae, plan, shaper);
+        let crossings = continuous::crossings(dae, shaper);
+        let actions = conditions::actions(dae, shaper);
+        let asserts = conditions::asserts(dae, shaper);
+        let event = blocks::Drafter::new(shaper, false, &inline, &modes).blocks(&dae.event);
+        let initial = blocks::Drafter::new(shaper, true, &inline, &modes).blocks(&dae.initial);
+        let hoisted = shaper.hoisted_definitions();
+        Drafts { bindings, continuous, observables, crossings, actions, asserts, event, initial, hoisted }
+    }
+
+    fn assemble(self, dae: Arc<Dae>, plan: Plan, layout: Layout, kernels: Kernels, options: &Options) -> System {
+        let functions = Arc::new(kernels.pool.functions.clone());
+        let kernels = Arc::new(kernels);
+        let mut programs = Programs { functions, kernels: kernels.clone(), ..Programs::default() };
+        programs.column_slots = plan.columns.iter().map(|c| slot(layout.var(c.variable))).collect();
+        programs.row_slots = self.continuous.row_slots;
+        programs.entries = self.continuous.entries;
+        programs.torn = plan.torn;
+        programs.crossing_slots = self.crossings.slots;
+        programs.aliases = alias_slots(&dae, &layout);
+        programs.late = late_parameters(&dae);
+        programs.bindings = Bindings::new(&self.bindings.0, &self.bindings.1, &kernels, &layout);
+
+        let mut assembler = Assembler::new(&kernels, &layout);
+        let by_need = Order::Dependency;
+        assembler.set_native(options.native);
+        programs.residual = assembler.assemble(&self.continuous.residual, by_need, None);
+        let Differentials { defs, products, .. } = self.continuous.jacobian;
+        programs.jacobian = assembler.assemble(&defs, by_need, Some(products));
+        let with_observables = self.observables.before(&kernels, &self.crossings.defs);
+        programs.crossings = assembler.assemble(&with_observables, by_need, None);
+        assembler.set_native(false);
+        programs.crossings_alone = assembler.assemble(&self.crossings.defs, by_need, None);
+        programs.hoisted = assembler.assemble(&self.hoisted, by_need, None);
+        programs.observe = assembler.assemble(&self.observables.defs, by_need, None);
+        programs.observables = self.observables;
+        let actions = self.actions.assemble(None, &mut assembler);
+        let asserts = self.asserts.assemble(Some(&programs.observables), &mut assembler);
+        let event = blocks::assemble(self.event, &mut assembler);
+        let initial = blocks::assemble(self.initial, &mut assembler);
+        let entries = assembler.compile(&programs.functions);
+
+        let mut system = System {
+            columns: plan.columns,
+            rows: plan.rows,
+            pattern: self.continuous.pattern,
+            root_crossings: self.crossings.list,
+            dae,
+            layout,
+            event,
+            initial,
+            actions,
+            asserts,
+            programs,
+        };
+        system.finish(&entries);
+        system
     }
 }
+
+fn alias_slots(dae: &Dae, layout: &Layout) -> Vec<(Slot, Slot, bool)> {
+    let place = |v| slot(layout.var(v));
+    dae.aliases.iter().map(|a| (place(a.variable), place(a.target), a.negated)).collect()
+}
+
+/// Per variable: a parameter with a binding that depends on one found by the initial system.
+fn late_parameters(dae: &Dae) -> Vec<bool> {
+    if dae.free_parameters.is_empty() {
+        return Vec::new();
+    }
+    let fixed = shape::fixed_parameters(dae);
+    let mut late = vec![false; fixed.len()];
+    for v in &dae.parameters {
+        late[v.index()] = !fixed[v.index()];
+    }
+    late
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,10 +1,409 @@
 //! A [`Program`]: kernels over the array of values, run in order.
+//!
+//! Definitions of one shape that do not wait for each other run as one loop over a table of slots; the rest is merged
+//! into straight code of limited size, in which values pass in registers.
+
+use super::code::Code;
+use super::interpret::Bytecode;
+use super::layout::{Layout, Slot, slot};
+use super::native::{Compiler, Entry, Ticket};
+use super::shape::{Kernel, KernelId, Kernels, Shaped, copy_node};
+use crate::expr::function::Function;
+use crate::expr::{ExprId, Exprs, Node, VarId};
+use rustc_hash::{FxHashMap, FxHashSet};
+use std::sync::Arc;
+
+/// Straight code is cut when it has this many nodes; machine code is slow to make beyond.
+const STRAIGHT_SIZE: usize = 1200;
+
+/// A shape is run as a loop when it has at least this many instances ...
+const LOOP_INSTANCES: usize = 4;
+
+/// ... and they have at least this many nodes together.
+const LOOP_SIZE: usize = 400;
+
+/// Definitions to be computed: each a kernel with the slots it reads and writes.
+#[derive(Clone, Debug, Default)]
+pub struct Defs {
+    items: Vec<(KernelId, u32)>,
+    slots: Vec<Slot>,
+}
+
+impl Defs {
+    /// Adds the definition of one slot.
+    pub fn define(&mut self, kernels: &mut Kernels, target: Slot, shaped: &Shaped) {
+        self.push(kernels, vec![shaped.expr], &shaped.inputs, &[target]);
+    }
+
+    /// Adds a definition of several slots.
+    pub fn push(&mut self, kernels: &mut Kernels, outputs: Vec<ExprId>, inputs: &[Slot], targets: &[Slot]) {
+        let kernel = kernels.intern(Kernel { inputs: slot(inputs.len()), outputs });
+        self.items.push((kernel, slot(self.slots.len())));
+        self.slots.extend_from_slice(inputs);
+        self.slots.extend_from_slice(targets);
+    }
+
+    /// Adds all definitions of another list.
+    pub fn append(&mut self, other: &Defs) {
+        let shift = slot(self.slots.len());
+        self.items.extend(other.items.iter().map(|&(kernel, start)| (kernel, start + shift)));
+        self.slots.extend_from_slice(&other.slots);
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.items.len()
+    }
+
+    /// The definition with this number: kernel, inputs, targets.
+    pub fn get(&self, kernels: &Kernels, i: usize) -> (KernelId, &[Slot], &[Slot]) {
+        let (kernel, start) = self.items[i];
+        let shape = kernels.get(kernel);
+        let row = &self.slots[start as usize..][..shape.inputs as usize + shape.outputs.len()];
+        let (inputs, targets) = row.split_at(shape.inputs as usize);
+        (kernel, inputs, targets)
+    }
+
+    /// The definitions with these numbers, in this order.
+    pub fn select(&self, kernels: &Kernels, chosen: impl IntoIterator<Item = usize>) -> Defs {
+        let mut defs = Defs::default();
+        for i in chosen {
+            let (kernel, inputs, targets) = self.get(kernels, i);
+            defs.items.push((kernel, slot(defs.slots.len())));
+            defs.slots.extend_from_slice(inputs);
+            defs.slots.extend_from_slice(targets);
+        }
+        defs
+    }
+}
+
+/// Sums of products: `v[target] = sum of v[a] * v[b]`, from left to right, one after the other.
+#[derive(Clone, Debug, Default)]
+pub struct Products {
+    /// Per sum, its slot and one past its last factor pair.
+    pub sums: Vec<(Slot, u32)>,
+    /// The pairs of factors.
+    pub factors: Vec<(Slot, Slot)>,
+}
+
+impl Products {
+    fn run(&self, v: &mut [f64]) {
+        let mut start = 0;
+        for &(target, end) in &self.sums {
+            let terms = &self.factors[start..end as usize];
+            v[target as usize] = terms.iter().fold(0.0, |sum, &(a, b)| sum + v[a as usize] * v[b as usize]);
+            start = end as usize;
+        }
+    }
+}
 
 /// Something to compute, reading and writing slots of one array of values. Cheap to clone; shared between threads.
 #[derive(Clone, Debug, Default)]
-pub struct Program {}
+pub struct Program {
+    steps: Arc<Vec<Step>>,
+    functions: Arc<Vec<Function>>,
+    len: usize,
+}
+
+#[derive(Debug)]
+enum Step {
+    Straight { bytecode: Bytecode, native: Native },
+    Loop(Loop),
+    Products(Products),
+}
+
+#[derive(Debug)]
+struct Loop {
+    kernel: KernelId,
+    bytecode: Bytecode,
+    native: Native,
+    inputs: usize,
+    outputs: usize,
+    /// Per instance its inputs, then its targets.
+    table: Vec<Slot>,
+    scratch: usize,
+}
+
+#[derive(Debug)]
+enum Native {
+    None,
+    Ordered(Ticket),
+    Ready(Entry),
+}
+
+impl Native {
+    fn finish(&mut self, entries: &[Entry]) {
+        if let Native::Ordered(ticket) = self {
+            *self = entries.get(ticket.index()).map_or(Native::None, |entry| Native::Ready(entry.clone()));
+        }
+    }
+}
 
 impl Program {
-    /// Computes. `values` has the length of the layout.
-    pub fn run(&self, _values: &mut [f64]) {}
+    /// Computes. `values` is an array of the layout the program was made for.
+    pub fn run(&self, values: &mut [f64]) {
+        assert!(values.len() >= self.len, "the array of values belongs to another system");
+        for step in self.steps.iter() {
+            match step {
+                Step::Straight { native: Native::Ready(entry), .. } => entry.run(values, &self.functions),
+                Step::Straight { bytecode, .. } => bytecode.run(&self.functions, values),
+                Step::Loop(l) => l.run(&self.functions, values),
+                Step::Products(products) => products.run(values),
+            }
+        }
+    }
+
+    /// True when there is nothing to compute.
+    pub fn is_empty(&self) -> bool {
+        self.steps.is_empty()
+    }
+
+    /// Number of loops and pieces of straight code: with equal parts it does not grow with their number.
+    pub fn kernels(&self) -> usize {
+        self.steps.len()
+    }
+
+    /// How many scratch places the interpreter needs.
+    pub(super) fn scratch(&self) -> u32 {
+        let need = |step: &Step| match step {
+            Step::Straight { bytecode, .. } | Step::Loop(Loop { bytecode, .. }) => bytecode.scratch(),
+            Step::Products(_) => 0,
+        };
+        self.steps.iter().map(need).max().unwrap_or(0)
+    }
+
+    /// Last touch: where the scratch region begins, how long the array is, what has been compiled.
+    ///
+    /// Does nothing to a program that has been cloned before.
+    pub(super) fn finish(&mut self, scratch: Slot, len: usize, functions: &Arc<Vec<Function>>, entries: &[Entry]) {
+        self.functions = functions.clone();
+        self.len = len;
+        let Some(steps) = Arc::get_mut(&mut self.steps) else { return };
+        for step in steps {
+            match step {
+                Step::Straight { bytecode, native } => {
+                    bytecode.relocate(scratch);
+                    native.finish(entries);
+                }
+                Step::Loop(l) => {
+                    l.scratch = scratch as usize;
+                    l.bytecode.relocate(scratch);
+                    l.native.finish(entries);
+                }
+                Step::Products(_) => {}
+            }
+        }
+    }
+}
+
+impl Loop {
+    fn run(&self, functions: &[Function], v: &mut [f64]) {
+        if let Native::Ready(entry) = &self.native {
+            return entry.run_table(v, &self.table, self.inputs + self.outputs, functions);
+        }
+        for row in self.table.chunks_exact(self.inputs + self.outputs) {
+            let (inputs, targets) = row.split_at(self.inputs);
+            for (place, &input) in (self.scratch..).zip(inputs) {
+                v[place] = v[input as usize];
+            }
+            self.bytecode.run(functions, v);
+            for (place, &target) in (self.scratch + self.inputs..).zip(targets) {
+                v[target as usize] = v[place];
+            }
+        }
+    }
+}
+
+/// How definitions are ordered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Order {
+    /// By dependency: each slot is defined before it is read, and equal shapes come together.
+    Dependency,
+    /// As given: slots may be read before they are defined (values of the last turn of an iteration).
+    Given,
+}
+
+/// Makes programs.
+pub struct Assembler<'a> {
+    kernels: &'a Kernels,
+    layout: &'a Layout,
+    codes: FxHashMap<KernelId, Arc<Code>>,
+    tickets: FxHashMap<KernelId, Ticket>,
+    compiler: Compiler,
+    native: bool,
+}
+
+impl<'a> Assembler<'a> {
+    /// Programs of `kernels` over `layout`, interpreted unless told otherwise.
+    pub fn new(kernels: &'a Kernels, layout: &'a Layout) -> Self {
+        let (codes, tickets) = (FxHashMap::default(), FxHashMap::default());
+        Assembler { kernels, layout, codes, tickets, compiler: Compiler::default(), native: false }
+    }
+
+    /// Compiles what was to be compiled.
+    pub fn compile(self, functions: &[Function]) -> Vec<Entry> {
+        self.compiler.compile(functions)
+    }
+
+    /// The kernels that programs are made of.
+    pub fn kernels(&self) -> &'a Kernels {
+        self.kernels
+    }
+
+    /// Whether programs made from here on are compiled.
+    pub fn set_native(&mut self, native: bool) {
+        self.native = native;
+    }
+
+    /// The program that computes `defs`, then `products`.
+    pub fn assemble(&mut self, defs: &Defs, order: Order, products: Option<Products>) -> Program {
+        let mut steps = Vec::new();
+        let looped = self.looped(defs, order);
+        let mut straight = Straight::default();
+        for i in self.schedule(defs, order, &looped) {
+            let (kernel, inputs, targets) = defs.get(self.kernels, i);
+            if looped.contains(&kernel) {
+                self.flush(&mut straight, &mut steps);
+                self.push_loop(kernel, inputs, targets, &mut steps);
+            } else {
+                if !straight.takes(targets) {
+                    self.flush(&mut straight, &mut steps);
+                }
+                straight.add(self.kernels, kernel, inputs, targets);
+            }
+        }
+        self.flush(&mut straight, &mut steps);
+        steps.extend(products.filter(|p| !p.sums.is_empty()).map(Step::Products));
+        Program { steps: Arc::new(steps), ..Program::default() }
+    }
+
+    fn code(&mut self, kernel: KernelId) -> Arc<Code> {
+        let kernels = self.kernels;
+        let make = || Arc::new(Code::new(&kernels.pool, &kernels.get(kernel).outputs));
+        self.codes.entry(kernel).or_insert_with(make).clone()
+    }
+
+    /// The kernels that are worth a loop.
+    fn looped(&mut self, defs: &Defs, order: Order) -> FxHashSet<KernelId> {
+        let mut counts: FxHashMap<KernelId, usize> = FxHashMap::default();
+        if order == Order::Dependency {
+            defs.items.iter().for_each(|&(kernel, _)| *counts.entry(kernel).or_default() += 1);
+        }
+        counts.retain(|_, count| *count >= LOOP_INSTANCES);
+        counts.retain(|&kernel, count| *count * self.code(kernel).size >= LOOP_SIZE);
+        counts.into_keys().collect()
+    }
+
+    /// The order of computation: by level, loops before straight code, equal kernels together.
+    fn schedule(&self, defs: &Defs, order: Order, looped: &FxHashSet<KernelId>) -> Vec<usize> {
+        let mut sequence: Vec<usize> = (0..defs.len()).collect();
+        if order == Order::Given || looped.is_empty() {
+            return sequence;
+        }
+        let levels = self.levels(defs);
+        let mut first: FxHashMap<KernelId, usize> = FxHashMap::default();
+        for (i, &(kernel, _)) in defs.items.iter().enumerate() {
+            first.entry(kernel).or_insert(i);
+        }
+        sequence.sort_by_key(|&i| {
+            let kernel = defs.items[i].0;
+            let group = if looped.contains(&kernel) { first[&kernel] } else { usize::MAX };
+            (levels[i], group, i)
+        });
+        sequence
+    }
+
+    /// One more than the highest level of what a definition reads.
+    fn levels(&self, defs: &Defs) -> Vec<u32> {
+        let mut defined = vec![0u32; self.layout.len()];
+        let mut levels = Vec::with_capacity(defs.len());
+        for i in 0..defs.len() {
+            let (_, inputs, targets) = defs.get(self.kernels, i);
+            let level = inputs.iter().map(|&input| defined[input as usize]).max().unwrap_or(0) + 1;
+            targets.iter().for_each(|&target| defined[target as usize] = level);
+            levels.push(level);
+        }
+        levels
+    }
+
+    fn push_loop(&mut self, kernel: KernelId, inputs: &[Slot], targets: &[Slot], steps: &mut Vec<Step>) {
+        let open = matches!(steps.last(), Some(Step::Loop(l)) if l.kernel == kernel);
+        if !open {
+            let code = self.code(kernel);
+            let bytecode = Bytecode::looped(&code, slot(inputs.len()), self.layout);
+            let native = self.order_loop(kernel, &code, inputs.len());
+            let (inputs, outputs) = (inputs.len(), targets.len());
+            steps.push(Step::Loop(Loop { kernel, bytecode, native, inputs, outputs, table: Vec::new(), scratch: 0 }));
+        }
+        if let Some(Step::Loop(l)) = steps.last_mut() {
+            l.table.extend_from_slice(inputs);
+            l.table.extend_from_slice(targets);
+        }
+    }
+
+    fn order_loop(&mut self, kernel: KernelId, code: &Arc<Code>, inputs: usize) -> Native {
+        if !self.native || code.size > 2 * STRAIGHT_SIZE {
+            return Native::None;
+        }
+        let compiler = &mut self.compiler;
+        let order = || compiler.order_loop(code.clone(), slot(inputs));
+        Native::Ordered(*self.tickets.entry(kernel).or_insert_with(order))
+    }
+
+    fn flush(&mut self, straight: &mut Straight, steps: &mut Vec<Step>) {
+        let Straight { pool, targets, outputs, .. } = std::mem::take(straight);
+        if targets.is_empty() {
+            return;
+        }
+        let code = Code::new(&pool, &outputs);
+        let bytecode = Bytecode::straight(&code, &targets, self.layout);
+        let native = if self.native && code.size <= 2 * STRAIGHT_SIZE {
+            Native::Ordered(self.compiler.order_straight(Arc::new(code), targets))
+        } else {
+            Native::None
+        };
+        steps.push(Step::Straight { bytecode, native });
+    }
+}
+
+/// Straight code that is being collected: expressions whose leaves are slots.
+#[derive(Default)]
+struct Straight {
+    pool: Exprs,
+    targets: Vec<Slot>,
+    outputs: Vec<ExprId>,
+    /// What has been computed for a slot so far.
+    current: FxHashMap<Slot, ExprId>,
+}
+
+impl Straight {
+    /// Whether a definition of these slots fits in.
+    fn takes(&self, targets: &[Slot]) -> bool {
+        self.pool.len() < STRAIGHT_SIZE && !targets.iter().any(|target| self.current.contains_key(target))
+    }
+
+    fn add(&mut self, kernels: &Kernels, kernel: KernelId, inputs: &[Slot], targets: &[Slot]) {
+        let shape = kernels.get(kernel);
+        let mut copies: FxHashMap<ExprId, ExprId> = FxHashMap::default();
+        for e in kernels.pool.reachable(&shape.outputs, |_| true) {
+            let copy = match kernels.pool.node(e) {
+                Node::Var(VarId(input)) => self.leaf(inputs[input as usize]),
+                _ => copy_node(&kernels.pool, e, &mut self.pool, |operand| copies[&operand]),
+            };
+            copies.insert(e, copy);
+        }
+        for (&target, output) in targets.iter().zip(&shape.outputs) {
+            let copy = copies[output];
+            self.current.insert(target, copy);
+            self.targets.push(target);
+            self.outputs.push(copy);
+        }
+    }
+
+    fn leaf(&mut self, slot: Slot) -> ExprId {
+        match self.current.get(&slot) {
+            Some(&known) => known,
+            None => self.pool.var(VarId(slot)),
+        }
+    }
 }

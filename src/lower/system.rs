@@ -1,7 +1,16 @@
 //! The lowered model.
 
-use super::{BlockCode, Column, Conditions, Layout, NonFinite, Pattern, Program, Row, Trap};
-use crate::expr::{ExprId, VarId};
+use super::blocks;
+use super::continuous::Observables;
+use super::layout::Slot;
+use super::native::Entry;
+use super::parameters::Bindings;
+use super::program::{Assembler, Order};
+use super::shape::Kernels;
+use super::trap::{self, Trap};
+use super::{BlockCode, Column, Conditions, Layout, NonFinite, Pattern, Program, Row, RowKind};
+use crate::expr::function::Function;
+use crate::expr::{ExprId, Node, VarId};
 use crate::structure::Dae;
 use std::sync::Arc;
 
@@ -29,16 +38,56 @@ pub struct System {
     pub actions: Conditions,
     /// `Dae::asserts`, with all explicit variables they need: run after [`System::load`].
     pub asserts: Conditions,
+    pub(super) programs: Programs,
+}
+
+/// What the methods of [`System`] run.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Programs {
+    pub kernels: Arc<Kernels>,
+    pub functions: Arc<Vec<Function>>,
+    pub bindings: Bindings,
+    /// Parameters that depend on ones found by the initial system.
+    pub late: Vec<bool>,
+    pub hoisted: Program,
+    pub residual: Program,
+    pub jacobian: Program,
+    /// Per matrix entry, the slots of what is added and subtracted.
+    pub entries: Vec<(Slot, Slot)>,
+    /// Per column, the slot of its variable.
+    pub column_slots: Vec<Slot>,
+    /// Per row, the slot of its right side.
+    pub row_slots: Vec<Slot>,
+    /// Columns whose derivative is read from yp, and its slot.
+    pub torn: Vec<(usize, Slot)>,
+    /// Root functions with the explicit variables they need, and without.
+    pub crossings: Program,
+    pub crossings_alone: Program,
+    pub crossing_slots: Vec<Slot>,
+    pub observables: Observables,
+    pub observe: Program,
+    /// Alias, target, negated.
+    pub aliases: Vec<(Slot, Slot, bool)>,
+    /// Where the scratch region begins.
+    pub scratch: Slot,
 }
 
 impl System {
     /// Computes parameters from their bindings (entries of `overridden`, by `VarId::index`, keep the value they have in
     /// `values`; an empty slice overrides nothing), and then everything that depends on parameters alone.
     /// To be called again whenever a parameter's value has been changed.
-    pub fn evaluate_parameters(&self, _values: &mut [f64], _overridden: &[bool]) {}
+    pub fn evaluate_parameters(&self, values: &mut [f64], overridden: &[bool]) {
+        let p = &self.programs;
+        let wanted = |v: VarId| !overridden.get(v.index()).copied().unwrap_or(false);
+        p.bindings.run(&p.functions, values, wanted);
+        p.hoisted.run(values);
+    }
 
-    /// Recomputes what depends on parameters alone, after a parameter was found by the initial system.
-    pub fn parameters_changed(&self, _values: &mut [f64]) {}
+    /// Recomputes what depends on parameters that the initial system has found.
+    pub fn parameters_changed(&self, values: &mut [f64]) {
+        let p = &self.programs;
+        p.bindings.run(&p.functions, values, |v| p.late.get(v.index()).copied().unwrap_or(false));
+    }
 
     /// The start value of a variable, if one is given.
     pub fn start(&self, v: VarId, values: &[f64]) -> Option<f64> {
@@ -66,10 +115,13 @@ impl System {
     }
 
     /// Puts time and the IDA unknowns into their slots.
-    pub fn load(&self, t: f64, y: &[f64], _yp: &[f64], values: &mut [f64]) {
+    pub fn load(&self, t: f64, y: &[f64], yp: &[f64], values: &mut [f64]) {
         values[Layout::TIME] = t;
-        for (column, y) in self.columns.iter().zip(y) {
-            values[self.layout.var(column.variable)] = *y;
+        for (&slot, &y) in self.programs.column_slots.iter().zip(y) {
+            values[slot as usize] = y;
+        }
+        for &(column, slot) in &self.programs.torn {
+            values[slot as usize] = yp[column];
         }
     }
 
@@ -80,7 +132,18 @@ impl System {
     /// When an entry of `r` is not finite.
     pub fn residual(&self, t: f64, y: &[f64], yp: &[f64], values: &mut [f64], r: &mut [f64]) -> Result<(), NonFinite> {
         self.load(t, y, yp, values);
-        if r.iter().all(|r| r.is_finite()) { Ok(()) } else { Err(NonFinite) }
+        self.programs.residual.run(values);
+        let mut finite = true;
+        for (i, (row, &place)) in self.rows.iter().zip(&self.programs.row_slots).enumerate() {
+            let value = values[place as usize];
+            r[i] = match row.kind {
+                RowKind::Derivative => yp[i] - value,
+                RowKind::Explicit => y[i] - value,
+                RowKind::Residual => value,
+            };
+            finite &= r[i].is_finite();
+        }
+        if finite { Ok(()) } else { Err(NonFinite) }
     }
 
     /// dF/dy + cj dF/dyp into `val`, in the order of `pattern`.
@@ -90,51 +153,106 @@ impl System {
     pub fn jacobian(
         &self,
         t: f64,
-        _cj: f64,
+        cj: f64,
         y: &[f64],
         yp: &[f64],
         values: &mut [f64],
         val: &mut [f64],
     ) -> Result<(), NonFinite> {
         self.load(t, y, yp, values);
-        if val.iter().all(|v| v.is_finite()) { Ok(()) } else { Err(NonFinite) }
+        values[Layout::CJ] = cj;
+        self.programs.jacobian.run(values);
+        let mut finite = true;
+        for (entry, &(plus, minus)) in val.iter_mut().zip(&self.programs.entries) {
+            *entry = values[plus as usize] - values[minus as usize];
+            finite &= entry.is_finite();
+        }
+        if finite { Ok(()) } else { Err(NonFinite) }
     }
 
     /// Per entry of `root_crossings` left side minus right side, or the argument of a `floor`, into `g`.
-    pub fn crossings(&self, t: f64, y: &[f64], yp: &[f64], values: &mut [f64], _g: &mut [f64]) {
+    pub fn crossings(&self, t: f64, y: &[f64], yp: &[f64], values: &mut [f64], g: &mut [f64]) {
         self.load(t, y, yp, values);
+        self.programs.crossings.run(values);
+        self.copy_crossings(values, g);
     }
 
     /// The same from the slots as they are (after the event or initial blocks have run).
-    pub fn crossings_from(&self, _values: &mut [f64], _g: &mut [f64]) {}
+    pub fn crossings_from(&self, values: &mut [f64], g: &mut [f64]) {
+        self.programs.crossings_alone.run(values);
+        self.copy_crossings(values, g);
+    }
+
+    fn copy_crossings(&self, values: &[f64], g: &mut [f64]) {
+        for (g, &slot) in g.iter_mut().zip(&self.programs.crossing_slots) {
+            *g = values[slot as usize];
+        }
+    }
 
     /// Fills the slots of all variables and derivatives from y, yp and the discrete slots. Derivatives of states come
     /// from their equations where they are explicit, else from yp.
     pub fn observe(&self, t: f64, y: &[f64], yp: &[f64], values: &mut [f64]) {
         self.load(t, y, yp, values);
-        self.aliases(values);
+        self.programs.observe.run(values);
     }
 
-    /// A program that fills the slots of these variables, to be run after [`System::load`].
-    pub fn observe_only(&self, _wanted: &[VarId]) -> Program {
-        Program::default()
+    /// A program that fills the slots of these variables, to be run after [`System::load`]. It is interpreted.
+    pub fn observe_only(&self, wanted: &[VarId]) -> Program {
+        let p = &self.programs;
+        let slots = wanted.iter().filter_map(|&v| self.layout.leaf(Node::Var(v)));
+        let defs = p.observables.needed(&p.kernels, slots);
+        let mut program = Assembler::new(&p.kernels, &self.layout).assemble(&defs, Order::Dependency, None);
+        let room = self.layout.len() - p.scratch as usize;
+        debug_assert!(program.scratch() as usize <= room, "parts of a program need no more scratch than the whole");
+        program.finish(p.scratch, p.scratch as usize + program.scratch() as usize, &p.functions, &[]);
+        program
     }
 
     /// Copies targets of aliases into the aliases' slots.
     pub fn aliases(&self, values: &mut [f64]) {
-        for alias in &self.dae.aliases {
-            let value = values[self.layout.var(alias.target)];
-            values[self.layout.var(alias.variable)] = if alias.negated { -value } else { value };
+        for &(alias, target, negated) in &self.programs.aliases {
+            let value = values[target as usize];
+            values[alias as usize] = if negated { -value } else { value };
         }
     }
 
     /// The value of any expression of the model by the reference interpreter: for messages and what is rare.
-    pub fn eval(&self, _e: ExprId, _values: &[f64]) -> f64 {
-        0.0
+    pub fn eval(&self, e: ExprId, values: &[f64]) -> f64 {
+        self.dae.exprs.eval(e, &mut |node| self.leaf(node, values))
+    }
+
+    /// Last touch to all programs: where the scratch region begins and what has been compiled.
+    pub(super) fn finish(&mut self, entries: &[Entry]) {
+        let mut scratch = self.programs.bindings.scratch();
+        self.each_program(&mut |program| scratch = scratch.max(program.scratch()));
+        let base = self.layout.work(scratch as usize);
+        let (len, functions) = (self.layout.len(), self.programs.functions.clone());
+        self.programs.scratch = base;
+        self.programs.bindings.relocate(base);
+        self.each_program(&mut |program| program.finish(base, len, &functions, entries));
+    }
+
+    fn each_program(&mut self, visit: &mut impl FnMut(&mut Program)) {
+        let p = &mut self.programs;
+        for program in [&mut p.hoisted, &mut p.residual, &mut p.jacobian, &mut p.crossings] {
+            visit(program);
+        }
+        for program in [&mut p.crossings_alone, &mut p.observe] {
+            visit(program);
+        }
+        visit(&mut self.actions.program);
+        visit(&mut self.asserts.program);
+        blocks::each_program(&mut self.event, visit);
+        blocks::each_program(&mut self.initial, visit);
+    }
+
+    /// The value of a leaf.
+    pub(super) fn leaf(&self, node: Node, values: &[f64]) -> f64 {
+        self.layout.leaf(node).map_or(0.0, |slot| values[slot as usize])
     }
 
     /// The first operation in `e` that makes a value that is not finite, in the order of evaluation.
-    pub fn trap(&self, _e: ExprId, _values: &[f64]) -> Option<Trap> {
-        None
+    pub fn trap(&self, e: ExprId, values: &[f64]) -> Option<Trap> {
+        trap::find(self, e, values)
     }
 }
