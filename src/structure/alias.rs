@@ -322,10 +322,10 @@ fn aliases(targets: &[Signed]) -> Vec<Alias> {
 /// What makes a variable the better representative; larger wins.
 type Rank = (bool, bool, StateSelect, bool, bool, bool, bool, std::cmp::Reverse<usize>, std::cmp::Reverse<usize>);
 
-fn ranks(draft: &Draft) -> Vec<Rank> {
+fn ranks(draft: &mut Draft) -> Vec<Rank> {
     let mut differentiated = vec![false; draft.variables.len()];
-    for i in 0..draft.exprs.len() as u32 {
-        if let Node::Der(v) = draft.exprs.node(ExprId(i)) {
+    for (i, _) in draft.live_nodes().iter().enumerate().filter(|(_, live)| **live) {
+        if let Node::Der(v) = draft.exprs.node(ExprId(i as u32)) {
             differentiated[v.index()] = true;
         }
     }

@@ -40,6 +40,7 @@ fn run(flat: &FlatModel, choice: &StateChoice, diagnostics: &mut Vec<Diagnostic>
     prefer_reinitialized(&mut draft);
     let aliases = alias::eliminate(&mut draft, &mut known, diagnostics);
     discrete::classify(&mut draft);
+    discrete::absorb_initial_pres(&mut draft);
     regularity::check(&draft).map_err(|found| explain_singular(flat, &draft, &found))?;
 
     let mut reduction = Reduction::new(&mut draft);

@@ -115,6 +115,42 @@ fn add_actions(draft: &mut Draft, when: &When, fires: &[ExprId]) {
     }
 }
 
+/// `pre(v) = value` among the initial equations fixes the start of `v`, where the value is known before the run.
+pub(super) fn absorb_initial_pres(draft: &mut Draft) {
+    let equations = std::mem::take(&mut draft.initial_equations);
+    for equation in equations {
+        match given_pre(draft, &equation) {
+            Some((v, start)) => {
+                draft.variables[v.index()].start = Some(start);
+                draft.variables[v.index()].fixed = true;
+            }
+            None => draft.initial_equations.push(equation),
+        }
+    }
+}
+
+/// The variable and its start, if the equation is one of those.
+fn given_pre(draft: &mut Draft, equation: &Equation) -> Option<(VarId, ExprId)> {
+    let (v, value) = match (draft.exprs.node(equation.lhs), draft.exprs.node(equation.rhs)) {
+        (Node::Pre(v), _) => (v, equation.rhs),
+        (_, Node::Pre(v)) => (v, equation.lhs),
+        _ => return None,
+    };
+    let found = draft.exprs.dependencies(&[value]);
+    let known = found.ders.is_empty() && !found.time && found.vars.iter().all(|&u| draft.role(u) == Role::Parameter);
+    if !known || draft.role(v) != Role::Discrete {
+        return None;
+    }
+    let mut replacements = Vec::with_capacity(found.pres.len());
+    for u in found.pres {
+        let start = draft.variables[u.index()].start;
+        let default = super::parameters::default_start(draft.variables[u.index()].ty);
+        let value = start.unwrap_or_else(|| draft.exprs.num(default));
+        replacements.push((draft.exprs.pre(u), value));
+    }
+    Some((v, draft.exprs.substitute(value, &replacements)))
+}
+
 /// Finds the equations that determine discrete unknowns.
 ///
 /// A lone discrete unknown on the left makes the equation a discrete one, and so does one on the right when the left

@@ -178,11 +178,30 @@ impl Draft {
         self.initial_checks.iter_mut().for_each(|(e, _)| visit(e));
     }
 
-    /// The image of every node of the pool when `leaf` replaces some of them, arguments first.
+    /// Which nodes of the pool any expression holds; earlier stages leave others behind that may mean nothing here.
+    pub fn live_nodes(&mut self) -> Vec<bool> {
+        let mut live = vec![false; self.exprs.len()];
+        self.each_expression(|e| live[e.index()] = true);
+        // Arguments have smaller ids than their node.
+        for i in (0..live.len()).rev() {
+            if live[i] {
+                for a in self.exprs.operands(ExprId(i as u32)).as_slice() {
+                    live[a.index()] = true;
+                }
+            }
+        }
+        live
+    }
+
+    /// The image of every live node of the pool when `leaf` replaces some of them, arguments first.
     pub fn rewritten(&mut self, mut leaf: impl FnMut(&mut Exprs, Node) -> Option<ExprId>) -> Vec<ExprId> {
-        let count = self.exprs.len();
-        let mut map = Vec::with_capacity(count);
-        for i in 0..count as u32 {
+        let live = self.live_nodes();
+        let mut map = Vec::with_capacity(live.len());
+        for i in 0..live.len() as u32 {
+            if !live[i as usize] {
+                map.push(ExprId(i));
+                continue;
+            }
             let node = self.exprs.node(ExprId(i));
             let image = match leaf(&mut self.exprs, node) {
                 Some(image) => image,

@@ -242,9 +242,9 @@ fn pivots(rows: &[&Row], order: &[Ranked], values: &mut [FxHashMap<u32, f64>]) -
     let scales: Vec<f64> = values.iter().map(|row| row.values().fold(0.0, |m: f64, v| m.max(v.abs()))).collect();
     let mut free: Vec<usize> = (0..rows.len()).collect();
     let mut by_column: FxHashMap<u32, Vec<usize>> = FxHashMap::default();
-    for (i, row) in values.iter().enumerate() {
-        for &c in row.keys() {
-            by_column.entry(c).or_default().push(i);
+    for (i, row) in rows.iter().enumerate() {
+        for (c, _) in &row.entries {
+            by_column.entry(*c).or_default().push(i);
         }
     }
     let mut is_free = vec![true; rows.len()];

@@ -21,7 +21,13 @@ enum Varies {
 pub(super) fn extract(draft: &mut Draft) {
     let origins = eventful_origins(draft);
     let mut extraction = Extraction { map: Vec::with_capacity(origins.len()), varies: Vec::new() };
+    let live = draft.live_nodes();
     for (i, origin) in origins.iter().enumerate() {
+        if !live[i] {
+            extraction.map.push(ExprId(i as u32));
+            extraction.varies.push(Varies::AtEvents);
+            continue;
+        }
         let image = extraction.image(draft, ExprId(i as u32), *origin);
         extraction.map.push(image);
         let varies = extraction.variation(draft, ExprId(i as u32));

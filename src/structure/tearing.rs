@@ -48,6 +48,8 @@ struct State<'a> {
     /// Open columns of each row.
     open: Vec<u32>,
     used: Vec<bool>,
+    /// Columns that some row can safely be solved for.
+    solvable: Vec<bool>,
     known: Vec<bool>,
     open_columns: usize,
     /// Rows with one open column.
@@ -60,8 +62,10 @@ struct State<'a> {
 impl<'a> State<'a> {
     fn new(graph: &'a LoopGraph) -> Self {
         let mut rows_of = vec![Vec::new(); graph.liking.len()];
+        let mut solvable = vec![false; graph.liking.len()];
         for (row, columns) in graph.rows.iter().enumerate() {
-            for &(c, _) in columns {
+            for &(c, safe) in columns {
+                solvable[c as usize] |= safe;
                 rows_of[c as usize].push(row as u32);
             }
         }
@@ -72,6 +76,7 @@ impl<'a> State<'a> {
             rows_of,
             open,
             used: vec![false; graph.rows.len()],
+            solvable,
             known: vec![false; graph.liking.len()],
             open_columns: graph.liking.len(),
             ready,
@@ -117,9 +122,11 @@ impl<'a> State<'a> {
         }
     }
 
-    /// Rows that would become solvable at once count most, then all open rows, then what the caller likes.
+    /// An unknown that no row can safely be solved for must be guessed. Else rows that would become solvable at once
+    /// count most, then all open rows, then what the caller likes.
     fn score(&self, column: u32) -> u64 {
         let (mut opened, mut uses) = (0_u64, 0_u64);
+        let must = u64::from(!self.solvable[column as usize]);
         for &row in &self.rows_of[column as usize] {
             if self.used[row as usize] {
                 continue;
@@ -130,7 +137,8 @@ impl<'a> State<'a> {
                 opened += u64::from(self.graph.rows[row as usize].iter().find(other).is_some_and(|e| e.1));
             }
         }
-        (opened.min(0xffff) << 40)
+        (must << 60)
+            | (opened.min(0xffff) << 40)
             | (uses.min(0xffff) << 20)
             | u64::from(self.graph.liking[column as usize].min(0xf_ffff))
     }

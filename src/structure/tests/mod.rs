@@ -122,9 +122,11 @@ fn pre_in_initial_equations() {
     m.initial("pre(m) = 2*pre(n) - 1");
     let found = dae(&m);
     insta::assert_snapshot!(found.blocks_text(&found.initial), @r"
-    m := 2 * n - 1
     n := pre(n)
+    m := pre(m)
     ");
+    let start = found.variables[m.id("m").index()].start.expect("given by the initial equation");
+    assert_eq!(found.text(start), "9");
 }
 
 #[test]
