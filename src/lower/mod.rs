@@ -300,3 +300,6 @@ fn late_parameters(dae: &Dae) -> Vec<bool> {
 
 #[cfg(test)]
 mod tests;
+
+#[cfg(test)]
+mod random_tests;
