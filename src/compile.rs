@@ -3,12 +3,16 @@
 use crate::diag::{Code, Diagnostic, Sources};
 use crate::flat::{self, FlatModel};
 use crate::instance::{self, ModelRequest, Override};
+use crate::lower::{self, System};
 use crate::network::{self, Graph};
 use crate::resolve::{ClassId, Library, Trees, nested_classes};
 use crate::shipped::Shipped;
+use crate::structure::{self, Dae, StateChoice};
 use crate::syntax::ast::{self, ClassBody, ClassKind};
+use crate::units;
 use crate::world::World;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// What to compile.
 #[derive(Clone, Debug, Default)]
@@ -41,6 +45,42 @@ pub struct Flattened {
     pub flat: FlatModel,
     /// Components and connections of the top level.
     pub graph: Graph,
+}
+
+/// A model ready to run.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// Scalar variables and equations; kept so that other states can be chosen during a run.
+    pub flat: Arc<FlatModel>,
+    /// Components and connections of the top level.
+    pub graph: Graph,
+    /// Sorted equations.
+    pub dae: Arc<Dae>,
+    /// Kernels.
+    pub system: Arc<System>,
+}
+
+/// The whole pipeline.
+pub fn compile(world: &dyn World, request: &Request, options: &lower::Options) -> Outcome<Model> {
+    let Outcome { sources, mut diagnostics, value } = sort(world, request);
+    let model = value.map(|(flat, graph, dae)| {
+        let dae = Arc::new(dae);
+        let system = Arc::new(lower::lower(dae.clone(), options));
+        Model { flat: Arc::new(flat), graph, dae, system }
+    });
+    sort_messages(&mut diagnostics);
+    Outcome { sources, diagnostics, value: model }
+}
+
+/// The pipeline up to the sorted equations.
+pub fn sort(world: &dyn World, request: &Request) -> Outcome<(FlatModel, Graph, Dae)> {
+    let Outcome { sources, mut diagnostics, value } = flatten(world, request);
+    let value = value.and_then(|f| {
+        diagnostics.extend(units::check(&f.flat));
+        let dae = structure::analyze(&f.flat, &StateChoice::default()).sink(&mut diagnostics)?;
+        Some((f.flat, f.graph, dae))
+    });
+    Outcome { sources, diagnostics, value }
 }
 
 /// The pipeline up to the flat model.
@@ -212,6 +252,11 @@ fn has_experiment(class: &ast::Class) -> bool {
     arguments
         .into_iter()
         .any(|a| matches!(&a.kind, ast::ArgumentKind::Modify { path, .. } if path.parts[0].name == "experiment"))
+}
+
+/// Errors first shown where they stand: by file and place, messages without a place first.
+fn sort_messages(diagnostics: &mut [Diagnostic]) {
+    diagnostics.sort_by_key(|d| d.labels.first().map(|l| (l.span.file, l.span.start)));
 }
 
 /// Compiles one text held in memory; for tests and examples.

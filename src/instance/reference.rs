@@ -653,7 +653,11 @@ impl<'a> Instance<'a, '_> {
                 match self.subscript_selection(&at, p, view, r.span)? {
                     Ok(next) => at = next,
                     Err(()) => {
-                        return self.fail(Code::NotConstant, "the index of a port must be known before the run", r.span);
+                        return self.fail(
+                            Code::NotConstant,
+                            "the index of a port must be known before the run",
+                            r.span,
+                        );
                     }
                 }
             }
