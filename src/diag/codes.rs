@@ -94,6 +94,7 @@ codes! {
     NoReference = "E302", Error, "nothing fixes the level of a group of nodes";
     Overdetermined = "E303", Error, "a quantity is determined twice";
     IndexReduction = "E304", Error, "constraints that cannot be differentiated";
+    ReinitNoState = "E305", Error, "`reinit` of something that is no state";
     // 4xx initialization
     InitialOver = "E401", Error, "start values contradict each other";
     InitialUnder = "W402", Warning, "start values were chosen";

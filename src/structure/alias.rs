@@ -401,6 +401,7 @@ fn compare_starts(
 /// Replaces aliases and linked derivatives everywhere.
 fn rewrite(draft: &mut Draft, targets: &[Signed]) {
     let derivative = draft.derivative.clone();
+    let roles = draft.roles.clone();
     let map = draft.rewritten(|pool, node| match node {
         Node::Var(v) => {
             let e = pool.var(targets[v.index()].variable);
@@ -408,6 +409,9 @@ fn rewrite(draft: &mut Draft, targets: &[Signed]) {
         }
         Node::Der(v) => {
             let target = targets[v.index()];
+            if !matches!(roles[target.variable.index()], Role::Continuous | Role::Input) {
+                return Some(Exprs::ZERO);
+            }
             let (e, turned) = match derivative[target.variable.index()] {
                 Some(w) => (pool.var(w.variable), w.negated),
                 None => (pool.der(target.variable), false),

@@ -41,12 +41,14 @@ fn run(flat: &FlatModel, choice: &StateChoice, diagnostics: &mut Vec<Diagnostic>
     let aliases = alias::eliminate(&mut draft, &mut known, diagnostics);
     discrete::classify(&mut draft);
     discrete::absorb_initial_pres(&mut draft);
+    refuse_input_derivatives(&draft)?;
     regularity::check(&draft).map_err(|found| explain_singular(flat, &draft, &found))?;
 
     let mut reduction = Reduction::new(&mut draft);
     reduction.reduce(&mut draft)?;
     let chosen = dummy_derivatives::select(&mut draft, &reduction, &values, choice);
     let states = settle_states(&mut draft, &mut reduction, &chosen.dummies);
+    diagnostics.extend(reinit_of_no_state(&draft, &states.states));
     replace_linked_derivatives(&mut draft);
     let running = running_system(&draft, &reduction, &states)?;
 
@@ -87,6 +89,35 @@ fn prefer_reinitialized(draft: &mut Draft) {
             *select = (*select).max(StateSelect::Prefer);
         }
     }
+}
+
+fn refuse_input_derivatives(draft: &Draft) -> Result<(), Diagnostic> {
+    let mut walk = crate::expr::visit::Walk::default();
+    for equation in draft.equations.iter().chain(&draft.initial_equations) {
+        let mut found = None;
+        walk.each(&draft.exprs, &[equation.lhs, equation.rhs], |_, node| {
+            if let Node::Der(v) = node
+                && draft.role(v) == Role::Input
+            {
+                found = found.or(Some(v));
+            }
+            true
+        });
+        if let Some(v) = found {
+            return Err(messages::not_differentiable(draft, equation, v));
+        }
+    }
+    Ok(())
+}
+
+fn reinit_of_no_state(draft: &Draft, states: &[VarId]) -> Vec<Diagnostic> {
+    let reinits = draft.actions.iter().filter_map(|action| match action.kind {
+        ActionKind::Reinit(v, _) if states.binary_search(&v).is_err() => {
+            Some(messages::reinit_of_no_state(draft, v, action.origin))
+        }
+        _ => None,
+    });
+    reinits.collect()
 }
 
 /// The outcome of state selection.

@@ -8,7 +8,7 @@ use super::regularity::Singularity;
 use super::{Alias, Unknown};
 use crate::diag::{Code, Diagnostic, Severity};
 use crate::expr::{ExprId, VarId};
-use crate::flat::{Equation, OriginKind};
+use crate::flat::{Equation, Origin, OriginKind};
 
 /// Lists are cut after so many items.
 const MOST_ITEMS: usize = 10;
@@ -54,15 +54,29 @@ pub(super) fn not_differentiable(draft: &Draft, equation: &Equation, v: VarId) -
     } else {
         format!("a derivative of {} of too high an order is needed", name(draft, v))
     };
-    let made = Diagnostic::new(Code::IndexReduction, message).at(
-        equation.origin.span,
-        format!("`{}` fixes a quantity whose derivative is used elsewhere", sides(draft, equation)),
-    );
+    let direct = [equation.lhs, equation.rhs].iter().any(|&e| draft.exprs.derivatives(e).contains(&v));
+    let text = if direct {
+        "it is used here".to_owned()
+    } else {
+        format!("`{}` fixes a quantity whose derivative is used elsewhere", sides(draft, equation))
+    };
+    let made = Diagnostic::new(Code::IndexReduction, message).at(equation.origin.span, text);
     located(draft, made, equation).help(if input {
         "pass the input through a filter (a first-order lag), or give its derivative as an input of its own"
     } else {
         "write the constraint without the derivative"
     })
+}
+
+/// `reinit` of something that follows from other quantities.
+pub(super) fn reinit_of_no_state(draft: &Draft, v: VarId, origin: Origin) -> Diagnostic {
+    let message = format!("{} cannot be set by `reinit`, because it follows from other quantities", name(draft, v));
+    let instance = &draft.instances[origin.instance as usize];
+    Diagnostic::new(Code::ReinitNoState, message)
+        .at(origin.span, "only a state can jump")
+        .instance(instance.name.clone())
+        .class(instance.class.clone())
+        .help("set the state it follows from; a variable is a state if its derivative is used and nothing ties it to others")
 }
 
 /// Constraints that no choice of states satisfies.

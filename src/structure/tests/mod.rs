@@ -1,6 +1,8 @@
 //! The analysis of small models, shown as text.
 
 mod model;
+mod random;
+mod validity;
 
 use super::{Dae, StateChoice, analyze};
 use crate::flat::{OriginKind, StateSelect};
@@ -9,7 +11,10 @@ use model::Model;
 fn dae(model: &Model) -> Dae {
     let found = analyze(&model.flat, &StateChoice::default());
     match found.value {
-        Some(dae) => dae,
+        Some(dae) => {
+            validity::check(&dae);
+            dae
+        }
         None => panic!("{:#?}", found.diagnostics),
     }
 }
@@ -245,5 +250,68 @@ fn two_ideal_sources() {
 fn parameters_taken_for_unknowns() {
     let mut m = Model::new();
     m.parameters("k = 2").reals("x y").equations("x = 1; k = 3");
+    insta::assert_snapshot!(error(&m));
+}
+
+#[test]
+fn derivatives_of_inputs_in_equations() {
+    let mut m = Model::new();
+    m.inputs("u").reals("i").equations("i = 3*der(u)");
+    insta::assert_snapshot!(error(&m));
+}
+
+#[test]
+fn reinit_needs_a_state() {
+    let mut m = Model::new();
+    m.reals("x y").fixed("x = 1").equations("der(x) = -x; y = 2*x");
+    m.when(&[("x < 0.5", "reinit y = 3")]);
+    insta::assert_snapshot!(error(&m));
+}
+
+#[test]
+fn samples_are_shared_with_the_variables_that_name_them() {
+    let mut m = Model::new();
+    m.booleans("s1 s2").integers("n").fixed("n = 0");
+    m.equations("s1 = sample(1, 10); s2 = s1");
+    m.when(&[("s2", "n = pre(n) + 1")]);
+    let found = dae(&m);
+    assert_eq!(found.samples.len(), 1);
+    assert_eq!(found.aliases.len(), 2);
+    assert_eq!(found.discrete, [m.id("n")]);
+}
+
+#[test]
+fn signs_of_aliases() {
+    let mut m = Model::new();
+    m.reals("a b c d x").fixed("d = 2");
+    m.equations("a = -b; b + c = 0; 0 = c - d; der(a) = x; x = sin(time)");
+    let found = dae(&m);
+    insta::assert_snapshot!(found.blt_text());
+}
+
+/// Rigid joints in a row, with speeds: everything moves with one state pair.
+#[test]
+fn rigid_chain() {
+    let mut m = Model::new();
+    let n = 5;
+    for i in 1..=n {
+        m.reals(&format!("s{i} v{i} f{i}"));
+        m.equations(&format!("v{i} = der(s{i})"));
+    }
+    for i in 1..n {
+        m.equations(&format!("s{} = s{i} + 0.1*{i}; {i}*der(v{i}) = f{i} - f{}", i + 1, i + 1));
+    }
+    m.equations(&format!("3*der(v{n}) = f{n}; f1 = sin(time)"));
+    m.fixed("s3 = 0; v3 = 0");
+    let found = dae(&m);
+    assert_eq!(found.states, [m.id("s3"), m.id("v3")]);
+    assert!(found.chosen_starts.is_empty());
+}
+
+#[test]
+fn two_speeds_of_one_position_are_one() {
+    let mut m = Model::new();
+    m.reals("s v1 v2 a1 a2").fixed("s = 0; v2 = 1");
+    m.equations("v1 = der(s); a1 = der(v1); a2 = der(v2); v2 = der(s); a1 = -s; a2 = a1 + 0*v1");
     insta::assert_snapshot!(error(&m));
 }
