@@ -6,6 +6,7 @@
 
 pub mod affine;
 pub mod build;
+mod compact;
 pub mod differentiate;
 pub mod eval;
 #[cfg(test)]

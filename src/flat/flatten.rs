@@ -31,6 +31,10 @@ pub fn flatten(instance: &mut Instance<'_, '_>, network: &Network) -> Checked<Fl
         .map(|e| (e.name.clone(), e.literals.iter().map(|l| l.as_str().to_string()).collect()))
         .collect();
     flat.exprs = std::mem::take(&mut instance.exprs);
+    // Bodies of functions were built in the same pool, with variables of their own.
+    if !flat.exprs.functions.is_empty() {
+        flat.compact();
+    }
     Checked::new(flat, std::mem::take(&mut instance.diagnostics))
 }
 
