@@ -4,12 +4,14 @@
 
 #![allow(clippy::disallowed_methods, clippy::print_stderr, reason = "the one place that may")]
 
+mod check;
 mod compare;
 mod completions;
 mod data;
 mod explain;
 mod files;
 mod messages;
+mod model;
 mod new;
 mod plot;
 mod progress;
@@ -53,6 +55,7 @@ Exit status: 0 fine; 1 the model is wrong, the run did not reach its end, or a c
 #[derive(Subcommand, Debug)]
 enum Command {
     New(new::NewArgs),
+    Check(check::CheckArgs),
     Plot(plot::PlotArgs),
     Compare(compare::CompareArgs),
     Explain(explain::ExplainArgs),
@@ -124,6 +127,7 @@ pub fn main() -> ExitCode {
 fn dispatch(command: Command, messages: &mut Messages) -> Result<Ending, Failure> {
     match command {
         Command::New(args) => new::run(&args, messages),
+        Command::Check(args) => check::run(&args, messages),
         Command::Plot(args) => plot::run(&args, messages),
         Command::Compare(args) => compare::run(&args, messages),
         Command::Explain(args) => explain::run(&args),

@@ -59,6 +59,7 @@ pub(super) struct Recorder {
     failure: Option<Failure>,
     writing: Duration,
     written: usize,
+    count: usize,
 }
 
 impl Recorder {
@@ -70,8 +71,17 @@ impl Recorder {
             Target::Stdout => None,
         };
         let rows = Trajectory::new(signals);
-        let mut recorder =
-            Recorder { target, csv: None, file, rows, keep, failure: None, writing: Duration::ZERO, written: 0 };
+        let mut recorder = Recorder {
+            target,
+            csv: None,
+            file,
+            rows,
+            keep,
+            failure: None,
+            writing: Duration::ZERO,
+            written: 0,
+            count: 0,
+        };
         recorder.open_csv();
         Ok(recorder)
     }
@@ -102,6 +112,7 @@ impl Recorder {
     /// Takes a row; false when it makes no sense to go on because nothing can be written any more.
     pub fn row(&mut self, time: f64, values: &[f64]) -> bool {
         self.rows.push(time, values);
+        self.count += 1;
         let waiting = (self.rows.len() - self.written) * 8 * (self.rows.columns.len() + 1);
         if waiting > BUFFER_BYTES {
             self.flush();
@@ -131,6 +142,11 @@ impl Recorder {
             self.rows.columns.iter_mut().for_each(Vec::clear);
         }
         self.writing += begun.elapsed();
+    }
+
+    /// How many rows have come.
+    pub fn rows(&self) -> usize {
+        self.count
     }
 
     /// How long writing took during the run.

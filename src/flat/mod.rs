@@ -2,6 +2,7 @@
 
 mod equations;
 mod flatten;
+mod print;
 mod roots;
 
 pub use flatten::flatten;

@@ -5,6 +5,7 @@
 pub mod decimate;
 pub mod figure;
 pub mod html;
+pub mod network;
 pub mod png;
 pub mod select;
 pub mod svg;

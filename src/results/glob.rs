@@ -24,6 +24,11 @@ impl Globs {
         self.patterns.iter().any(|p| matches(p, name))
     }
 
+    /// True when a pattern without `*` and `?` is this name.
+    pub fn names(&self, name: &str) -> bool {
+        self.patterns.iter().any(|p| p == name)
+    }
+
     /// The patterns that match none of these names: probably spelling mistakes.
     pub fn unused<'a>(&self, names: impl Iterator<Item = &'a str> + Clone) -> Vec<&str> {
         let none = |pattern: &&String| !names.clone().any(|name| matches(pattern, name));

@@ -1,0 +1,129 @@
+//! `bramah check`
+
+use clap::{Args, ValueEnum};
+
+use super::messages::Messages;
+use super::recorder::write_text;
+use super::request::ModelArgs;
+use super::{Ending, Failure, model};
+use crate::Flattened;
+use crate::diag::Code;
+use crate::plot::{network, png};
+use crate::structure::{Block, Dae};
+
+/// Check a circuit without running it: ports, balance, units, structure
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  bramah check Press.mo
+  bramah check Press.mo --set N=100 --deny-warnings
+  bramah check Press.mo --emit svg -o press.svg       the network as a picture, also .png
+  bramah check Press.mo --emit blt                    the sorted equations
+
+Exit status: 0 the model is complete, 1 it is wrong, 2 bad arguments or files.")]
+pub(super) struct CheckArgs {
+    #[command(flatten)]
+    model: ModelArgs,
+    /// Also write what a stage makes of the model
+    #[arg(long, value_enum, value_name = "STAGE")]
+    emit: Option<Emit>,
+    /// Where to write it [default: stdout]
+    #[arg(short, long, value_name = "FILE", requires = "emit")]
+    output_file: Option<String>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Emit {
+    /// Components and connections
+    Network,
+    /// Components and connections as a picture
+    Svg,
+    /// Scalar variables and equations
+    Flat,
+    /// States, parameters and the sorted systems at the start, at events and between them
+    Dae,
+    /// The sorted equations: what is computed from what
+    Blt,
+}
+
+pub(super) fn run(args: &CheckArgs, messages: &mut Messages) -> Result<Ending, Failure> {
+    let experiment = args.model.experiment(None, messages)?;
+    let flattened = model::flatten(&experiment, messages)?;
+    // The network can be looked at even when the equations do not fit together.
+    if let Some(emit @ (Emit::Network | Emit::Svg | Emit::Flat)) = args.emit {
+        write_early(args, emit, &flattened)?;
+    }
+    let dae = model::structure(&flattened, &experiment, messages)?;
+    match args.emit {
+        Some(Emit::Dae) => write(args, &dae.dae_text())?,
+        Some(Emit::Blt) => write(args, &dae.blt_text())?,
+        _ => {}
+    }
+    messages.remark(&summary(&flattened, &dae));
+    Ok(Ending::Fine)
+}
+
+fn write(args: &CheckArgs, text: &str) -> Result<(), Failure> {
+    write_text(args.output_file.as_deref().unwrap_or("-"), text)
+}
+
+/// A picture may also be a PNG.
+fn write_early(args: &CheckArgs, emit: Emit, flattened: &Flattened) -> Result<(), Failure> {
+    let text = early(emit, flattened);
+    match &args.output_file {
+        Some(file) if emit == Emit::Svg && file.to_lowercase().ends_with(".png") => {
+            let pixels = png::write(&text).map_err(|e| Failure::new(Code::BadArgument, e))?;
+            super::files::write(std::path::Path::new(file), &pixels)
+        }
+        _ => write(args, &text),
+    }
+}
+
+fn early(emit: Emit, flattened: &Flattened) -> String {
+    match emit {
+        Emit::Svg => network::write(&flattened.graph, &flattened.flat.class),
+        Emit::Network => network_list(flattened),
+        Emit::Flat | Emit::Dae | Emit::Blt => flattened.flat.text(),
+    }
+}
+
+/// One line a component, then one line a connection.
+fn network_list(flattened: &Flattened) -> String {
+    let graph = &flattened.graph;
+    let mut out = String::new();
+    for component in graph.node_weights() {
+        out.push_str(&format!("{} {}\n", component.class, component.name));
+    }
+    for edge in graph.edge_indices() {
+        let Some((a, b)) = graph.edge_endpoints(edge) else { continue };
+        let end = |n: petgraph::graph::NodeIndex, port: &str| match (graph[n].name.as_str(), port) {
+            ("", port) => port.to_owned(),
+            (name, "") => name.to_owned(),
+            (name, port) => format!("{name}.{port}"),
+        };
+        let wire = &graph[edge];
+        out.push_str(&format!("connect({}, {}) {}\n", end(a, &wire.from), end(b, &wire.to), wire.connector));
+    }
+    out
+}
+
+/// `ok: Press, 120 equations, 3 states (line.p, ...), largest loop 4 (torn to 1)`
+fn summary(flattened: &Flattened, dae: &Dae) -> String {
+    let names: Vec<&str> = dae.states.iter().take(4).map(|v| dae.variables[v.index()].name.as_str()).collect();
+    let more = if dae.states.len() > 4 { ", ..." } else { "" };
+    let states = match dae.states.len() {
+        0 => "no states".to_owned(),
+        1 => format!("1 state ({})", names.join(", ")),
+        n => format!("{n} states ({}{more})", names.join(", ")),
+    };
+    let equations = flattened.flat.equations.len();
+    let largest = dae.continuous.iter().filter_map(|b| match b {
+        Block::Loop(l) => Some((l.inner.len() + l.residuals.len(), l.tearing.len())),
+        _ => None,
+    });
+    let largest = match largest.max() {
+        None => "no algebraic loops".to_owned(),
+        Some((size, torn)) => format!("largest loop {size} (torn to {torn})"),
+    };
+    format!("ok: {}, {equations} equations, {states}, {largest}", dae.class)
+}

@@ -1,0 +1,177 @@
+//! The network of a model as a picture: components as boxes with ports, connections coloured by connector.
+//!
+//! [`layout`] decides where boxes stand, this file draws them.
+
+mod layout;
+
+use std::fmt::Write as _;
+
+use indexmap::IndexSet;
+use petgraph::visit::EdgeRef;
+
+use super::figure::colour;
+use super::svg::escape;
+use crate::network::Graph;
+use layout::{Layout, Side};
+
+/// Draws the components and connections of a model's top level.
+pub fn write(graph: &Graph, title: &str) -> String {
+    let layout = Layout::new(graph);
+    let connectors: IndexSet<&str> = graph.edge_weights().map(|w| w.connector.as_str()).collect();
+    let legend = 24.0 * connectors.len().div_ceil(4) as f64;
+    let (width, height) = (layout.width.max(420.0), layout.height + 56.0 + legend);
+    let mut out = String::new();
+    let _ = write!(
+        out,
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" \
+         viewBox=\"0 0 {width:.0} {height:.0}\" role=\"img\" \
+         font-family=\"Ubuntu, 'Segoe UI', Helvetica, Arial, sans-serif\" font-size=\"13\">\n\
+         <title>{0}</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n\
+         <text x=\"20\" y=\"28\" font-size=\"16\">{0}</text>\n<g transform=\"translate(0 44)\">\n",
+        escape(title)
+    );
+    for edge in graph.edge_references() {
+        let wire = edge.weight();
+        let index = connectors.get_index_of(wire.connector.as_str()).unwrap_or(0);
+        let ends = [(edge.source(), &wire.from), (edge.target(), &wire.to)];
+        draw_wire(&mut out, &layout, ends.map(|(n, port)| (n.index(), port.as_str())), index);
+    }
+    for node in graph.node_indices() {
+        draw_box(&mut out, &layout, node.index(), graph);
+    }
+    for (i, connector) in connectors.iter().enumerate() {
+        let (x, y) = (20.0 + 240.0 * (i % 4) as f64, layout.height + 14.0 + 24.0 * (i / 4) as f64);
+        let _ = writeln!(
+            out,
+            "<path d=\"M{x:.0} {:.0}h28\" stroke=\"{}\" stroke-width=\"2.5\"/><text x=\"{:.0}\" y=\"{y:.0}\">{}</text>",
+            y - 4.5,
+            colour(i),
+            x + 36.0,
+            escape(short(connector))
+        );
+    }
+    out.push_str("</g>\n</svg>\n");
+    out
+}
+
+/// `Interfaces.HydraulicPort` is known as `HydraulicPort`.
+fn short(class: &str) -> &str {
+    class.rsplit('.').next().unwrap_or(class)
+}
+
+fn draw_wire(out: &mut String, layout: &Layout, ends: [(usize, &str); 2], index: usize) {
+    let [(first, _), (second, _)] = ends;
+    let a = layout.end(first, ends[0].1, second);
+    let b = layout.end(second, ends[1].1, first);
+    let reach = |p: &layout::Place| {
+        let distance = ((a.x - b.x).abs() * 0.45).clamp(28.0, 120.0) + 0.06 * (a.y - b.y).abs().min(300.0);
+        if p.side == Side::Left { p.x - distance } else { p.x + distance }
+    };
+    let _ = writeln!(
+        out,
+        "<path d=\"M{:.1} {:.1}C{:.1} {:.1} {:.1} {:.1} {:.1} {:.1}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.8\"/>",
+        a.x,
+        a.y,
+        reach(&a),
+        a.y,
+        reach(&b),
+        b.y,
+        b.x,
+        b.y,
+        colour(index)
+    );
+}
+
+fn draw_box(out: &mut String, layout: &Layout, node: usize, graph: &Graph) {
+    let component = &graph[petgraph::graph::NodeIndex::new(node)];
+    let place = &layout.boxes[node];
+    let middle = place.x + place.width / 2.0;
+    let (name, class) = if component.name.is_empty() { ("(model)", "") } else { (&*component.name, &*component.class) };
+    let _ = writeln!(
+        out,
+        "<g><title>{} {}</title><rect x=\"{:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{:.1}\" rx=\"5\" fill=\"#f7f7f7\" stroke=\"#555555\"/>\n\
+         <text x=\"{middle:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>\n\
+         <text x=\"{middle:.1}\" y=\"{:.1}\" text-anchor=\"middle\" font-size=\"10.5\" fill=\"#666666\">{}</text>",
+        escape(class),
+        escape(name),
+        place.x,
+        place.y,
+        place.width,
+        place.height,
+        place.y + 17.0,
+        escape(name),
+        place.y + 31.0,
+        escape(short(class))
+    );
+    let places = component.ports.iter().flat_map(|port| layout.places(node, port).into_iter().map(move |p| (port, p)));
+    for (port, p) in places {
+        let (x, anchor) = if p.side == Side::Left { (p.x + 7.0, "start") } else { (p.x - 7.0, "end") };
+        let _ = writeln!(
+            out,
+            "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"3.2\" fill=\"#ffffff\" stroke=\"#555555\"/>\
+             <text x=\"{x:.1}\" y=\"{:.1}\" font-size=\"10\" fill=\"#444444\" text-anchor=\"{anchor}\">{}</text>",
+            p.x,
+            p.y,
+            p.y + 3.5,
+            escape(port)
+        );
+    }
+    out.push_str("</g>\n");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::network::{ComponentBox, Wire};
+
+    fn graph(names: &[&str], wires: &[(usize, &str, usize, &str)]) -> Graph {
+        let mut graph = Graph::default();
+        let nodes: Vec<_> = names
+            .iter()
+            .map(|n| graph.add_node(ComponentBox { name: (*n).into(), class: format!("Lib.{n}"), ports: vec![] }))
+            .collect();
+        for &(a, from, b, to) in wires {
+            for (node, port) in [(a, from), (b, to)] {
+                let ports = &mut graph[nodes[node]].ports;
+                if !ports.iter().any(|p| p == port) {
+                    ports.push(port.into());
+                }
+            }
+            let wire = Wire { from: from.into(), to: to.into(), connector: "Lib.Port".into() };
+            graph.add_edge(nodes[a], nodes[b], wire);
+        }
+        graph
+    }
+
+    /// No two boxes may cover each other.
+    fn assert_apart(layout: &Layout) {
+        for (i, a) in layout.boxes.iter().enumerate() {
+            for b in &layout.boxes[..i] {
+                let apart =
+                    a.x + a.width <= b.x || b.x + b.width <= a.x || a.y + a.height <= b.y || b.y + b.height <= a.y;
+                assert!(apart, "{a:?} {b:?}");
+            }
+            assert!(a.x >= 0.0 && a.y >= 0.0 && a.x + a.width <= layout.width && a.y + a.height <= layout.height);
+        }
+    }
+
+    #[test]
+    fn a_small_circuit() {
+        let g = graph(&["tank", "pump", "line"], &[(0, "port", 1, "b"), (1, "a", 2, "port")]);
+        insta::assert_snapshot!(write(&g, "Press & more"));
+    }
+
+    #[test]
+    fn boxes_stand_apart() {
+        let names: Vec<String> = (0..50).map(|i| format!("component_{i}")).collect();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let chain: Vec<_> = (0..49).map(|i| (i, "b", i + 1, "a")).collect();
+        let star: Vec<_> = (1..50).map(|i| (0, "port", i, "a")).collect();
+        let mesh: Vec<_> = (0..49).flat_map(|i| [(i, "b", i + 1, "a"), (i, "c", (i * 7) % 50, "d")]).collect();
+        let parts: Vec<_> = (0..25).map(|i| (2 * i, "b", 2 * i + 1, "a")).collect();
+        for wires in [&chain, &star, &mesh, &parts, &vec![]] {
+            assert_apart(&Layout::new(&graph(&names, wires)));
+        }
+        assert_apart(&Layout::new(&graph(&[], &[])));
+    }
+}
