@@ -16,7 +16,7 @@ protected
   SI.Force F_c(nominal = 100) "Coulomb friction";
   SI.Velocity z_dot(nominal = 0.1) "Rate of the deflection";
 equation
-  assert(F_0 + k_c > 0 and k_st >= 1, "The Coulomb friction must be positive, k_st at least 1");
+  assert(F_0 > 0 and k_c >= 0 and k_st >= 1, "The Coulomb friction must be positive, k_st at least 1");
   assert(sigma_0 > 0, "The stiffness sigma_0 must be positive");
   v = der(flange.s);
   F_c = F_0 + k_c*(max(p_1, 0) + max(p_2, 0));
