@@ -130,7 +130,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
     }
 
     fn tuple(&mut self, targets: &'a [Option<Expr>], r: &'a Expr, view: View, span: Span, out: &mut Vec<Pair>) {
-        let Some(value) = self.instance.eval(r, view) else { return };
+        let Some(value) = self.instance.eval_all(r, view) else { return };
         let values = match &value {
             Val::Tuple(values) => values.to_vec(),
             other => vec![other.clone()],

@@ -63,7 +63,7 @@ impl<'a> Instance<'a, '_> {
                 Some(Flow::Next)
             }
             StatementKind::AssignTuple(targets, call) => {
-                let value = self.eval(call, view)?;
+                let value = self.eval_all(call, view)?;
                 self.assign_tuple(targets, value, view, s.span)?;
                 Some(Flow::Next)
             }

@@ -437,11 +437,11 @@ impl<'a> Instance<'a, '_> {
         part: Part<'a>,
     ) -> Option<NodeId> {
         match (found, template) {
-            (Found::Builtin(b), _) => Some(self.build_variable(plan, name, *b, &args, &[], part)),
+            (Found::Builtin(b), _) => Some(self.build_variable(plan, name, *b, &args, (&[], None), part)),
             (Found::Class(_), Some(t)) => match t.builtin {
                 Some(b) => {
                     let chain = self.type_args(t, index);
-                    Some(self.build_variable(plan, name, b, &args, &chain, part))
+                    Some(self.build_variable(plan, name, b, &args, (&chain, t.prefix.causality), part))
                 }
                 None => self.build_object(plan, name, t, args, part),
             },
@@ -525,9 +525,11 @@ impl<'a> Instance<'a, '_> {
         name: &str,
         builtin: Builtin,
         args: &[Arg<'a>],
-        chain: &[Arg<'a>],
+        // Modifications of the type chain, and `input` or `output` where the type is a connector declared so.
+        (chain, declared): (&[Arg<'a>], Option<ast::Causality>),
         part: Part<'a>,
     ) -> NodeId {
+        let causality = plan.prefix.causality.or(declared);
         let ty = match builtin {
             Builtin::Real | Builtin::String => Type::Real,
             Builtin::Integer => Type::Integer,
@@ -547,8 +549,8 @@ impl<'a> Instance<'a, '_> {
             ty,
             string: builtin == Builtin::String,
             variability,
-            causality: plan.prefix.causality,
-            top: !plan.prefix.nested && plan.prefix.causality.is_some() && !plan.prefix.hidden,
+            causality,
+            top: !plan.prefix.nested && causality.is_some() && !plan.prefix.hidden,
             flow: plan.declared.prefix.flow,
             hidden: plan.prefix.hidden,
             final_: part.final_,

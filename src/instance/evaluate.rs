@@ -66,8 +66,16 @@ pub fn override_text(value: &str) -> String {
 pub const QUANTITY: &str = "'quantity'";
 
 impl<'a> Instance<'a, '_> {
-    /// Evaluates an expression; `None` after a message.
+    /// Evaluates an expression; `None` after a message. A call with several outputs counts as its first (MLS 12.4.3).
     pub fn eval(&mut self, e: &'a Expr, view: View) -> Option<Val> {
+        match self.eval_all(e, view)? {
+            Val::Tuple(values) => values.first().cloned(),
+            value => Some(value),
+        }
+    }
+
+    /// Evaluates an expression with all outputs of a call.
+    pub fn eval_all(&mut self, e: &'a Expr, view: View) -> Option<Val> {
         match &e.kind {
             ExprKind::Integer(i) => Some(self.integer(*i as f64)),
             ExprKind::Real(x) => Some(Val::Scalar(self.exprs.num(*x), Type::Real)),

@@ -227,7 +227,7 @@ impl<'a> Instance<'a, '_> {
                 self.procedure_assign(target, &value, view, s.span)
             }
             StatementKind::AssignTuple(targets, call) => {
-                let value = self.eval(call, view)?;
+                let value = self.eval_all(call, view)?;
                 let Val::Tuple(values) = &value else {
                     return self.fail(Code::BadCall, "this function has one result only", s.span);
                 };
