@@ -77,10 +77,26 @@ pub fn sort(world: &dyn World, request: &Request) -> Outcome<(FlatModel, Graph, 
     let Outcome { sources, mut diagnostics, value } = flatten(world, request);
     let value = value.and_then(|f| {
         diagnostics.extend(units::check(&f.flat));
-        let dae = structure::analyze(&f.flat, &StateChoice::default()).sink(&mut diagnostics)?;
-        Some((f.flat, f.graph, dae))
+        let mut found = Vec::new();
+        let dae = structure::analyze(&f.flat, &StateChoice::default()).sink(&mut found);
+        if found.iter().any(is_structural) {
+            found = explained(&f.flat, found);
+        }
+        diagnostics.extend(found);
+        Some((f.flat, f.graph, dae?))
     });
     Outcome { sources, diagnostics, value }
+}
+
+fn is_structural(d: &Diagnostic) -> bool {
+    matches!(d.code, Code::Singular | Code::NoReference | Code::Overdetermined)
+}
+
+/// The first level at which something is wrong: a cause in one component is told instead of its consequences.
+fn explained(flat: &FlatModel, found: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    let solvable = |changed: &FlatModel| structure::analyze(changed, &StateChoice::default()).value.is_some();
+    let causes = flat::balance::explain(flat, &solvable);
+    if causes.is_empty() { found } else { causes }
 }
 
 /// The pipeline up to the flat model.

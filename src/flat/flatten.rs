@@ -21,6 +21,7 @@ pub fn flatten(instance: &mut Instance<'_, '_>, network: &Network) -> Checked<Fl
         numbers.insert(scope, i);
     }
     flat.instances = scopes.iter().map(|&s| instance_info(instance, s, &numbers)).collect();
+    flat.is_port = scopes.iter().map(|&s| is_port(instance, s)).collect();
     flat.experiment = experiment(instance);
     variables(instance, &numbers, &mut flat);
     Walker::new(instance, &numbers, &mut flat).walk(&scopes);
@@ -42,6 +43,10 @@ fn class_name(instance: &Instance<'_, '_>, scope: ScopeId) -> String {
     instance.library.full_name(instance.scope(scope).template.class)
 }
 
+fn is_port(instance: &Instance<'_, '_>, scope: ScopeId) -> bool {
+    matches!(instance.scope(scope).template.kind, ast::ClassKind::Connector { .. })
+}
+
 fn instance_info(instance: &Instance<'_, '_>, scope: ScopeId, numbers: &FxHashMap<ScopeId, u32>) -> InstanceInfo {
     let s = instance.scope(scope);
     let parent = s.owner.and_then(|o| numbers.get(&o)).copied().unwrap_or(0);
@@ -51,6 +56,10 @@ fn instance_info(instance: &Instance<'_, '_>, scope: ScopeId, numbers: &FxHashMa
 fn variables(instance: &mut Instance<'_, '_>, numbers: &FxHashMap<ScopeId, u32>, flat: &mut FlatModel) {
     for k in 0..instance.order.len() {
         let i = instance.order[k];
+        let data = &instance.variables[i as usize];
+        if data.causality == Some(ast::Causality::Input) && !data.top && data.variability > Variability::Parameter {
+            flat.given.push(data.id);
+        }
         let v = variable(instance, i, numbers, flat);
         flat.variables.push(v);
     }

@@ -1,5 +1,6 @@
 //! The flat model: scalar variables and equations, each with its origin.
 
+pub mod balance;
 mod equations;
 mod flatten;
 mod print;
@@ -29,6 +30,10 @@ pub struct FlatModel {
     pub asserts: Vec<Assert>,
     /// Component instances, parents before children; entry 0 is the model itself with an empty name.
     pub instances: Vec<InstanceInfo>,
+    /// For each instance, whether it is a port.
+    pub is_port: Vec<bool>,
+    /// Inputs of components below the top level: their values come from outside the component.
+    pub given: Vec<VarId>,
     /// Enumeration types: full name and literals.
     pub enumerations: Vec<(String, Vec<String>)>,
     /// The model's `experiment` annotation.
