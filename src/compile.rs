@@ -1,6 +1,6 @@
 //! The pipeline: from files to a flat model, a DAE and a system ready to run. Every command and test goes this way.
 
-use crate::diag::{Code, Diagnostic, Sources};
+use crate::diag::{Checked, Code, Diagnostic, Sources};
 use crate::flat::{self, FlatModel};
 use crate::instance::{self, ModelRequest, Override};
 use crate::lower::{self, System};
@@ -77,15 +77,19 @@ pub fn sort(world: &dyn World, request: &Request) -> Outcome<(FlatModel, Graph, 
     let Outcome { sources, mut diagnostics, value } = flatten(world, request);
     let value = value.and_then(|f| {
         diagnostics.extend(units::check(&f.flat));
-        let mut found = Vec::new();
-        let dae = structure::analyze(&f.flat, &StateChoice::default()).sink(&mut found);
-        if found.iter().any(is_structural) {
-            found = explained(&f.flat, found);
-        }
-        diagnostics.extend(found);
+        let dae = analyze(&f.flat).sink(&mut diagnostics);
         Some((f.flat, f.graph, dae?))
     });
     Outcome { sources, diagnostics, value }
+}
+
+/// Sorts the equations of a flat model; where they do not determine the unknowns, says why.
+pub fn analyze(flat: &FlatModel) -> Checked<Dae> {
+    let mut checked = structure::analyze(flat, &StateChoice::default());
+    if checked.diagnostics.iter().any(is_structural) {
+        checked.diagnostics = explained(flat, checked.diagnostics);
+    }
+    checked
 }
 
 fn is_structural(d: &Diagnostic) -> bool {

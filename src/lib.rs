@@ -24,7 +24,7 @@ pub mod lower;
 
 mod compile;
 
-pub use compile::{Flattened, Model, Outcome, Request, compile, flatten, flatten_text, sort};
+pub use compile::{Flattened, Model, Outcome, Request, analyze, compile, flatten, flatten_text, sort};
 
 pub mod results;
 

@@ -8,7 +8,7 @@ use super::{DiskWorld, Failure};
 use crate::diag::{Checked, Diagnostic, Severity};
 use crate::experiment::Experiment;
 use crate::instance::Override;
-use crate::structure::{Dae, StateChoice, analyze};
+use crate::structure::Dae;
 use crate::units;
 use crate::{Flattened, Request};
 
@@ -35,7 +35,7 @@ pub(super) fn structure(
     experiment: &Experiment,
     messages: &mut Messages,
 ) -> Result<Dae, Failure> {
-    pass(analyze(&flattened.flat, &StateChoice::default()), experiment, messages)
+    pass(crate::analyze(&flattened.flat), experiment, messages)
 }
 
 fn overrides(experiment: &Experiment) -> Vec<Override> {
