@@ -105,6 +105,11 @@ impl Bytecode {
         writer.finish(code, &targets)
     }
 
+    /// Number of instructions.
+    pub fn len(&self) -> usize {
+        self.instructions.len()
+    }
+
     /// How many scratch places the code needs.
     pub fn scratch(&self) -> u32 {
         self.scratch

@@ -32,7 +32,7 @@ use eliminate::Plan;
 use jacobian::Differentials;
 use layout::slot;
 use parameters::Bindings;
-use program::{Assembler, Defs, Order};
+use program::{Assembler, Compile, Defs, Order};
 use rustc_hash::FxHashMap;
 use shape::{Kernels, Shaper};
 use std::sync::Arc;
@@ -245,13 +245,13 @@ impl Drafts {
 
         let mut assembler = Assembler::new(&kernels, &layout);
         let by_need = Order::Dependency;
-        assembler.set_native(options.native);
+        assembler.set_native(if options.native { Compile::All } else { Compile::Nothing });
         programs.residual = assembler.assemble(&self.continuous.residual, by_need, None);
         let Differentials { defs, products, .. } = self.continuous.jacobian;
         programs.jacobian = assembler.assemble(&defs, by_need, Some(products));
         let with_observables = self.observables.before(&kernels, &self.crossings.defs);
         programs.crossings = assembler.assemble(&with_observables, by_need, None);
-        assembler.set_native(false);
+        assembler.set_native(if options.native { Compile::LongLoops } else { Compile::Nothing });
         programs.crossings_alone = assembler.assemble(&self.crossings.defs, by_need, None);
         programs.hoisted = assembler.assemble(&self.hoisted, by_need, None);
         programs.observe = assembler.assemble(&self.observables.defs, by_need, None);
@@ -260,7 +260,8 @@ impl Drafts {
         let asserts = self.asserts.assemble(Some(&programs.observables), &mut assembler);
         let event = blocks::assemble(self.event, &mut assembler);
         let initial = blocks::assemble(self.initial, &mut assembler);
-        let entries = assembler.compile(&programs.functions);
+        let (entries, loops) = assembler.compile(&programs.functions);
+        programs.loops = Arc::new(loops);
 
         let mut system = System {
             columns: plan.columns,

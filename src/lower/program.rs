@@ -11,6 +11,7 @@ use super::shape::{Kernel, KernelId, Kernels, Shaped, copy_node};
 use crate::expr::function::Function;
 use crate::expr::{ExprId, Exprs, Node, VarId};
 use rustc_hash::{FxHashMap, FxHashSet};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Straight code is cut when it has this many nodes; machine code is slow to make beyond.
@@ -20,7 +21,10 @@ const STRAIGHT_SIZE: usize = 1200;
 const LOOP_INSTANCES: usize = 4;
 
 /// ... and they have at least this many nodes together.
-const LOOP_SIZE: usize = 400;
+const LOOP_SIZE: usize = 240;
+
+/// Loops of this many rows are compiled even in programs that run rarely.
+const ALWAYS_COMPILED: usize = 64;
 
 /// Definitions to be computed: each a kernel with the slots it reads and writes.
 #[derive(Clone, Debug, Default)]
@@ -158,6 +162,15 @@ impl Program {
         self.steps.is_empty()
     }
 
+    /// Number of instructions; those of a loop count once.
+    pub fn size(&self) -> usize {
+        let size = |step: &Step| match step {
+            Step::Straight { bytecode, .. } | Step::Loop(Loop { bytecode, .. }) => bytecode.len(),
+            Step::Products(_) => 0,
+        };
+        self.steps.iter().map(size).sum()
+    }
+
     /// Number of loops and pieces of straight code: with equal parts it does not grow with their number.
     pub fn kernels(&self) -> usize {
         self.steps.len()
@@ -197,6 +210,10 @@ impl Program {
 }
 
 impl Loop {
+    fn rows(&self) -> usize {
+        self.table.len() / (self.inputs + self.outputs)
+    }
+
     fn run(&self, functions: &[Function], v: &mut [f64]) {
         if let Native::Ready(entry) = &self.native {
             return entry.run_table(v, &self.table, self.inputs + self.outputs, functions);
@@ -228,21 +245,51 @@ pub struct Assembler<'a> {
     kernels: &'a Kernels,
     layout: &'a Layout,
     codes: FxHashMap<KernelId, Arc<Code>>,
-    tickets: FxHashMap<KernelId, Ticket>,
+    tickets: BTreeMap<KernelId, Ticket>,
     compiler: Compiler,
-    native: bool,
+    native: Compile,
+    ready: Option<&'a CompiledLoops>,
 }
+
+/// What is compiled to machine code.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Compile {
+    /// Nothing.
+    Nothing,
+    /// Long loops.
+    LongLoops,
+    /// Everything.
+    All,
+}
+
+/// Loops in machine code, for programs that are made later.
+pub type CompiledLoops = FxHashMap<KernelId, Entry>;
 
 impl<'a> Assembler<'a> {
     /// Programs of `kernels` over `layout`, interpreted unless told otherwise.
     pub fn new(kernels: &'a Kernels, layout: &'a Layout) -> Self {
-        let (codes, tickets) = (FxHashMap::default(), FxHashMap::default());
-        Assembler { kernels, layout, codes, tickets, compiler: Compiler::default(), native: false }
+        Assembler {
+            kernels,
+            layout,
+            codes: FxHashMap::default(),
+            tickets: BTreeMap::new(),
+            compiler: Compiler::default(),
+            native: Compile::Nothing,
+            ready: None,
+        }
     }
 
-    /// Compiles what was to be compiled.
-    pub fn compile(self, functions: &[Function]) -> Vec<Entry> {
-        self.compiler.compile(functions)
+    /// The same, with loops that are compiled already.
+    pub fn with_loops(kernels: &'a Kernels, layout: &'a Layout, ready: &'a CompiledLoops) -> Self {
+        Assembler { ready: Some(ready), ..Assembler::new(kernels, layout) }
+    }
+
+    /// Compiles what was to be compiled: all of it in the order of tickets, and loops by kernel.
+    pub fn compile(self, functions: &[Function]) -> (Vec<Entry>, CompiledLoops) {
+        let entries = self.compiler.compile(functions);
+        let entry = |(&kernel, ticket): (&KernelId, &Ticket)| Some((kernel, entries.get(ticket.index())?.clone()));
+        let loops = self.tickets.iter().filter_map(entry).collect();
+        (entries, loops)
     }
 
     /// The kernels that programs are made of.
@@ -250,8 +297,8 @@ impl<'a> Assembler<'a> {
         self.kernels
     }
 
-    /// Whether programs made from here on are compiled.
-    pub fn set_native(&mut self, native: bool) {
+    /// How programs made from here on are compiled.
+    pub fn set_native(&mut self, native: Compile) {
         self.native = native;
     }
 
@@ -273,6 +320,11 @@ impl<'a> Assembler<'a> {
             }
         }
         self.flush(&mut straight, &mut steps);
+        for step in &mut steps {
+            if let Step::Loop(l) = step {
+                l.native = self.order_loop(l);
+            }
+        }
         steps.extend(products.filter(|p| !p.sums.is_empty()).map(Step::Products));
         Program { steps: Arc::new(steps), ..Program::default() }
     }
@@ -331,8 +383,8 @@ impl<'a> Assembler<'a> {
         if !open {
             let code = self.code(kernel);
             let bytecode = Bytecode::looped(&code, slot(inputs.len()), self.layout);
-            let native = self.order_loop(kernel, &code, inputs.len());
             let (inputs, outputs) = (inputs.len(), targets.len());
+            let native = Native::None;
             steps.push(Step::Loop(Loop { kernel, bytecode, native, inputs, outputs, table: Vec::new(), scratch: 0 }));
         }
         if let Some(Step::Loop(l)) = steps.last_mut() {
@@ -341,13 +393,22 @@ impl<'a> Assembler<'a> {
         }
     }
 
-    fn order_loop(&mut self, kernel: KernelId, code: &Arc<Code>, inputs: usize) -> Native {
-        if !self.native || code.size > 2 * STRAIGHT_SIZE {
+    fn order_loop(&mut self, l: &Loop) -> Native {
+        if let Some(entry) = self.ready.and_then(|ready| ready.get(&l.kernel)) {
+            return Native::Ready(entry.clone());
+        }
+        let code = self.code(l.kernel);
+        let worth_it = match self.native {
+            Compile::Nothing => false,
+            Compile::LongLoops => l.rows() >= ALWAYS_COMPILED || self.tickets.contains_key(&l.kernel),
+            Compile::All => true,
+        };
+        if !worth_it || code.size > 2 * STRAIGHT_SIZE {
             return Native::None;
         }
         let compiler = &mut self.compiler;
-        let order = || compiler.order_loop(code.clone(), slot(inputs));
-        Native::Ordered(*self.tickets.entry(kernel).or_insert_with(order))
+        let order = || compiler.order_loop(code, slot(l.inputs));
+        Native::Ordered(*self.tickets.entry(l.kernel).or_insert_with(order))
     }
 
     fn flush(&mut self, straight: &mut Straight, steps: &mut Vec<Step>) {
@@ -357,7 +418,7 @@ impl<'a> Assembler<'a> {
         }
         let code = Code::new(&pool, &outputs);
         let bytecode = Bytecode::straight(&code, &targets, self.layout);
-        let native = if self.native && code.size <= 2 * STRAIGHT_SIZE {
+        let native = if self.native == Compile::All && code.size <= 2 * STRAIGHT_SIZE {
             Native::Ordered(self.compiler.order_straight(Arc::new(code), targets))
         } else {
             Native::None

@@ -113,6 +113,10 @@ pub struct Shaper<'a> {
     /// Parts that depend on parameters alone, in the order in which they were found, and their slots.
     pub hoisted: Vec<(ExprId, Slot)>,
     hoisted_index: FxHashMap<ExprId, Slot>,
+    /// Shapes made by the rules of events and observers: the expression and where its inputs begin and how many.
+    shapes: FxHashMap<(ExprId, bool), (ExprId, u32, u32)>,
+    shape_inputs: Vec<Slot>,
+    has_homotopy: bool,
     memo: Vec<(u32, ExprId)>,
     numbered: Vec<(u32, u32)>,
     stamp: u32,
@@ -131,6 +135,9 @@ impl<'a> Shaper<'a> {
             fixed: fixed_nodes(source, &fixed_parameters(dae)),
             hoisted: Vec::new(),
             hoisted_index: FxHashMap::default(),
+            shapes: FxHashMap::default(),
+            shape_inputs: Vec::new(),
+            has_homotopy: (0..source.len()).any(|id| matches!(source.node(ExprId(slot(id))), Node::Homotopy(..))),
             memo: vec![(0, Exprs::ZERO); source.len()],
             numbered: vec![(0, 0); layout.len()],
             layout,
@@ -141,7 +148,16 @@ impl<'a> Shaper<'a> {
 
     /// The shape of an expression of the model.
     pub fn shape(&mut self, e: ExprId, rules: &Rules) -> Shaped {
+        let key = (e, rules.initial && self.has_homotopy);
+        let plain = rules.hoist && rules.inline.is_empty();
+        if plain && let Some(&(expr, start, len)) = self.shapes.get(&key) {
+            return Shaped { expr, inputs: self.shape_inputs[start as usize..][..len as usize].to_vec() };
+        }
         let (exprs, inputs) = self.shape_all(&[e], rules);
+        if plain {
+            self.shapes.insert(key, (exprs[0], slot(self.shape_inputs.len()), slot(inputs.len())));
+            self.shape_inputs.extend_from_slice(&inputs);
+        }
         Shaped { expr: exprs[0], inputs }
     }
 

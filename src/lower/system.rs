@@ -5,7 +5,7 @@ use super::continuous::Observables;
 use super::layout::Slot;
 use super::native::Entry;
 use super::parameters::Bindings;
-use super::program::{Assembler, Order};
+use super::program::{Assembler, CompiledLoops, Order};
 use super::shape::Kernels;
 use super::trap::{self, Trap};
 use super::{BlockCode, Column, Conditions, Layout, NonFinite, Pattern, Program, Row, RowKind};
@@ -64,6 +64,7 @@ pub(super) struct Programs {
     pub crossings: Program,
     pub crossings_alone: Program,
     pub crossing_slots: Vec<Slot>,
+    pub loops: Arc<CompiledLoops>,
     pub observables: Observables,
     pub observe: Program,
     /// Alias, target, negated.
@@ -196,12 +197,13 @@ impl System {
         self.programs.observe.run(values);
     }
 
-    /// A program that fills the slots of these variables, to be run after [`System::load`]. It is interpreted.
+    /// A program that fills the slots of these variables, to be run after [`System::load`].
     pub fn observe_only(&self, wanted: &[VarId]) -> Program {
         let p = &self.programs;
         let slots = wanted.iter().filter_map(|&v| self.layout.leaf(Node::Var(v)));
         let defs = p.observables.needed(&p.kernels, slots);
-        let mut program = Assembler::new(&p.kernels, &self.layout).assemble(&defs, Order::Dependency, None);
+        let mut program =
+            Assembler::with_loops(&p.kernels, &self.layout, &p.loops).assemble(&defs, Order::Dependency, None);
         let room = self.layout.len() - p.scratch as usize;
         debug_assert!(program.scratch() as usize <= room, "parts of a program need no more scratch than the whole");
         program.finish(p.scratch, p.scratch as usize + program.scratch() as usize, &p.functions, &[]);
@@ -219,6 +221,11 @@ impl System {
     /// The value of any expression of the model by the reference interpreter: for messages and what is rare.
     pub fn eval(&self, e: ExprId, values: &[f64]) -> f64 {
         self.dae.exprs.eval(e, &mut |node| self.leaf(node, values))
+    }
+
+    /// Sizes of residual and Jacobian in pieces (loops and straight code) and instructions, for tests and measurements.
+    pub fn code_sizes(&self) -> [(usize, usize); 2] {
+        [&self.programs.residual, &self.programs.jacobian].map(|program| (program.kernels(), program.size()))
     }
 
     /// Last touch to all programs: where the scratch region begins and what has been compiled.
