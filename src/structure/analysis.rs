@@ -8,8 +8,8 @@ use super::parameters::Known;
 use super::solve_block::BlockSolver;
 use super::sorting::{System, SystemRow};
 use super::{
-    ActionKind, Alias, Assign, Block, Dae, Selection, StateChoice, Unknown, alias, discrete, dummy_derivatives, events,
-    initial, messages, parameters, regularity,
+    ActionKind, Alias, Assign, Block, Dae, Selection, StateChoice, Unknown, alias, closed_groups, discrete,
+    dummy_derivatives, events, initial, messages, parameters, regularity,
 };
 use crate::diag::{Checked, Diagnostic};
 use crate::expr::{Node, VarId};
@@ -42,7 +42,10 @@ fn run(flat: &FlatModel, choice: &StateChoice, diagnostics: &mut Vec<Diagnostic>
     discrete::classify(&mut draft);
     discrete::absorb_initial_pres(&mut draft);
     refuse_input_derivatives(&draft)?;
-    regularity::check(&draft).map_err(|found| explain_singular(flat, &draft, &found))?;
+    regularity::check(&draft).map_err(|found| explain_singular(flat, &draft, &aliases, &found))?;
+    if let Some(flows) = closed_groups::find(&draft) {
+        return Err(messages::closed_group(&draft, &aliases, &flows));
+    }
 
     let mut reduction = Reduction::new(&mut draft);
     reduction.reduce(&mut draft)?;
@@ -71,13 +74,18 @@ fn make_discrete_equations(draft: &mut Draft) {
 
 /// Explains with all equations and unknowns as the user wrote them, before aliases were eliminated, if they show the
 /// fault too.
-fn explain_singular(flat: &FlatModel, reduced: &Draft, found: &regularity::Singularity) -> Diagnostic {
+fn explain_singular(
+    flat: &FlatModel,
+    reduced: &Draft,
+    aliases: &[Alias],
+    found: &regularity::Singularity,
+) -> Diagnostic {
     let mut whole = Draft::new(flat);
     make_discrete_equations(&mut whole);
     discrete::classify(&mut whole);
     match regularity::check(&whole) {
-        Err(found) => messages::singular(&whole, &found),
-        Ok(()) => messages::singular(reduced, found),
+        Err(found) => messages::singular(&whole, &[], &found),
+        Ok(()) => messages::singular(reduced, aliases, found),
     }
 }
 

@@ -74,10 +74,15 @@ impl Draft {
                 when_assigned[variable.index()] = true;
             }
         }
-        let roles = flat.variables.iter().zip(&when_assigned).map(|(v, &assigned)| role(v, assigned)).collect();
+        let roles: Vec<Role> =
+            flat.variables.iter().zip(&when_assigned).map(|(v, &assigned)| role(v, assigned)).collect();
+        let mut variables = flat.variables.clone();
+        for (v, _) in variables.iter_mut().zip(&roles).filter(|(_, role)| **role == Role::Discrete) {
+            v.variability = Variability::Discrete;
+        }
         Draft {
             exprs: flat.exprs.clone(),
-            variables: flat.variables.clone(),
+            variables,
             roles,
             when_assigned,
             derivative: vec![None; flat.variables.len()],

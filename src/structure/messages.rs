@@ -98,7 +98,8 @@ pub(super) fn initially_contradicting(draft: &Draft, extra: &Equation, group: &[
     let made = Diagnostic::new(Code::InitialOver, message);
     let others: Vec<Equation> = conditions.iter().filter(|e| *e != extra).copied().collect();
     let made = with_equations(draft, made.at(extra.origin.span, "this one is too much"), &others);
-    made.note(format!("{} start conditions determine {} unknowns", conditions.len(), conditions.len().max(1) - 1))
+    let (have, want) = (counted(conditions.len(), "condition"), conditions.len().max(1) - 1);
+    made.note(format!("there are {have} where {want} can hold"))
         .help("remove one of these conditions, for instance by `fixed = false`")
 }
 
@@ -127,15 +128,53 @@ pub(super) fn chosen_starts(draft: &Draft, chosen: &[VarId]) -> Diagnostic {
     made
 }
 
+/// A group of nodes whose flows add up to nothing, so that only differences of their levels matter.
+pub(super) fn closed_group(draft: &Draft, aliases: &[Alias], flows: &[VarId]) -> Diagnostic {
+    let mut names: Vec<VarId> = flows.to_vec();
+    names.extend(aliases.iter().filter(|a| flows.binary_search(&a.target).is_ok()).map(|a| a.variable));
+    let variable = |v: &VarId| &draft.variables[v.index()];
+    let mut ports: Vec<u32> = names.iter().map(variable).filter(|v| v.flow).map(|v| v.origin.instance).collect();
+    ports.sort_unstable();
+    ports.dedup();
+    let levels: Vec<VarId> = (0..draft.variables.len() as u32)
+        .map(VarId)
+        .filter(|v| !variable(v).flow && ports.binary_search(&variable(v).origin.instance).is_ok())
+        .collect();
+    let mut owners: Vec<u32> = ports.iter().map(|&p| draft.instances[p as usize].parent).collect();
+    owners.sort_unstable();
+    owners.dedup();
+    let components: Vec<String> = owners.iter().map(|&i| draft.instances[i as usize].name.clone()).collect();
+    if levels.is_empty() {
+        let names: Vec<String> = flows.iter().map(|&v| name(draft, v)).collect();
+        let message = format!("the sums that hold {} follow from each other", listed(&names));
+        return Diagnostic::new(Code::Singular, message)
+            .at(variable(&flows[0]).origin.span, "every term stands in two sums with opposite signs")
+            .help("replace one of these equations by one that says something new");
+    }
+    let (level, advice) = kind_of_level(draft, &levels);
+    let message = format!("nothing fixes the {level} of {{{}}}", listed(&components));
+    let mut made = Diagnostic::new(Code::NoReference, message);
+    for v in levels.iter().take(MOST_ITEMS) {
+        made = made.at(variable(v).origin.span, format!("only differences of `{}` to others matter", variable(v).name));
+    }
+    made.note(
+        "these components pass on all that flows in, so the sum of flows at one node follows from the other nodes",
+    )
+    .help(advice)
+}
+
 /// A structurally singular system.
-pub(super) fn singular(draft: &Draft, found: &Singularity) -> Diagnostic {
-    let report = Report { draft, found };
+///
+/// `aliases` are those eliminated from this system already.
+pub(super) fn singular(draft: &Draft, aliases: &[Alias], found: &Singularity) -> Diagnostic {
+    let report = Report { draft, aliases, found };
     let made = report.headline();
     report.with_facts(made)
 }
 
 struct Report<'a> {
     draft: &'a Draft,
+    aliases: &'a [Alias],
     found: &'a Singularity,
 }
 
@@ -164,11 +203,15 @@ impl Report<'_> {
         if let Some(equation) = all_known {
             return self.without_unknowns(equation);
         }
-        if !unknowns.is_empty() && unknowns.iter().all(|&v| self.is_potential(v)) {
-            return self.no_reference(&unknowns);
+        let levels: Vec<VarId> = unknowns.iter().copied().filter(|&v| self.is_potential(v)).collect();
+        // The flows at a node follow from those at the others: the group exchanges nothing with a reference.
+        let closed = empty.iter().any(|e| e.origin.kind == OriginKind::ConnectFlow);
+        if !levels.is_empty() && (closed || levels.len() == unknowns.len()) {
+            return self.no_reference(&levels);
         }
         let twice = self.variables(self.over());
-        if twice.len() == 1 || !twice.is_empty() && twice.iter().all(|&v| self.is_potential(v)) {
+        let flow = |v: &VarId| self.draft.variables[v.index()].flow;
+        if twice.len() == 1 || twice.iter().any(|&v| self.is_potential(v)) && !twice.iter().any(flow) {
             return self.determined_twice(&twice);
         }
         match empty.first() {
@@ -178,27 +221,24 @@ impl Report<'_> {
     }
 
     fn general(&self, unknowns: &[VarId]) -> Diagnostic {
-        let unused: Vec<String> =
-            unknowns.iter().filter(|&&v| self.is_unused(v)).map(|&v| name(self.draft, v)).collect();
+        let unused: Vec<VarId> = unknowns.iter().copied().filter(|&v| self.is_unused(v)).collect();
         if !unused.is_empty() {
-            let message = format!("no equation mentions {}", listed(&unused));
-            return self.labelled(Diagnostic::new(Code::Singular, message), unknowns);
+            let names: Vec<String> = unused.iter().map(|&v| name(self.draft, v)).collect();
+            let message = format!("no equation mentions {}", listed(&names));
+            return self
+                .labelled(Diagnostic::new(Code::Singular, message), &unused)
+                .help("add an equation, give it a value, or make it a top-level `input`");
         }
-        let message = match (unknowns.is_empty(), self.over().rows.is_empty()) {
-            (false, _) => {
-                let names: Vec<String> = unknowns.iter().map(|&v| name(self.draft, v)).collect();
-                format!(
-                    "{} equations cannot determine {} unknowns: {}",
-                    self.under().rows.len(),
-                    unknowns.len(),
-                    listed(&names)
-                )
-            }
-            _ => format!("{} equations for {} unknowns", self.over().rows.len(), self.over().columns.len()),
-        };
-        let code = if unknowns.is_empty() { Code::Overdetermined } else { Code::Singular };
-        let made = self.labelled(Diagnostic::new(code, message), unknowns);
-        if unknowns.is_empty() { with_equations(self.draft, made, &self.equations(self.over())) } else { made }
+        if unknowns.is_empty() {
+            let Part { rows, columns } = self.over();
+            let message = format!("{} equations for {} unknowns", rows.len(), columns.len());
+            let made = Diagnostic::new(Code::Overdetermined, message);
+            return with_equations(self.draft, made, &self.equations(self.over()));
+        }
+        let names: Vec<String> = unknowns.iter().map(|&v| name(self.draft, v)).collect();
+        let (rows, count) = (self.under().rows.len(), unknowns.len());
+        let message = format!("{rows} equations cannot determine {count} unknowns: {}", listed(&names));
+        self.labelled(Diagnostic::new(Code::Singular, message), unknowns)
     }
 
     /// An equation of parameters, inputs and numbers only.
@@ -221,28 +261,22 @@ impl Report<'_> {
         let components = self.components_of(unknowns);
         let message = format!("nothing fixes the {level} of {{{}}}", cut(&components, ", "));
         let made = Diagnostic::new(Code::NoReference, message).help(advice);
-        let Part { rows, columns } = self.over();
-        let made = self.labelled(made, unknowns);
-        if rows.is_empty() {
-            return made;
-        }
-        let names: Vec<String> = self.variables(self.over()).iter().map(|&v| name(self.draft, v)).collect();
-        made.note(format!(
-            "{} equations determine only {} unknowns beside: {}",
-            rows.len(),
-            columns.len(),
-            listed(&names)
-        ))
+        self.labelled(made, unknowns)
     }
 
     fn determined_twice(&self, twice: &[VarId]) -> Diagnostic {
         let equations = self.equations(self.over());
         let mut owners: Vec<String> = equations.iter().map(|e| self.owner(e)).filter(|o| !o.is_empty()).collect();
         owners.dedup();
-        let quantity = name(self.draft, twice[0]);
-        let message = match owners.as_slice() {
-            [a, b] => format!("{quantity} is determined by both `{a}` and `{b}`"),
-            _ => format!("{quantity} is determined {} times", equations.len().max(2)),
+        let levels: Vec<VarId> = twice.iter().copied().filter(|&v| self.is_potential(v)).collect();
+        let message = match (owners.as_slice(), levels.is_empty()) {
+            ([a, b], _) => format!("{} is determined by both `{a}` and `{b}`", name(self.draft, twice[0])),
+            (_, true) => format!("{} is determined {} times", name(self.draft, twice[0]), equations.len().max(2)),
+            (_, false) => {
+                let components = cut(&self.components_of(&levels), ", ");
+                let level = kind_of_level(self.draft, &levels).0;
+                format!("the {level} of {{{components}}} is determined once too often")
+            }
         };
         with_equations(self.draft, Diagnostic::new(Code::Overdetermined, message), &equations)
             .help("two ideal sources cannot act on the same quantity: put a resistance or a storage between them, or remove one")
@@ -258,15 +292,30 @@ impl Report<'_> {
         self.part_note(made, "too many equations for", self.over())
     }
 
-    /// The unknowns of a part, grouped by component.
+    /// The unknowns of a part, a line for each component.
     fn part_note(&self, made: Diagnostic, title: &str, part: &Part) -> Diagnostic {
         if part.columns.is_empty() {
             return made;
         }
-        let names: Vec<String> =
-            self.variables(part).iter().map(|&v| self.draft.variables[v.index()].name.clone()).collect();
-        let head = format!("{title} these unknowns ({} equations, {} unknowns): ", part.rows.len(), part.columns.len());
-        made.note(head + &cut(&names, ", "))
+        let mut groups: Vec<(&str, Vec<String>)> = Vec::new();
+        for v in self.variables(part) {
+            let name = &self.draft.variables[v.index()].name;
+            let (component, rest) = name.split_once('.').unwrap_or(("", name));
+            match groups.iter_mut().find(|g| g.0 == component) {
+                Some(group) => group.1.push(rest.to_owned()),
+                None => groups.push((component, vec![rest.to_owned()])),
+            }
+        }
+        let line = |(component, names): &(&str, Vec<String>)| match *component {
+            "" => format!("  {}", listed(names)),
+            component => format!("  {component}: {}", listed(names)),
+        };
+        let mut lines: Vec<String> = groups.iter().take(MOST_ITEMS).map(line).collect();
+        if groups.len() > MOST_ITEMS {
+            lines.push(format!("  and {} more components", groups.len() - MOST_ITEMS));
+        }
+        let (rows, columns) = (counted(part.rows.len(), "equation"), counted(part.columns.len(), "unknown"));
+        made.note(format!("{title} these unknowns ({rows}, {columns}):\n{}", lines.join("\n")))
     }
 
     fn labelled(&self, mut made: Diagnostic, unknowns: &[VarId]) -> Diagnostic {
@@ -301,10 +350,18 @@ impl Report<'_> {
         })
     }
 
-    /// The potential of a connector.
+    /// All names of a quantity.
+    fn names_of(&self, v: VarId) -> impl Iterator<Item = VarId> {
+        let others = self.aliases.iter().filter(move |a| a.target == v).map(|a| a.variable);
+        std::iter::once(v).chain(others)
+    }
+
+    /// The potential of a connector, or equal to one.
     fn is_potential(&self, v: VarId) -> bool {
-        let variable = &self.draft.variables[v.index()];
-        !variable.flow && self.has_flow(variable.origin.instance)
+        self.names_of(v).any(|v| {
+            let variable = &self.draft.variables[v.index()];
+            !variable.flow && self.has_flow(variable.origin.instance)
+        })
     }
 
     /// Whether an instance is a connector: it has a flow variable of its own.
@@ -315,7 +372,7 @@ impl Report<'_> {
     /// The components whose connectors carry these potentials, in order.
     fn components_of(&self, unknowns: &[VarId]) -> Vec<String> {
         let mut found: Vec<u32> = Vec::new();
-        for v in unknowns {
+        for v in unknowns.iter().flat_map(|&v| self.names_of(v)) {
             let instance = self.draft.variables[v.index()].origin.instance;
             if self.has_flow(instance) {
                 found.push(self.draft.instances[instance as usize].parent);
@@ -383,6 +440,10 @@ fn unknown_name(draft: &Draft, unknown: Unknown) -> String {
         Unknown::Var(v) => name(draft, v),
         Unknown::Der(v) => format!("`der({})`", draft.variables[v.index()].name),
     }
+}
+
+fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
 fn listed(names: &[String]) -> String {

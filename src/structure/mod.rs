@@ -6,6 +6,7 @@
 mod alias;
 mod analysis;
 mod blt;
+mod closed_groups;
 mod discrete;
 mod draft;
 mod dulmage_mendelsohn;

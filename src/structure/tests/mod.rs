@@ -232,6 +232,21 @@ fn no_reference_pressure() {
     insta::assert_snapshot!(error(&m));
 }
 
+/// Two resistors in parallel at a source, all floating: every equation could be matched.
+#[test]
+fn floating_circuit() {
+    let mut m = Model::new();
+    for name in ["u", "r1", "r2"] {
+        m.instance(name, "Part").instance(&format!("{name}.p"), "Pin").instance(&format!("{name}.n"), "Pin");
+        m.reals(&format!("{name}.p.v {name}.n.v")).flows(&format!("{name}.p.i {name}.n.i"));
+        m.equations_of(name, OriginKind::Declared, &format!("{name}.p.i + {name}.n.i = 0"));
+    }
+    m.equations("u.p.v - u.n.v = 5; r1.p.v - r1.n.v = 2*r1.p.i; r2.p.v - r2.n.v = 3*r2.p.i");
+    m.equations_of("", OriginKind::ConnectPotential, "u.p.v = r1.p.v; u.p.v = r2.p.v; u.n.v = r1.n.v; u.n.v = r2.n.v");
+    m.equations_of("", OriginKind::ConnectFlow, "u.p.i + r1.p.i + r2.p.i = 0; u.n.i + r1.n.i + r2.n.i = 0");
+    insta::assert_snapshot!(error(&m));
+}
+
 /// Two tanks at one node.
 #[test]
 fn two_ideal_sources() {
