@@ -13,8 +13,8 @@ pub struct Shipped;
 
 impl Shipped {
     /// Folders whose entries are top-level packages.
-    pub fn roots() -> [PathBuf; 2] {
-        ["components".into(), "models".into()]
+    pub fn roots() -> [PathBuf; 3] {
+        ["components".into(), "models".into(), "models/stiff".into()]
     }
 }
 

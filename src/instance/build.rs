@@ -706,6 +706,7 @@ impl<'a> Instance<'a, '_> {
 }
 
 /// What is the same for all elements of a component array.
+#[derive(Clone)]
 struct Plan<'a> {
     name: String,
     scope: ScopeId,
