@@ -446,6 +446,41 @@ impl<E: Equations> Ida<E> {
         }
     }
 
+    /// What one backward Euler step of length `h` from (`t`, `y`, `yp`) adds to its predictor `y + h yp`, to first
+    /// order, into `out`; false when it cannot be computed. Costs an evaluation, and a factorisation where rows do not
+    /// give their own derivative (`explicit` false).
+    pub fn euler_correction(
+        &mut self,
+        t: f64,
+        h: f64,
+        y: &[f64],
+        yp: &[f64],
+        explicit: bool,
+        out: &mut Vec<f64>,
+    ) -> bool {
+        // SAFETY: no callback runs while the context is borrowed here; the matrix is ours
+        let (context, val) = unsafe { (&mut *self.context, &mut *(*self.matrix).content.cast::<Vec<f64>>()) };
+        let predicted: Vec<f64> = y.iter().zip(yp).map(|(y, yp)| y + h * yp).collect();
+        out.clear();
+        out.resize(self.n, 0.0);
+        context.residual_calls += 1;
+        if context.equations.residual(t + h, &predicted, yp, out) == Evaluation::Retry {
+            return false;
+        }
+        if explicit {
+            out.iter_mut().for_each(|r| *r *= -h);
+            return true;
+        }
+        context.jacobian_calls += 1;
+        if context.equations.jacobian(t + h, 1.0 / h, &predicted, yp, val) == Evaluation::Retry
+            || context.lu.factor(val).is_err()
+        {
+            return false;
+        }
+        out.iter_mut().for_each(|r| *r = -*r);
+        context.lu.solve(out)
+    }
+
     /// The length of the first step after a start or restart; 0 lets IDA choose.
     pub fn set_first_step(&mut self, h: f64) {
         // SAFETY: plain setter

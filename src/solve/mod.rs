@@ -1,4 +1,78 @@
 //! From a lowered system to a trajectory: initialization, integration by SUNDIALS IDA, events.
+//!
+//! [`simulate`] is the entry. A run that fails returns what it has and says why in its diagnostics.
 
+mod blocks;
+mod driver;
+mod events;
 pub mod ida;
+mod initialize;
+mod inputs;
 pub mod linear;
+mod model;
+mod modes;
+mod monitor;
+mod newton;
+mod output;
+mod report;
+mod restart;
+mod schedule;
+mod settings;
+mod state;
+
+pub use inputs::{Input, Interpolation};
+pub use output::{Sink, signals};
+pub use settings::{End, Settings, Statistics};
+pub use state::State;
+
+use crate::diag::Diagnostic;
+use crate::lower::System;
+use std::sync::atomic::AtomicBool;
+
+/// How far a run is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress {
+    /// Simulated time in seconds.
+    pub time: f64,
+    /// Events so far.
+    pub events: u64,
+}
+
+/// Ways to reach into a run.
+#[derive(Default)]
+pub struct Control<'a> {
+    /// Ends the run soon after it is set, as from Ctrl-C.
+    pub interrupt: Option<&'a AtomicBool>,
+    /// Called every now and then; ends the run by returning false.
+    pub progress: Option<&'a mut dyn FnMut(&Progress) -> bool>,
+}
+
+/// What a run came to. The rows are in the sink.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// How it ended.
+    pub end: End,
+    /// The time reached, in seconds.
+    pub time: f64,
+    /// Errors and warnings.
+    pub diagnostics: Vec<Diagnostic>,
+    /// The work done.
+    pub statistics: Statistics,
+    /// Where it ended, to go on from.
+    pub state: State,
+}
+
+/// Runs a system: from its initial values, or from a saved state (then `settings.start_time` is not used).
+pub fn simulate(
+    system: &System,
+    settings: &Settings,
+    inputs: &[Input],
+    from: Option<&State>,
+    sink: &mut dyn Sink,
+    control: &mut Control<'_>,
+) -> Run {
+    driver::run(system, settings, inputs, from, sink, control)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,198 @@
+//! Recorded inputs: held (each step is an event) or linear between samples (each sample is a kink that steps respect).
+
+use super::modes::same_time;
+use crate::expr::VarId;
+use crate::lower::Layout;
+use std::sync::Arc;
+
+/// How an input runs between its samples.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Interpolation {
+    /// The value of a sample holds until the next one.
+    #[default]
+    Held,
+    /// Straight lines between samples.
+    Linear,
+}
+
+/// A recorded input. Before the first sample its value holds, after the last one too.
+#[derive(Clone, Debug)]
+pub struct Input {
+    /// The input variable.
+    pub variable: VarId,
+    /// Times of the samples in seconds, growing; may be shared between inputs.
+    pub times: Arc<[f64]>,
+    /// Values, in the variable's unit, as many as times.
+    pub values: Arc<[f64]>,
+    /// Between samples.
+    pub interpolation: Interpolation,
+}
+
+impl Input {
+    /// An input that holds each sample.
+    pub fn held(variable: VarId, times: impl Into<Arc<[f64]>>, values: impl Into<Arc<[f64]>>) -> Self {
+        Input { variable, times: times.into(), values: values.into(), interpolation: Interpolation::Held }
+    }
+
+    /// An input that runs straight between samples.
+    pub fn linear(variable: VarId, times: impl Into<Arc<[f64]>>, values: impl Into<Arc<[f64]>>) -> Self {
+        Input { variable, times: times.into(), values: values.into(), interpolation: Interpolation::Linear }
+    }
+}
+
+/// All recorded inputs during a run.
+#[derive(Clone, Debug, Default)]
+pub struct Playback {
+    tracks: Vec<Track>,
+    any_linear: bool,
+}
+
+#[derive(Clone, Debug)]
+struct Track {
+    input: Input,
+    slot: usize,
+    /// The derivative's slot, if the model uses it.
+    der: Option<usize>,
+    /// The last sample at or before the present time.
+    at: usize,
+}
+
+impl Playback {
+    /// Inputs without samples are ignored.
+    pub fn new(inputs: &[Input], layout: &Layout) -> Self {
+        let tracks: Vec<Track> = inputs
+            .iter()
+            .filter(|i| !i.times.is_empty())
+            .map(|input| Track {
+                input: input.clone(),
+                slot: layout.var(input.variable),
+                der: layout.der(input.variable),
+                at: 0,
+            })
+            .collect();
+        let any_linear = tracks.iter().any(|t| t.input.interpolation == Interpolation::Linear);
+        Playback { tracks, any_linear }
+    }
+
+    /// Moves to time `t` (which may lie anywhere) and sets the values that hold just after it.
+    pub fn seek(&mut self, t: f64, values: &mut [f64]) {
+        for track in &mut self.tracks {
+            let times = &track.input.times;
+            track.at = times.partition_point(|&s| s <= t || same_time(s, t)).saturating_sub(1);
+        }
+        self.set(t, values);
+    }
+
+    /// Sets all values at `t`, between the samples where the playback stands.
+    pub fn set(&self, t: f64, values: &mut [f64]) {
+        for track in &self.tracks {
+            track.set(t, values);
+        }
+    }
+
+    /// Sets the values of linear inputs at `t`; held ones keep theirs.
+    pub fn follow(&self, t: f64, values: &mut [f64]) {
+        if self.any_linear {
+            for track in self.tracks.iter().filter(|t| t.input.interpolation == Interpolation::Linear) {
+                track.set(t, values);
+            }
+        }
+    }
+
+    /// The next time after `t` at which a held input jumps.
+    pub fn next_jump(&self, t: f64) -> f64 {
+        self.next(t, Interpolation::Held)
+    }
+
+    /// The next time after `t` at which a linear input bends.
+    pub fn next_kink(&self, t: f64) -> f64 {
+        if self.any_linear { self.next(t, Interpolation::Linear) } else { f64::INFINITY }
+    }
+
+    fn next(&self, t: f64, kind: Interpolation) -> f64 {
+        let tracks = self.tracks.iter().filter(|track| track.input.interpolation == kind);
+        tracks.map(|track| track.next_change(t)).fold(f64::INFINITY, f64::min)
+    }
+}
+
+impl Track {
+    fn set(&self, t: f64, values: &mut [f64]) {
+        let (times, samples) = (&self.input.times, &self.input.values);
+        let (value, slope) = match self.input.interpolation {
+            Interpolation::Held => (samples[self.at], 0.0),
+            Interpolation::Linear => line(times, samples, self.at, t),
+        };
+        values[self.slot] = value;
+        if let Some(der) = self.der {
+            values[der] = slope;
+        }
+    }
+
+    /// The time of the next sample that brings another value, or another slope.
+    fn next_change(&self, t: f64) -> f64 {
+        let (times, samples) = (&self.input.times, &self.input.values);
+        (self.at + 1..times.len())
+            .find(|&k| {
+                let changes = match self.input.interpolation {
+                    Interpolation::Held => samples[k] != samples[self.at],
+                    Interpolation::Linear => true,
+                };
+                changes && times[k] > t && !same_time(times[k], t)
+            })
+            .map_or(f64::INFINITY, |k| times[k])
+    }
+}
+
+/// Value and slope on the line that starts at sample `at`; constant outside the samples.
+fn line(times: &[f64], samples: &[f64], at: usize, t: f64) -> (f64, f64) {
+    if at + 1 >= times.len() || t < times[0] {
+        return (samples[at], 0.0);
+    }
+    let slope = (samples[at + 1] - samples[at]) / (times[at + 1] - times[at]);
+    (samples[at] + (t - times[at]) * slope, slope)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::structure::Dae;
+
+    fn playback(interpolation: Interpolation) -> (Playback, Vec<f64>) {
+        let dae = Dae { variables: vec![crate::solve::tests::variable("u")], ..Dae::default() };
+        let layout = Layout::new(&dae);
+        let values = layout.values();
+        let input = Input {
+            variable: VarId(0),
+            times: Arc::from([1.0, 2.0, 3.0, 5.0]),
+            values: Arc::from([10.0, 20.0, 20.0, 0.0]),
+            interpolation,
+        };
+        (Playback::new(&[input], &layout), values)
+    }
+
+    fn at(playback: &mut Playback, values: &mut [f64], t: f64) -> f64 {
+        playback.seek(t, values);
+        values[playback.tracks[0].slot]
+    }
+
+    #[test]
+    fn held_values_jump_at_their_samples_and_skip_equal_ones() {
+        let (mut p, mut values) = playback(Interpolation::Held);
+        for (t, u) in [(0.0, 10.0), (1.0, 10.0), (1.999, 10.0), (2.0, 20.0), (4.9, 20.0), (5.0, 0.0), (9.0, 0.0)] {
+            assert_eq!(at(&mut p, &mut values, t), u, "{t}");
+        }
+        p.seek(2.0, &mut values);
+        assert_eq!(p.next_jump(2.0), 5.0);
+        assert_eq!(p.next_kink(2.0), f64::INFINITY);
+    }
+
+    #[test]
+    fn linear_values_bend_at_their_samples() {
+        let (mut p, mut values) = playback(Interpolation::Linear);
+        for (t, u) in [(0.0, 10.0), (1.5, 15.0), (2.5, 20.0), (4.0, 10.0), (7.0, 0.0)] {
+            assert_eq!(at(&mut p, &mut values, t), u, "{t}");
+        }
+        p.seek(2.0, &mut values);
+        assert_eq!(p.next_kink(2.0), 3.0);
+    }
+}

@@ -1,0 +1,74 @@
+//! A lowered system with its values, as IDA sees it.
+
+use super::ida::{Equations, Evaluation};
+use super::inputs::Playback;
+use super::modes::RootFunctions;
+use crate::lower::System;
+
+/// One run's values, and what changes them while the integrator steps.
+#[derive(Clone, Debug)]
+pub struct Model<'a> {
+    /// The equations.
+    pub system: &'a System,
+    /// All slots.
+    pub values: Vec<f64>,
+    /// The functions watched for sign changes.
+    pub roots: RootFunctions,
+    /// Recorded inputs.
+    pub playback: Playback,
+    /// Where the equations last had no finite value: time, y, y'.
+    pub trap: Option<(f64, Vec<f64>, Vec<f64>)>,
+}
+
+impl Model<'_> {
+    fn judge<E>(&mut self, result: Result<(), E>, t: f64, y: &[f64], yp: &[f64]) -> Evaluation {
+        match result {
+            Ok(()) => Evaluation::Done,
+            Err(_) => {
+                self.trap = Some((t, y.to_vec(), yp.to_vec()));
+                Evaluation::Retry
+            }
+        }
+    }
+
+    /// Puts time, unknowns and recorded inputs into their slots.
+    pub fn load(&mut self, t: f64, y: &[f64], yp: &[f64]) {
+        self.playback.follow(t, &mut self.values);
+        self.system.load(t, y, yp, &mut self.values);
+    }
+
+    /// Fills the slots of all variables.
+    pub fn observe(&mut self, t: f64, y: &[f64], yp: &[f64]) {
+        self.playback.follow(t, &mut self.values);
+        self.system.observe(t, y, yp, &mut self.values);
+    }
+}
+
+impl Equations for Model<'_> {
+    fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], r: &mut [f64]) -> Evaluation {
+        if self.system.columns.is_empty() {
+            // the constant that stands in for a system without unknowns
+            r[0] = yp[0];
+            return Evaluation::Done;
+        }
+        self.playback.follow(t, &mut self.values);
+        let result = self.system.residual(t, y, yp, &mut self.values, r);
+        self.judge(result, t, y, yp)
+    }
+
+    fn jacobian(&mut self, t: f64, cj: f64, y: &[f64], yp: &[f64], val: &mut [f64]) -> Evaluation {
+        if self.system.columns.is_empty() {
+            val[0] = cj;
+            return Evaluation::Done;
+        }
+        self.playback.follow(t, &mut self.values);
+        let result = self.system.jacobian(t, cj, y, yp, &mut self.values, val);
+        self.judge(result, t, y, yp)
+    }
+
+    fn crossings(&mut self, t: f64, y: &[f64], yp: &[f64], g: &mut [f64]) {
+        self.playback.follow(t, &mut self.values);
+        self.system.crossings(t, y, yp, &mut self.values, self.roots.raw());
+        self.roots.write(g);
+    }
+}

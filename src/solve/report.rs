@@ -1,0 +1,264 @@
+//! What a run says when it fails: which variable of which component, which equation, and what to do.
+
+use super::blocks::BlockFailure;
+use super::newton::{NewtonFailure, Reason};
+use crate::diag::{Code, Diagnostic};
+use crate::expr::{ExprId, VarId};
+use crate::flat::{Message, MessagePart, Origin, Type};
+use crate::lower::{System, Trap};
+use crate::structure::{Block, Dae, Unknown};
+
+/// Rows of a table in a message at most.
+const ROWS: usize = 8;
+
+/// The name of an unknown as the user knows it.
+pub fn name(dae: &Dae, unknown: Unknown) -> String {
+    match unknown {
+        Unknown::Var(v) => dae.variables[v.index()].name.clone(),
+        Unknown::Der(v) => format!("der({})", dae.variables[v.index()].name),
+    }
+}
+
+/// The component that an origin stands in, by full name and class; the model itself has no name.
+fn component(dae: &Dae, origin: Origin) -> Option<(&str, &str)> {
+    let instance = dae.instances.get(origin.instance as usize)?;
+    (!instance.name.is_empty()).then_some((instance.name.as_str(), instance.class.as_str()))
+}
+
+/// A diagnostic at a place of the model, with the component named.
+pub fn at_origin(dae: &Dae, code: Code, text: impl Into<String>, origin: Origin, label: &str) -> Diagnostic {
+    let diagnostic = Diagnostic::new(code, text).at(origin.span, label);
+    match component(dae, origin) {
+        Some((instance, class)) => diagnostic.instance(instance).class(class),
+        None => diagnostic,
+    }
+}
+
+/// A text with values, as `String(..)` prints them.
+pub fn message_text(system: &System, message: &Message, values: &[f64]) -> String {
+    let mut text = String::new();
+    for part in &message.parts {
+        match part {
+            MessagePart::Text(words) => text.push_str(words),
+            MessagePart::Value(e, ty) => text.push_str(&value_text(&system.dae, system.eval(*e, values), *ty)),
+        }
+    }
+    text
+}
+
+fn value_text(dae: &Dae, value: f64, ty: Type) -> String {
+    match ty {
+        Type::Real => number(value),
+        Type::Integer => format!("{value:.0}"),
+        Type::Boolean => (value != 0.0).to_string(),
+        Type::Enumeration(e) => {
+            let literals = dae.enumerations.get(e as usize).map(|e| &e.1);
+            let index = (value as usize).wrapping_sub(1);
+            literals.and_then(|l| l.get(index)).cloned().unwrap_or_else(|| number(value))
+        }
+    }
+}
+
+/// A number with six significant digits, as `%g` prints it.
+pub fn number(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return value.to_string();
+    }
+    let rounded = format!("{value:.5e}");
+    let (mantissa, exponent) = rounded.split_once('e').expect("written with an exponent");
+    let exponent: i32 = exponent.parse().expect("a whole number");
+    let trim = |s: &str| {
+        if s.contains('.') { s.trim_end_matches('0').trim_end_matches('.').to_string() } else { s.to_string() }
+    };
+    if (-5..6).contains(&exponent) {
+        trim(&format!("{value:.*}", usize::try_from(5 - exponent).unwrap_or(0)))
+    } else {
+        format!("{}e{exponent}", trim(mantissa))
+    }
+}
+
+/// Columns of words, aligned, below a heading.
+fn table(heading: [&str; 3], rows: impl Iterator<Item = [String; 3]>) -> String {
+    let rows: Vec<[String; 3]> = std::iter::once(heading.map(str::to_string)).chain(rows).collect();
+    let width = |k: usize| rows.iter().map(|r| r[k].chars().count()).max().unwrap_or(0);
+    let widths = [width(0), width(1), width(2)];
+    let line = |r: &[String; 3]| {
+        format!("{:<a$}  {:>b$}  {:>c$}", r[0], r[1], r[2], a = widths[0], b = widths[1], c = widths[2])
+    };
+    rows.iter().map(line).collect::<Vec<_>>().join("\n")
+}
+
+/// The first operation without a finite value in the model's equations, in the order of their evaluation, with the
+/// index of its equation.
+pub fn find_trap(system: &System, values: &[f64]) -> Option<(Trap, u32)> {
+    let found = |e: ExprId, equation: u32| system.trap(e, values).map(|trap| (trap, equation));
+    for block in &system.dae.continuous {
+        let trap = match block {
+            Block::Assign(a) => found(a.value, a.equation),
+            Block::Loop(l) => {
+                let inner = l.inner.iter().map(|a| (a.value, a.equation));
+                inner.chain(l.residuals.iter().copied()).find_map(|(e, equation)| found(e, equation))
+            }
+            Block::Mixed(_) => None,
+        };
+        if trap.is_some() {
+            return trap;
+        }
+    }
+    None
+}
+
+/// E504: a value is not finite.
+pub fn non_finite(system: &System, t: f64, trap: Option<(Trap, u32)>) -> Diagnostic {
+    let Some((trap, equation)) = trap else {
+        return Diagnostic::new(Code::NonFinite, format!("a value is not finite at time {} s", number(t)));
+    };
+    let Trap { operation, written, value } = trap;
+    let text = format!("`{written}` is not finite at time {} s: {operation} = {value}", number(t));
+    let origin = system.dae.equations.get(equation as usize).map(|e| e.origin);
+    let diagnostic = match origin {
+        Some(origin) => at_origin(&system.dae, Code::NonFinite, text, origin, "in this equation"),
+        None => Diagnostic::new(Code::NonFinite, text),
+    };
+    diagnostic
+        .help("limit the argument (`max`, `noEvent(if ...)`), or check the start values and parameters it depends on")
+}
+
+/// What happened in a block, as a diagnostic of the given code; `when` says when, as in `at the start`.
+pub fn block_failure(system: &System, code: Code, failure: &BlockFailure, values: &[f64], when: &str) -> Diagnostic {
+    match failure {
+        BlockFailure::Loop(failure) => loop_failure(system, code, failure, values, when),
+        BlockFailure::NonFinite(target) => {
+            let trap = system.trap(target.value, values).map(|trap| (trap, target.equation));
+            let t = values[crate::lower::Layout::TIME];
+            match trap {
+                Some(trap) => non_finite(system, t, Some(trap)),
+                None => {
+                    let text = format!("`{}` is not finite {when}", name(&system.dae, target.unknown));
+                    equation_diagnostic(&system.dae, Code::NonFinite, text, target.equation)
+                }
+            }
+        }
+        BlockFailure::Mixed(variables) => changing(system, code, variables, when),
+    }
+}
+
+fn equation_diagnostic(dae: &Dae, code: Code, text: String, equation: u32) -> Diagnostic {
+    match dae.equations.get(equation as usize) {
+        Some(e) => at_origin(dae, code, text, e.origin, "this equation"),
+        None => Diagnostic::new(code, text),
+    }
+}
+
+fn loop_failure(system: &System, code: Code, failure: &NewtonFailure, values: &[f64], when: &str) -> Diagnostic {
+    if let (Reason::NonFinite, Some(&equation)) = (&failure.reason, failure.non_finite.first())
+        && let Some(trap) = trap_in_loops(system, equation, values)
+    {
+        return non_finite(system, values[crate::lower::Layout::TIME], Some((trap, equation)));
+    }
+    let dae = &system.dae;
+    let worst = failure.residuals.first().map_or(0, |r| r.0);
+    let names = failure.unknowns.iter().take(3).map(|u| format!("`{}`", name(dae, u.0)));
+    let names = names.collect::<Vec<_>>().join(", ");
+    let more = if failure.unknowns.len() > 3 { ", ..." } else { "" };
+    let text = match &failure.reason {
+        Reason::Singular(u) => {
+            format!("the equations for {names}{more} do not determine `{}` {when}", name(dae, *u))
+        }
+        Reason::NonFinite => format!("the equations for {names}{more} have no finite value {when}"),
+        Reason::NoConvergence => format!("no solution found for {names}{more} {when}"),
+    };
+    let rows = failure.unknowns.iter().take(ROWS).map(|&(u, from, to)| [name(dae, u), number(from), number(to)]);
+    let residual = failure.residuals.first().map_or(0.0, |r| r.1);
+    equation_diagnostic(dae, code, text, worst)
+        .note(table(["unknown", "first guess", "now"], rows))
+        .note(format!(
+            "after {} iterations the marked equation is furthest from holding: {} (in nominal values)",
+            failure.iterations,
+            number(residual)
+        ))
+        .help("give `start` values near the solution and `nominal` values of the right size to the unknowns above")
+}
+
+fn trap_in_loops(system: &System, equation: u32, values: &[f64]) -> Option<Trap> {
+    let e = system.dae.equations.get(equation as usize)?;
+    system.trap(e.lhs, values).or_else(|| system.trap(e.rhs, values))
+}
+
+/// Discrete values that find no rest.
+pub fn changing(system: &System, code: Code, variables: &[VarId], when: &str) -> Diagnostic {
+    let dae = &system.dae;
+    let names = variables.iter().take(ROWS).map(|v| format!("`{}`", dae.variables[v.index()].name));
+    let names = names.collect::<Vec<_>>().join(", ");
+    let text = format!("no consistent values of {names} {when}");
+    let diagnostic = match variables.first() {
+        Some(v) => at_origin(dae, code, text, dae.variables[v.index()].origin, "changes without end"),
+        None => Diagnostic::new(code, text),
+    };
+    diagnostic
+        .note("each change of one of them makes another one change back")
+        .help("give the model a state between: hysteresis, `pre(..)`, or a small inertia or volume")
+}
+
+/// E501: the integrator gave up. `errors` are the weighted local errors of the unknowns.
+pub fn step_collapse(system: &System, t: f64, h: f64, why: &str, errors: &[f64], y: &[f64]) -> Diagnostic {
+    let dae = &system.dae;
+    let mut order: Vec<usize> = (0..errors.len()).collect();
+    order.sort_by(|&a, &b| errors[b].abs().total_cmp(&errors[a].abs()));
+    let text = |v: Option<&usize>| match v {
+        Some(&i) => {
+            let v = name(dae, Unknown::Var(system.columns[i].variable));
+            format!("the step size collapsed at time {} s ({why}); `{v}` limits it", number(t))
+        }
+        None => format!("the step size collapsed at time {} s ({why})", number(t)),
+    };
+    let first = order.first();
+    let rows = order
+        .iter()
+        .take(ROWS)
+        .map(|&i| [name(dae, Unknown::Var(system.columns[i].variable)), number(y[i]), number(errors[i].abs())]);
+    let mut diagnostic = match first.and_then(|&i| system.rows.get(i)) {
+        Some(row) => equation_diagnostic(dae, Code::StepTooSmall, text(first), row.equation),
+        None => Diagnostic::new(Code::StepTooSmall, text(first)),
+    };
+    if let Some(&i) = first {
+        let origin = dae.variables[system.columns[i].variable.index()].origin;
+        if let Some((instance, class)) = component(dae, origin) {
+            diagnostic = diagnostic.instance(instance).class(class);
+        }
+    }
+    diagnostic
+        .note(format!("the last step was {} s", number(h)))
+        .note(table(["variable", "value", "error / tolerance"], rows))
+        .help("look for a jump or an infinite slope in the equations of this variable; a smaller tolerance or a `nominal` of the right size may help")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_like_percent_g() {
+        let cases = [
+            (0.0, "0"),
+            (1.0, "1"),
+            (-2.5, "-2.5"),
+            (1e5 / 3.0, "33333.3"),
+            (1.23456789e-7, "1.23457e-7"),
+            (1e6, "1e6"),
+            (0.1, "0.1"),
+        ];
+        for (value, text) in cases {
+            assert_eq!(number(value), text);
+        }
+    }
+
+    #[test]
+    fn tables_are_aligned() {
+        let rows = [["tank.level".to_string(), "1".to_string(), "20".to_string()]];
+        insta::assert_snapshot!(table(["unknown", "guess", "now"], rows.into_iter()), @r"
+        unknown     guess  now
+        tank.level      1   20
+        ");
+    }
+}

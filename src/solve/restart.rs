@@ -1,0 +1,159 @@
+//! Going on after an event: whether the integrator may keep its past, and how long its first step may be.
+//!
+//! At a stop time IDA stands exactly at the event. If the unknowns did not jump and the change of the derivatives is
+//! within what the error test sees anyway, stepping on costs nothing; most samples of a recorded input are like that.
+//! Else IDA restarts with order one, with a first step from the second derivative (IDA's own choice, half a tolerance
+//! of change, is about a thousand times too short).
+
+use super::ida::Ida;
+use super::model::Model;
+use super::newton::Scales;
+use crate::lower::{RowKind, System};
+
+/// A jump of an unknown, in tolerances, that does not need a restart.
+const SMALL_JUMP: f64 = 1.0;
+/// A change of the derivatives over the next step, in tolerances, that the error test may deal with.
+const SMALL_KINK: f64 = 3.0;
+/// The same over the part of a step that was made beyond a root with the old equations.
+const SMALL_TAIL: f64 = 0.1;
+/// The error of the first step, in tolerances.
+const FIRST_ERROR: f64 = 0.3;
+
+/// Buffers for the unknowns around an event.
+#[derive(Debug, Default)]
+pub struct Restart {
+    nominal: Vec<f64>,
+    tolerance: f64,
+    y: Vec<f64>,
+    yp: Vec<f64>,
+    old: Vec<f64>,
+    old_slopes: Vec<f64>,
+    /// Slot of each unknown, and of its derivative if it is a state.
+    slots: Vec<(usize, Option<usize>)>,
+    /// Every row gives the derivative of its own state: no algebraic unknowns.
+    explicit: bool,
+    correction: Vec<f64>,
+    usual_step: f64,
+}
+
+impl Restart {
+    /// For the unknowns of a system; one dummy if it has none.
+    pub fn new(system: &System, scales: &Scales, tolerance: f64) -> Self {
+        let mut nominal: Vec<f64> = system.columns.iter().map(|c| scales.nominal[c.variable.index()]).collect();
+        let layout = &system.layout;
+        let der = |c: &crate::lower::Column| if c.state { layout.der(c.variable) } else { None };
+        let slots = system.columns.iter().map(|c| (layout.var(c.variable), der(c))).collect();
+        if nominal.is_empty() {
+            nominal.push(1.0);
+        }
+        let n = nominal.len();
+        let zeros = || vec![0.0; n];
+        Restart {
+            nominal,
+            tolerance,
+            y: zeros(),
+            yp: zeros(),
+            old: zeros(),
+            old_slopes: zeros(),
+            slots,
+            explicit: system.rows.iter().all(|r| r.kind == RowKind::Derivative),
+            correction: Vec::new(),
+            usual_step: 0.0,
+        }
+    }
+
+    /// Sizes of the unknowns.
+    pub fn nominal(&self) -> &[f64] {
+        &self.nominal
+    }
+
+    /// The gathered unknowns.
+    pub fn y(&self) -> &[f64] {
+        &self.y
+    }
+
+    /// Their derivatives.
+    pub fn yp(&self) -> &[f64] {
+        &self.yp
+    }
+
+    /// Takes the unknowns from their slots after an event or the start.
+    pub fn gather(&mut self, _system: &System, values: &[f64]) {
+        for (i, &(slot, der)) in self.slots.iter().enumerate() {
+            self.y[i] = values[slot];
+            self.yp[i] = der.map_or(0.0, |d| values[d]);
+        }
+    }
+
+    /// Remembers the unknowns and the equations' derivatives just before an event.
+    pub fn before(&mut self, _system: &System, values: &[f64], y: &[f64]) {
+        self.old.copy_from_slice(y);
+        for (old, &(_, der)) in self.old_slopes.iter_mut().zip(&self.slots) {
+            *old = der.map_or(0.0, |d| values[d]);
+        }
+    }
+
+    fn weight(&self, i: usize) -> f64 {
+        1.0 / (self.tolerance * (self.y[i].abs() + self.nominal[i]))
+    }
+
+    /// Root mean square in tolerances, as IDA measures.
+    fn norm(&self, entry: impl Fn(usize) -> f64) -> f64 {
+        let n = self.y.len();
+        let sum: f64 = (0..n).map(|i| (entry(i) * self.weight(i)).powi(2)).sum();
+        (sum / n as f64).sqrt()
+    }
+
+    /// Whether the integrator's past still serves; see the head of this file.
+    pub fn may_continue(&self, ida: &Ida<Model<'_>>, root: bool, reinitialised: bool, t: f64, next: f64) -> bool {
+        if reinitialised {
+            return false;
+        }
+        let largest = (0..self.y.len()).map(|i| ((self.y[i] - self.old[i]) * self.weight(i)).abs()).fold(0.0, f64::max);
+        let kink = self.norm(|i| self.yp[i] - self.old_slopes[i]);
+        if root {
+            let tail = (ida.internal_time() - t).abs();
+            largest <= SMALL_TAIL && kink * tail <= SMALL_TAIL && kink * ida.step_lengths().1 <= SMALL_KINK
+        } else {
+            let h = ida.step_lengths().1.abs().min(next - t);
+            largest <= SMALL_JUMP && kink * h <= SMALL_KINK * f64::from(ida.order() + 1)
+        }
+    }
+
+    /// Keeps in mind how long steps were before a restart.
+    pub fn remember_step(&mut self, ida: &Ida<Model<'_>>) {
+        self.usual_step = ida.step_lengths().0.max(0.5 * self.usual_step);
+    }
+
+    /// Restarts at `t` from the gathered values; `room` is left until the next event. False when IDA refuses.
+    pub fn restart(&mut self, ida: &mut Ida<Model<'_>>, t: f64, room: f64, longest: f64, start: bool) -> bool {
+        let h = self.first_step(ida, t, room, longest);
+        if !start && ida.restart(t, &self.y, &self.yp).is_err() {
+            return false;
+        }
+        ida.set_first_step(h);
+        true
+    }
+
+    /// The step whose error would be about the tolerance with order one.
+    fn first_step(&mut self, ida: &mut Ida<Model<'_>>, t: f64, room: f64, longest: f64) -> f64 {
+        let speed = self.norm(|i| self.yp[i]);
+        let usual = if self.usual_step > 0.0 { self.usual_step } else { 1e-3 * room };
+        // moves the unknowns by about one tolerance
+        let probe = (1.0 / speed).min(0.1 * usual).min(0.01 * room).max(1e-10 * t.abs());
+        let most = (10.0 * usual).min(room).min(longest);
+        if self.slots.is_empty() || !(probe > 0.0) {
+            return most;
+        }
+        let mut correction = std::mem::take(&mut self.correction);
+        let known = ida.euler_correction(t, probe, &self.y, &self.yp, self.explicit, &mut correction);
+        let h = if known {
+            let bend = self.norm(|i| correction[i]) / (probe * probe);
+            (2.0 * FIRST_ERROR / bend).sqrt().min(most)
+        } else {
+            (0.5 / speed).min(most)
+        };
+        self.correction = correction;
+        if h > 0.0 { h } else { most }
+    }
+}
