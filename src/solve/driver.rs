@@ -107,7 +107,7 @@ pub fn run<'a>(
         None => initialize::solve(system, &scales, &mut modes, &mut values)
             .map_err(|f| report::block_failure(system, Code::InitialFailed, &f, &values, "at the start")),
     };
-    let mut driver = Driver {
+    let driver = Driver {
         events: Events::new(system, &scales, &modes),
         restart: Restart::new(system, &scales, settings.tolerance),
         program: system.observe_only(&settings.wanted),
@@ -464,10 +464,8 @@ impl<'a> Driver<'a, '_> {
             return Err(self.interrupted());
         }
         let progress = Progress { time: self.t, events: self.statistics.events };
-        match &mut self.control.progress {
-            Some(report) if !report(&progress) => Err(self.interrupted()),
-            _ => Ok(()),
-        }
+        let go_on = self.control.progress.as_mut().is_none_or(|report| report(&progress));
+        if go_on { Ok(()) } else { Err(self.interrupted()) }
     }
 
     /// An event where the integrator stands.
