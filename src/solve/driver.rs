@@ -377,18 +377,23 @@ impl<'a> Driver<'a, '_> {
         ids.into_iter().any(|e| exprs.node(e) == Node::Terminal)
     }
 
-    /// The next event of known time; the stop time counts as one.
+    /// The next event of known time.
     fn next_event(&mut self) -> f64 {
-        let known = self.clocks.next().min(self.next_crossing).min(self.settings.stop_time);
+        let known = self.clocks.next().min(self.next_crossing);
         let t = self.t;
         known.min(self.ida().equations().playback.next_jump(t))
     }
 
+    /// Where the integrator must stop next: an event, a bend of an input, the end.
+    fn next_stop(&mut self) -> f64 {
+        let t = self.t;
+        let kink = self.ida().equations().playback.next_kink(t);
+        self.next_event().min(kink).min(self.settings.stop_time)
+    }
+
     /// Integrates to the next event, or the next bend of an input.
     fn leg(&mut self) -> Flow {
-        let event = self.next_event();
-        let t = self.t;
-        let to = event.min(self.ida().equations().playback.next_kink(t));
+        let (event, to) = (self.next_event(), self.next_stop());
         self.ida().set_stop(to);
         loop {
             let row = self.grid.next();
@@ -404,7 +409,7 @@ impl<'a> Driver<'a, '_> {
                 }
                 Ok((Reached::Stop, _)) => {
                     self.t = to;
-                    return self.stopped(event);
+                    return if event <= to || same_time(event, to) { self.event(Cause::Time) } else { self.pass_kink() };
                 }
                 Ok((Reached::Root, t)) => {
                     self.t = t;
@@ -418,14 +423,9 @@ impl<'a> Driver<'a, '_> {
         }
     }
 
-    /// At a known time: the stop time, an event, or a bend of an input.
-    fn stopped(&mut self, event: f64) -> Flow {
+    /// At a bend of an input, or at the end.
+    fn pass_kink(&mut self) -> Flow {
         let t = self.t;
-        let jump = self.ida().equations().playback.next_jump(t.next_down());
-        let due = [self.clocks.next(), self.next_crossing, jump].into_iter().any(|d| d <= t || same_time(d, t));
-        if due && same_time(event, t) {
-            return self.event(Cause::Time);
-        }
         let row = self.grid.next();
         if row <= t || same_time(row, t) {
             self.output()?;
@@ -535,7 +535,7 @@ impl<'a> Driver<'a, '_> {
     /// Continues after an event: with the integrator's past where it is still true, else afresh.
     fn go_on(&mut self, cause: Cause, reinitialised: bool) -> Flow {
         let t = self.t;
-        let next = self.next_event();
+        let next = self.next_stop();
         let ida = self.ida.as_mut().expect("made before the first step");
         if self.restart.may_continue(ida, cause == Cause::Root, reinitialised, t, next) {
             return Ok(());
@@ -548,7 +548,7 @@ impl<'a> Driver<'a, '_> {
     /// Restarts from the gathered values with a first step of sensible length; false when IDA refuses.
     fn first_step(&mut self, start: bool) -> bool {
         let t = self.t;
-        let room = self.next_event() - t;
+        let room = self.next_stop() - t;
         let ida = self.ida.as_mut().expect("made before the first step");
         self.restart.restart(ida, t, room, self.settings.longest_step, start)
     }

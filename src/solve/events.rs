@@ -91,19 +91,24 @@ impl Events {
     ) -> Result<Outcome, EventFailure> {
         let setting = Setting { system, scales, modes };
         let mut outcome = Outcome::default();
-        for _ in 0..PASSES {
+        let mut moving = Vec::new();
+        for pass in 0..PASSES {
             self.blocks.run(&system.event, &setting, values).map_err(EventFailure::Blocks)?;
             system.aliases(values);
             if self.changed(values) {
                 outcome.changed = true;
                 self.act(system, values, &mut outcome);
+                if pass + 10 >= PASSES {
+                    moving.extend(self.discrete.iter().filter(|d| values[d.1] != values[d.2]).map(|d| d.0));
+                }
                 self.settle_pre(values);
             } else if !self.lower_samples(values) {
                 return Ok(outcome);
             }
         }
-        let moving = self.discrete.iter().filter(|(_, now, before)| values[*now] != values[*before]);
-        Err(EventFailure::Endless(moving.map(|d| d.0).collect()))
+        moving.sort_unstable();
+        moving.dedup();
+        Err(EventFailure::Endless(moving))
     }
 
     /// `sample` holds only at its instant; true when one was lowered.

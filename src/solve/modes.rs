@@ -18,7 +18,7 @@ const NONE: u32 = u32::MAX;
 
 /// Whether two times are the same up to rounding.
 pub fn same_time(a: f64, b: f64) -> bool {
-    (a - b).abs() <= SAME_TIME * a.abs().max(b.abs())
+    a == b || (a - b).abs() <= SAME_TIME * a.abs().max(b.abs()) && a.is_finite() && b.is_finite()
 }
 
 /// The state of all crossings.

@@ -13,7 +13,7 @@ use crate::lower::{RowKind, System};
 /// A jump of an unknown, in tolerances, that does not need a restart.
 const SMALL_JUMP: f64 = 1.0;
 /// A change of the derivatives over the next step, in tolerances, that the error test may deal with.
-const SMALL_KINK: f64 = 3.0;
+const SMALL_KINK: f64 = 0.3;
 /// The same over the part of a step that was made beyond a root with the old equations.
 const SMALL_TAIL: f64 = 0.1;
 /// The error of the first step, in tolerances.
@@ -106,18 +106,14 @@ impl Restart {
 
     /// Whether the integrator's past still serves; see the head of this file.
     pub fn may_continue(&self, ida: &Ida<Model<'_>>, root: bool, reinitialised: bool, t: f64, next: f64) -> bool {
-        if reinitialised {
+        let jump = (0..self.y.len()).map(|i| ((self.y[i] - self.old[i]) * self.weight(i)).abs()).fold(0.0, f64::max);
+        let kink = self.norm(|i| self.yp[i] - self.old_slopes[i]);
+        let tail = (ida.internal_time() - t).abs();
+        if reinitialised || jump > SMALL_JUMP || (root && (jump > SMALL_TAIL || kink * tail > SMALL_TAIL)) {
             return false;
         }
-        let largest = (0..self.y.len()).map(|i| ((self.y[i] - self.old[i]) * self.weight(i)).abs()).fold(0.0, f64::max);
-        let kink = self.norm(|i| self.yp[i] - self.old_slopes[i]);
-        if root {
-            let tail = (ida.internal_time() - t).abs();
-            largest <= SMALL_TAIL && kink * tail <= SMALL_TAIL && kink * ida.step_lengths().1 <= SMALL_KINK
-        } else {
-            let h = ida.step_lengths().1.abs().min(next - t);
-            largest <= SMALL_JUMP && kink * h <= SMALL_KINK * f64::from(ida.order() + 1)
-        }
+        let kink = kink * ida.step_lengths().1.abs().min(next - t) / f64::from(ida.order() + 1);
+        kink <= SMALL_KINK
     }
 
     /// Keeps in mind how long steps were before a restart.
