@@ -213,7 +213,7 @@ impl<'a> Driver<'a, '_> {
         outcome.failed.extend(at_start.failed);
         self.write_row(model)?;
         self.grid.pass(self.t);
-        self.judge(model, outcome)
+        self.judge(model, &outcome)
     }
 
     /// Runs the event iteration and puts root functions on the right side.
@@ -244,16 +244,16 @@ impl<'a> Driver<'a, '_> {
     }
 
     /// Assertions and `terminate` of an event whose rows are out.
-    fn judge(&mut self, model: &mut Model<'a>, outcome: Outcome) -> Flow {
-        for (action, text) in outcome.failed {
-            if let ActionKind::Assert(assert) = &self.system.dae.actions[action].kind {
-                let first = self.told.first_action(action);
-                self.assertion(assert.warning, first, assert.origin, &text)?;
+    fn judge(&mut self, model: &mut Model<'a>, outcome: &Outcome) -> Flow {
+        for (action, text) in &outcome.failed {
+            if let ActionKind::Assert(assert) = &self.system.dae.actions[*action].kind {
+                let first = self.told.first_action(*action);
+                self.assertion(assert.warning, first, assert.origin, text)?;
             }
         }
         self.check_asserts(model)?;
-        match outcome.terminate {
-            Some(message) => Err(Stop { end: End::Terminated(message), diagnostics: Vec::new() }),
+        match &outcome.terminate {
+            Some(message) => Err(Stop { end: End::Terminated(message.clone()), diagnostics: Vec::new() }),
             None => Ok(()),
         }
     }
@@ -343,7 +343,7 @@ impl<'a> Driver<'a, '_> {
         ida.set_shortest_step(1e-15 * span.abs().max(self.t.abs()));
         ida.pause_after(PAUSE);
         self.ida = Some(ida);
-        self.first_step(true);
+        self.first_step(Cause::Start);
         Ok(())
     }
 
@@ -488,10 +488,9 @@ impl<'a> Driver<'a, '_> {
             driver.restart.gather(driver.system, &model.values);
             Ok(outcome)
         })?;
-        let reinitialised = outcome.reinitialised;
-        self.with_model(|driver, model, _, _| driver.judge(model, outcome))?;
+        self.with_model(|driver, model, _, _| driver.judge(model, &outcome))?;
         if cause != Cause::Terminal {
-            self.go_on(cause, reinitialised)?;
+            self.go_on(cause, &outcome)?;
             if self.chatter.note(t, crossing) {
                 return Err(Stop::new(End::Chattering, self.chatter.report(self.system, t)));
             }
@@ -533,24 +532,30 @@ impl<'a> Driver<'a, '_> {
     }
 
     /// Continues after an event: with the integrator's past where it is still true, else afresh.
-    fn go_on(&mut self, cause: Cause, reinitialised: bool) -> Flow {
+    fn go_on(&mut self, cause: Cause, outcome: &Outcome) -> Flow {
         let t = self.t;
         let next = self.next_stop();
         let ida = self.ida.as_mut().expect("made before the first step");
-        if self.restart.may_continue(ida, cause == Cause::Root, reinitialised, t, next) {
+        let serves = !outcome.reinitialised
+            && match cause {
+                Cause::Root => self.restart.past_serves_ahead(ida, t, outcome.changed),
+                _ => self.restart.past_serves(ida, t, next),
+            };
+        if serves {
             return Ok(());
         }
         self.restart.remember_step(ida);
         self.statistics.restarts += 1;
-        self.first_step(false).then_some(()).ok_or_else(|| self.refused(&Failure::Code(0)))
+        self.first_step(cause).then_some(()).ok_or_else(|| self.refused(&Failure::Code(0)))
     }
 
     /// Restarts from the gathered values with a first step of sensible length; false when IDA refuses.
-    fn first_step(&mut self, start: bool) -> bool {
+    fn first_step(&mut self, cause: Cause) -> bool {
         let t = self.t;
         let room = self.next_stop() - t;
         let ida = self.ida.as_mut().expect("made before the first step");
-        self.restart.restart(ida, t, room, self.settings.longest_step, start)
+        let (start, root) = (cause == Cause::Start, cause == Cause::Root);
+        self.restart.restart(ida, t, room, self.settings.longest_step, start, root)
     }
 
     /// What IDA's failure means for the user.

@@ -481,6 +481,25 @@ impl<E: Equations> Ida<E> {
         context.lu.solve(out)
     }
 
+    /// The residual of the equations as they are now, at the end of the last step (which may lie beyond the time last
+    /// returned), into `out`; false when it is not finite.
+    pub fn residual_ahead(&mut self, out: &mut Vec<f64>) -> bool {
+        let t = self.internal_time();
+        out.clear();
+        out.resize(self.n, 0.0);
+        // SAFETY: two vectors of our own that no one else borrows
+        unsafe {
+            let rate = s::N_VClone(self.scratch);
+            let known = s::IDAGetDky(self.memory, t, 0, self.scratch) >= 0 && s::IDAGetDky(self.memory, t, 1, rate) >= 0;
+            let context = &mut *self.context;
+            context.residual_calls += 1;
+            let (y, yp) = (slice(self.scratch, self.n), slice(rate, self.n));
+            let done = known && context.equations.residual(t, y, yp, out) == Evaluation::Done;
+            s::N_VDestroy(rate);
+            done
+        }
+    }
+
     /// The length of the first step after a start or restart; 0 lets IDA choose.
     pub fn set_first_step(&mut self, h: f64) {
         // SAFETY: plain setter

@@ -9,9 +9,6 @@ use std::collections::VecDeque;
 const SLIDING_EVENTS: usize = 2000;
 const SLIDING_WINDOW: f64 = 1e-4;
 const INSTANT: f64 = 1e-9;
-/// So many events of one relation at ever shorter distances, down to this part of the run, pile up at one instant.
-const PILING_EVENTS: usize = 16;
-const PILING_DISTANCE: f64 = 1e-6;
 
 /// Recent events, to recognise chattering.
 #[derive(Debug)]
@@ -38,18 +35,6 @@ impl Chatter {
             || (crossing.is_some()
                 && self.within(SLIDING_EVENTS, SLIDING_WINDOW * self.span, t)
                 && self.recent.iter().all(|e| e.1.is_some()))
-            || (crossing.is_some() && self.piles_up(crossing))
-    }
-
-    /// Bounces that become shorter and shorter. Every other event is compared: up and down may differ.
-    fn piles_up(&self, crossing: Option<u32>) -> bool {
-        let n = self.recent.len();
-        if n < PILING_EVENTS || self.recent.range(n - PILING_EVENTS..).any(|e| e.1 != crossing) {
-            return false;
-        }
-        let distance = |back: usize| self.recent[n - 1 - back].0 - self.recent[n - 3 - back].0;
-        let shrinks = (0..PILING_EVENTS - 4).all(|back| distance(back) < 0.99 * distance(back + 2));
-        shrinks && distance(0) <= PILING_DISTANCE * self.span
     }
 
     fn within(&self, count: usize, window: f64, t: f64) -> bool {

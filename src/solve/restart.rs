@@ -5,7 +5,7 @@
 //! Else IDA restarts with order one, with a first step from the second derivative (IDA's own choice, half a tolerance
 //! of change, is about a thousand times too short).
 
-use super::ida::Ida;
+use super::ida::{Equations, Ida};
 use super::model::Model;
 use super::newton::Scales;
 use crate::lower::{RowKind, System};
@@ -34,6 +34,8 @@ pub struct Restart {
     explicit: bool,
     correction: Vec<f64>,
     usual_step: f64,
+    /// Length of the Euler step behind `correction`.
+    probe: f64,
 }
 
 impl Restart {
@@ -59,6 +61,7 @@ impl Restart {
             explicit: system.rows.iter().all(|r| r.kind == RowKind::Derivative),
             correction: Vec::new(),
             usual_step: 0.0,
+            probe: 1.0,
         }
     }
 
@@ -104,16 +107,33 @@ impl Restart {
         (sum / n as f64).sqrt()
     }
 
-    /// Whether the integrator's past still serves; see the head of this file.
-    pub fn may_continue(&self, ida: &Ida<Model<'_>>, root: bool, reinitialised: bool, t: f64, next: f64) -> bool {
-        let jump = (0..self.y.len()).map(|i| ((self.y[i] - self.old[i]) * self.weight(i)).abs()).fold(0.0, f64::max);
+    /// Whether the integrator's past still serves at a stop time; `next` is the next one.
+    pub fn past_serves(&self, ida: &Ida<Model<'_>>, t: f64, next: f64) -> bool {
+        let h = ida.step_lengths().1.abs().min(next - t);
+        let kink = self.norm(|i| self.yp[i] - self.old_slopes[i]);
+        self.jump() <= SMALL_JUMP && kink * h <= SMALL_KINK * f64::from(ida.order() + 1)
+    }
+
+    /// The same at a root, beyond which the integrator has already stepped with the old equations: true when the new
+    /// ones agree there.
+    pub fn past_serves_ahead(&mut self, ida: &mut Ida<Model<'_>>, t: f64, changed: bool) -> bool {
+        if !changed {
+            return self.jump() <= SMALL_JUMP;
+        }
         let kink = self.norm(|i| self.yp[i] - self.old_slopes[i]);
         let tail = (ida.internal_time() - t).abs();
-        if reinitialised || jump > SMALL_JUMP || (root && (jump > SMALL_TAIL || kink * tail > SMALL_TAIL)) {
+        if !self.explicit || self.jump() > 0.0 || kink * tail > SMALL_TAIL {
             return false;
         }
-        let kink = kink * ida.step_lengths().1.abs().min(next - t) / f64::from(ida.order() + 1);
-        kink <= SMALL_KINK
+        let mut residual = std::mem::take(&mut self.correction);
+        let agrees = ida.residual_ahead(&mut residual) && self.norm(|i| residual[i]) * tail <= SMALL_TAIL;
+        self.correction = residual;
+        agrees
+    }
+
+    /// The largest jump of an unknown at the event, in tolerances.
+    fn jump(&self) -> f64 {
+        (0..self.y.len()).map(|i| ((self.y[i] - self.old[i]) * self.weight(i)).abs()).fold(0.0, f64::max)
     }
 
     /// Keeps in mind how long steps were before a restart.
@@ -122,13 +142,42 @@ impl Restart {
     }
 
     /// Restarts at `t` from the gathered values; `room` is left until the next event. False when IDA refuses.
-    pub fn restart(&mut self, ida: &mut Ida<Model<'_>>, t: f64, room: f64, longest: f64, start: bool) -> bool {
-        let h = self.first_step(ida, t, room, longest);
+    pub fn restart(&mut self, ida: &mut Ida<Model<'_>>, t: f64, room: f64, longest: f64, start: bool, root: bool) -> bool {
+        let mut h = self.first_step(ida, t, room, longest);
+        if root {
+            h = self.see_return(ida, t, h);
+        }
         if !start && ida.restart(t, &self.y, &self.yp).is_err() {
             return false;
         }
         ida.set_first_step(h);
         true
+    }
+
+    /// A step that does not leap over a function that crosses zero and comes back, as after the small bounce of a ball:
+    /// at most a quarter of the time it stays away.
+    fn see_return(&mut self, ida: &mut Ida<Model<'_>>, t: f64, h: f64) -> f64 {
+        let count = ida.equations().roots.len();
+        let mut g = vec![0.0; 2 * count];
+        let (now, then) = g.split_at_mut(count);
+        self.crossings_after(ida, t, 0.0, now);
+        self.crossings_after(ida, t, 4.0 * h, then);
+        let comes_back: Vec<bool> = now.iter().zip(&*then).map(|(a, b)| a.signum() == b.signum()).collect();
+        for halvings in 1..12 {
+            let ahead = 4.0 * h * 0.5_f64.powi(halvings);
+            self.crossings_after(ida, t, ahead, then);
+            if (0..count).any(|i| comes_back[i] && now[i].signum() != then[i].signum()) {
+                return 0.25 * ahead;
+            }
+        }
+        h
+    }
+
+    /// The crossing functions a time `h` ahead, by a parabola through the values and derivatives now.
+    fn crossings_after(&self, ida: &mut Ida<Model<'_>>, t: f64, h: f64, g: &mut [f64]) {
+        let bend = |i: usize| self.correction.get(i).map_or(0.0, |c| c / (self.probe * self.probe));
+        let y: Vec<f64> = (0..self.y.len()).map(|i| self.y[i] + h * (self.yp[i] + 0.5 * h * bend(i))).collect();
+        ida.equations().crossings(t + h, &y, &self.yp, g);
     }
 
     /// The step whose error would be about the tolerance with order one.
@@ -150,6 +199,7 @@ impl Restart {
             (0.5 / speed).min(most)
         };
         self.correction = correction;
+        self.probe = probe;
         if h > 0.0 { h } else { most }
     }
 }
