@@ -490,7 +490,8 @@ impl<E: Equations> Ida<E> {
         // SAFETY: two vectors of our own that no one else borrows
         unsafe {
             let rate = s::N_VClone(self.scratch);
-            let known = s::IDAGetDky(self.memory, t, 0, self.scratch) >= 0 && s::IDAGetDky(self.memory, t, 1, rate) >= 0;
+            let known =
+                s::IDAGetDky(self.memory, t, 0, self.scratch) >= 0 && s::IDAGetDky(self.memory, t, 1, rate) >= 0;
             let context = &mut *self.context;
             context.residual_calls += 1;
             let (y, yp) = (slice(self.scratch, self.n), slice(rate, self.n));

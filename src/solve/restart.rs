@@ -142,7 +142,15 @@ impl Restart {
     }
 
     /// Restarts at `t` from the gathered values; `room` is left until the next event. False when IDA refuses.
-    pub fn restart(&mut self, ida: &mut Ida<Model<'_>>, t: f64, room: f64, longest: f64, start: bool, root: bool) -> bool {
+    pub fn restart(
+        &mut self,
+        ida: &mut Ida<Model<'_>>,
+        t: f64,
+        room: f64,
+        longest: f64,
+        start: bool,
+        root: bool,
+    ) -> bool {
         let mut h = self.first_step(ida, t, room, longest);
         if root {
             h = self.see_return(ida, t, h);
@@ -187,7 +195,7 @@ impl Restart {
         // moves the unknowns by about one tolerance
         let probe = (1.0 / speed).min(0.1 * usual).min(0.01 * room).max(1e-10 * t.abs());
         let most = (10.0 * usual).min(room).min(longest);
-        if self.slots.is_empty() || !(probe > 0.0) {
+        if self.slots.is_empty() || probe.is_nan() || probe <= 0.0 {
             return most;
         }
         let mut correction = std::mem::take(&mut self.correction);

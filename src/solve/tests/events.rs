@@ -136,13 +136,13 @@ fn the_belt_sticks_and_slips() {
     let sticks = mode.windows(2).filter(|w| w[0] != 0.0 && w[1] == 0.0).count();
     assert_eq!(sticks, 27);
     let (_, reference) = run(&belt(), settings(1e-10), &[]);
-    let on_grid = |t: &Trajectory| -> Vec<f64> { (1..2000).map(|k| t.value(0, f64::from(k) * 0.01).expect("inside")).collect() };
+    let on_grid =
+        |t: &Trajectory| -> Vec<f64> { (1..2000).map(|k| t.value(0, f64::from(k) * 0.01).expect("inside")).collect() };
     let squares = on_grid(&t).iter().zip(on_grid(&reference)).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
     let rms = (squares / 2000.0).sqrt();
     assert!(rms < 2e-6, "{rms}");
     // a hand-written state machine with IDAReInit needs 6071
     assert!(result.statistics.residual_evaluations < 9100, "{:?}", result.statistics);
-    println!("{rms} {:?}", result.statistics);
 }
 
 #[test]
@@ -228,9 +228,12 @@ fn a_recording_at_1_khz_is_cheap() {
     let (system, u) = with_input();
     let times: Vec<f64> = (0..4000).map(|k| f64::from(k) * 1e-3).collect();
     let values: Vec<f64> = times.iter().map(|t| (2.0 * t).sin()).collect();
-    let (run, t) = run(&system, Settings { stop_time: 4.0, interval: 0.01, ..Settings::default() }, &[Input::held(u, times, values)]);
+    let (run, t) = run(
+        &system,
+        Settings { stop_time: 4.0, interval: 0.01, ..Settings::default() },
+        &[Input::held(u, times, values)],
+    );
     assert_eq!(run.end, End::Reached, "{:?}", run.diagnostics);
-    println!("{:?}", run.statistics);
     assert!(run.statistics.residual_evaluations < 30_000, "{:?}", run.statistics);
     assert!((last(&t, "x") - 0.97).abs() < 0.1);
 }

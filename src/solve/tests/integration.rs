@@ -77,7 +77,11 @@ fn van_der_pol(mu: f64) -> System {
 #[test]
 fn van_der_pol_stiff() {
     // reference at 1e-12 by an independent Radau integration: x(2) for mu = 1, x(2000) of mu = 1000 (IVP test set)
-    let (run_, t) = run(&van_der_pol(1000.0), Settings { stop_time: 2000.0, interval: 20.0, tolerance: 1e-7, ..Settings::default() }, &[]);
+    let (run_, t) = run(
+        &van_der_pol(1000.0),
+        Settings { stop_time: 2000.0, interval: 20.0, tolerance: 1e-7, ..Settings::default() },
+        &[],
+    );
     assert_eq!(run_.end, End::Reached);
     assert!((last(&t, "x") - 1.706_167_732_170_483).abs() < 1e-3, "{}", last(&t, "x"));
     assert!(run_.statistics.steps < 3000, "{:?}", run_.statistics);
