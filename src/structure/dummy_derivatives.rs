@@ -308,6 +308,9 @@ fn reduce_rows(
     }
 }
 
+/// Larger Jacobians are not handed on: watching them would cost more than the run.
+const LARGEST_SELECTION: usize = 1_000_000;
+
 /// The record of a group whose Jacobian changes during the run and that leaves a choice.
 fn selection(
     draft: &Draft,
@@ -322,7 +325,7 @@ fn selection(
             || !found.ders.is_empty()
             || found.vars.iter().any(|&v| draft.role(v) != super::draft::Role::Parameter)
     });
-    if !varying || order.len() == rows.len() {
+    if !varying || order.len() == rows.len() || order.len() * rows.len() > LARGEST_SELECTION {
         return None;
     }
     let mut columns: Vec<u32> = order.iter().map(|&(_, c)| c).collect();

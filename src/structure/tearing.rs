@@ -2,10 +2,14 @@
 //!
 //! Greedy after Cellier: as long as an equation has one open unknown that it can safely be solved for, it determines
 //! that unknown; when none has, the unknown that opens most equations is guessed. An equation whose unknowns are all
-//! known becomes a residual.
+//! known becomes a residual. Long chains are cut by further guesses: following a ladder from one end to the other
+//! multiplies errors at every rung.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
+
+/// No unknown follows from guesses through more equations than this.
+const LONGEST_CHAIN: u32 = 20;
 
 /// A loop: as many rows as columns, numbered from 0.
 #[derive(Clone, Debug, Default)]
@@ -51,6 +55,8 @@ struct State<'a> {
     /// Columns that some row can safely be solved for.
     solvable: Vec<bool>,
     known: Vec<bool>,
+    /// How many equations lie between a known column and guesses.
+    depth: Vec<u32>,
     open_columns: usize,
     /// Rows with one open column.
     ready: Vec<u32>,
@@ -78,6 +84,7 @@ impl<'a> State<'a> {
             used: vec![false; graph.rows.len()],
             solvable,
             known: vec![false; graph.liking.len()],
+            depth: vec![0; graph.liking.len()],
             open_columns: graph.liking.len(),
             ready,
             heap: BinaryHeap::new(),
@@ -92,12 +99,18 @@ impl<'a> State<'a> {
     /// Solves rows with one open column until none is left that allows it.
     fn causalize(&mut self) {
         while let Some(row) = self.ready.pop() {
-            let open = self.graph.rows[row as usize].iter().find(|(c, _)| !self.known[*c as usize]);
-            if let (Some(&(column, true)), false) = (open, self.used[row as usize]) {
+            let columns = &self.graph.rows[row as usize];
+            let open = columns.iter().find(|(c, _)| !self.known[*c as usize]);
+            let (Some(&(column, true)), false) = (open, self.used[row as usize]) else { continue };
+            let depth = columns.iter().map(|e| self.depth[e.0 as usize]).max().unwrap_or(0) + 1;
+            if depth > LONGEST_CHAIN {
+                self.torn.tearing.push(column);
+            } else {
                 self.used[row as usize] = true;
+                self.depth[column as usize] = depth;
                 self.torn.inner.push((row, column));
-                self.know(column);
             }
+            self.know(column);
         }
     }
 
@@ -184,6 +197,15 @@ mod tests {
     fn unsafe_entries_are_not_solved() {
         let torn = tear(&graph(&[&[(0, false), (1, false)], &[(0, false), (1, false)]]));
         assert_eq!((torn.tearing, torn.inner, torn.residuals), (vec![0, 1], vec![], vec![0, 1]));
+    }
+
+    #[test]
+    fn long_chains_are_cut() {
+        let n = 200_u32;
+        let mut rows: Vec<Vec<(u32, bool)>> = (1..n).map(|i| vec![(i - 1, true), (i, true)]).collect();
+        rows.push(vec![(0, true), (n - 1, true)]);
+        let torn = tear(&LoopGraph { rows, liking: vec![0; n as usize] });
+        assert_eq!((torn.tearing.len(), torn.residuals.len()), (10, 10));
     }
 
     proptest! {
