@@ -8,6 +8,7 @@ use super::request::ModelArgs;
 use super::{Ending, Failure, model};
 use crate::Flattened;
 use crate::diag::Code;
+use crate::flat::FlatModel;
 use crate::plot::{network, png};
 use crate::structure::{Block, Dae};
 
@@ -48,18 +49,18 @@ enum Emit {
 
 pub(super) fn run(args: &CheckArgs, messages: &mut Messages) -> Result<Ending, Failure> {
     let experiment = args.model.experiment(None, messages)?;
-    let flattened = model::flatten(&experiment, messages)?;
     // The network can be looked at even when the equations do not fit together.
     if let Some(emit @ (Emit::Network | Emit::Svg | Emit::Flat)) = args.emit {
+        let flattened = model::flatten(&experiment, &mut Messages::silent())?;
         write_early(args, emit, &flattened)?;
     }
-    let dae = model::structure(&flattened, &experiment, messages)?;
+    let (flat, _, dae) = model::sort(&experiment, messages)?;
     match args.emit {
         Some(Emit::Dae) => write(args, &dae.dae_text())?,
         Some(Emit::Blt) => write(args, &dae.blt_text())?,
         _ => {}
     }
-    messages.remark(&summary(&flattened, &dae));
+    messages.remark(&summary(&flat, &dae));
     Ok(Ending::Fine)
 }
 
@@ -108,7 +109,7 @@ fn network_list(flattened: &Flattened) -> String {
 }
 
 /// `ok: Press, 120 equations, 3 states (line.p, ...), largest loop 4 (torn to 1)`
-fn summary(flattened: &Flattened, dae: &Dae) -> String {
+fn summary(flat: &FlatModel, dae: &Dae) -> String {
     let names: Vec<&str> = dae.states.iter().take(4).map(|v| dae.variables[v.index()].name.as_str()).collect();
     let more = if dae.states.len() > 4 { ", ..." } else { "" };
     let states = match dae.states.len() {
@@ -116,7 +117,7 @@ fn summary(flattened: &Flattened, dae: &Dae) -> String {
         1 => format!("1 state ({})", names.join(", ")),
         n => format!("{n} states ({}{more})", names.join(", ")),
     };
-    let equations = flattened.flat.equations.len();
+    let equations = flat.equations.len();
     let largest = dae.continuous.iter().filter_map(|b| match b {
         Block::Loop(l) => Some((l.inner.len() + l.residuals.len(), l.tearing.len())),
         _ => None,

@@ -8,6 +8,7 @@ use super::messages::Messages;
 use super::plot::stem;
 use super::{Ending, Failure, data, files, plot};
 use crate::diag::{Code, Diagnostic, nearest};
+use crate::experiment::seconds;
 use crate::plot::select::shown_values;
 use crate::plot::{Band, Figure, Panel, Series};
 use crate::results::compare::{Comparison, SignalComparison, Tolerance, compare, tube};
@@ -22,7 +23,7 @@ The tube reaches --tolerance times the signal's range up and down, and --time-to
 Examples:
   bramah compare bench.csv press.csv --map 'pump.b.p=p_bench' --tolerance 0.02
   bramah compare old.csv new.csv --variables 'cyl.*' --format json
-  bramah compare old.csv new.csv -o difference.svg
+  bramah compare old.csv new.csv -o difference.svg --start-time '50 ms'
 
 Exit status: 0 all signals within tolerance, 1 a violation, 2 the files cannot be compared.")]
 pub(super) struct CompareArgs {
@@ -47,6 +48,12 @@ pub(super) struct CompareArgs {
     /// Width of the tube in seconds [default: the relative tolerance of A's duration]
     #[arg(long, value_name = "SECONDS", value_parser = positive)]
     time_tolerance: Option<f64>,
+    /// Compare from this time on: seconds, or a time with a unit
+    #[arg(long, value_name = "TIME", value_parser = seconds, allow_hyphen_values = true)]
+    start_time: Option<f64>,
+    /// Compare up to this time: seconds, or a time with a unit
+    #[arg(long, value_name = "TIME", value_parser = seconds, allow_hyphen_values = true)]
+    stop_time: Option<f64>,
     /// The time column of CSV files [default: `time`, or the first]
     #[arg(long, value_name = "NAME")]
     time_column: Option<String>,
@@ -81,6 +88,9 @@ pub(super) fn run(args: &CompareArgs, messages: &mut Messages) -> Result<Ending,
     let mut result = data::result(&args.result, args.time_column.as_deref(), messages)?;
     data::apply_units(&mut reference, &args.unit)?;
     data::apply_units(&mut result, &args.unit)?;
+    let window = args.start_time.unwrap_or(f64::NEG_INFINITY)..=args.stop_time.unwrap_or(f64::INFINITY);
+    reference.keep(window.clone());
+    result.keep(window);
     let pairs = pairs(args, &mut reference, &result)?;
     let tolerance =
         Tolerance { relative: args.tolerance, absolute: args.absolute_tolerance, time: args.time_tolerance };

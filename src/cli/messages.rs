@@ -25,6 +25,7 @@ pub(super) struct Messages {
     format: Format,
     colour: bool,
     width: usize,
+    silent: bool,
 }
 
 impl Messages {
@@ -38,7 +39,12 @@ impl Messages {
         let terminal = std::io::stderr().is_terminal();
         let plain = std::env::var_os("NO_COLOR").is_some_and(|v| !v.is_empty());
         let width = terminal_size::terminal_size_of(std::io::stderr()).map_or(100, |(w, _)| usize::from(w.0));
-        Messages { sources: Sources::default(), format, colour: terminal && !plain, width }
+        Messages { sources: Sources::default(), format, colour: terminal && !plain, width, silent: false }
+    }
+
+    /// Says nothing: for a stage that is run a second time.
+    pub fn silent() -> Self {
+        Messages { silent: true, ..Messages::new(MessageFormat::Human) }
     }
 
     /// Writes diagnostics, errors last so that they stand where the eye is.
@@ -56,6 +62,9 @@ impl Messages {
     }
 
     fn write(&self, text: &str) {
+        if self.silent {
+            return;
+        }
         // Nobody is left to be told when stderr is closed.
         let _ = std::io::stderr().lock().write_all(text.as_bytes());
     }

@@ -5,11 +5,14 @@
 #![allow(clippy::disallowed_methods, clippy::print_stderr, reason = "the one place that may")]
 
 mod check;
+mod columns;
 mod compare;
 mod completions;
 mod data;
 mod explain;
 mod files;
+mod inputs;
+mod interrupt;
 mod messages;
 mod model;
 mod new;
@@ -17,6 +20,7 @@ mod plot;
 mod progress;
 mod recorder;
 mod request;
+mod simulate;
 mod statistics;
 mod world;
 
@@ -56,6 +60,7 @@ Exit status: 0 fine; 1 the model is wrong, the run did not reach its end, or a c
 enum Command {
     New(new::NewArgs),
     Check(check::CheckArgs),
+    Simulate(simulate::SimulateArgs),
     Plot(plot::PlotArgs),
     Compare(compare::CompareArgs),
     Explain(explain::ExplainArgs),
@@ -128,6 +133,7 @@ fn dispatch(command: Command, messages: &mut Messages) -> Result<Ending, Failure
     match command {
         Command::New(args) => new::run(&args, messages),
         Command::Check(args) => check::run(&args, messages),
+        Command::Simulate(args) => simulate::run(&args, messages),
         Command::Plot(args) => plot::run(&args, messages),
         Command::Compare(args) => compare::run(&args, messages),
         Command::Explain(args) => explain::run(&args),

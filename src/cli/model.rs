@@ -1,41 +1,44 @@
-//! From what the user names to a compiled model, stage by stage.
+//! From what the user names to a compiled model, and everything there is to say about it.
 
 use std::path::PathBuf;
 
 use super::messages::Messages;
 use super::request::library_folders;
 use super::{DiskWorld, Failure};
-use crate::diag::{Checked, Diagnostic, Severity};
+use crate::diag::{Diagnostic, Severity};
 use crate::experiment::Experiment;
+use crate::flat::FlatModel;
 use crate::instance::Override;
+use crate::lower::Options;
+use crate::network::Graph;
 use crate::structure::Dae;
-use crate::units;
-use crate::{Flattened, Request};
+use crate::{Flattened, Model, Outcome, Request};
 
-/// Parses, resolves, instantiates and flattens; says what there is to say.
+/// Up to the flat model, which exists also where the equations do not fit together.
 pub(super) fn flatten(experiment: &Experiment, messages: &mut Messages) -> Result<Flattened, Failure> {
-    let request = Request {
+    let outcome = crate::flatten(&DiskWorld, &request(experiment)?);
+    pass(outcome, experiment, messages)
+}
+
+/// Up to the sorted equations, without running.
+pub(super) fn sort(experiment: &Experiment, messages: &mut Messages) -> Result<(FlatModel, Graph, Dae), Failure> {
+    let outcome = crate::sort(&DiskWorld, &request(experiment)?);
+    pass(outcome, experiment, messages)
+}
+
+/// The whole way to a system that can run.
+pub(super) fn compile(experiment: &Experiment, messages: &mut Messages) -> Result<Model, Failure> {
+    let outcome = crate::compile(&DiskWorld, &request(experiment)?, &Options { native: true });
+    pass(outcome, experiment, messages)
+}
+
+fn request(experiment: &Experiment) -> Result<Request, Failure> {
+    Ok(Request {
         source: PathBuf::from(experiment.file.as_deref().unwrap_or_default()),
         model: experiment.model.clone(),
         overrides: overrides(experiment),
         libraries: library_folders(experiment)?,
-    };
-    let outcome = crate::flatten(&DiskWorld, &request);
-    messages.sources = outcome.sources;
-    let mut diagnostics = outcome.diagnostics;
-    if let Some(flattened) = &outcome.value {
-        diagnostics.extend(units::check(&flattened.flat));
-    }
-    pass(Checked { value: outcome.value, diagnostics }, experiment, messages)
-}
-
-/// Sorts the equations.
-pub(super) fn structure(
-    flattened: &Flattened,
-    experiment: &Experiment,
-    messages: &mut Messages,
-) -> Result<Dae, Failure> {
-    pass(crate::analyze(&flattened.flat), experiment, messages)
+    })
 }
 
 fn overrides(experiment: &Experiment) -> Vec<Override> {
@@ -44,17 +47,19 @@ fn overrides(experiment: &Experiment) -> Vec<Override> {
 }
 
 /// Says remarks and warnings and hands out the value, or fails with everything that was said.
-fn pass<T>(mut checked: Checked<T>, experiment: &Experiment, messages: &Messages) -> Result<T, Failure> {
+fn pass<T>(outcome: Outcome<T>, experiment: &Experiment, messages: &mut Messages) -> Result<T, Failure> {
+    messages.sources = outcome.sources;
+    let mut diagnostics = outcome.diagnostics;
     if experiment.deny_warnings == Some(true) {
-        checked.diagnostics.iter_mut().for_each(deny);
+        diagnostics.iter_mut().for_each(deny);
     }
-    let failed = checked.diagnostics.iter().any(Diagnostic::is_error);
-    match checked.value {
+    let failed = diagnostics.iter().any(Diagnostic::is_error);
+    match outcome.value {
         Some(value) if !failed => {
-            messages.say(&checked.diagnostics);
+            messages.say(&diagnostics);
             Ok(value)
         }
-        _ => Err(Failure { diagnostics: checked.diagnostics }),
+        _ => Err(Failure { diagnostics }),
     }
 }
 

@@ -77,6 +77,16 @@ impl Trajectory {
         }
     }
 
+    /// Keeps the rows whose time lies in a window.
+    pub fn keep(&mut self, window: std::ops::RangeInclusive<f64>) {
+        let from = self.times.partition_point(|t| t < window.start());
+        let to = self.times.partition_point(|t| t <= window.end()).max(from);
+        for column in self.columns.iter_mut().chain([&mut self.times]) {
+            column.truncate(to);
+            column.drain(..from);
+        }
+    }
+
     /// How many rows there are.
     pub fn len(&self) -> usize {
         self.times.len()
@@ -139,6 +149,16 @@ mod tests {
         assert_eq!(t.value(1, 2.0), Some(1.0));
         assert_eq!(t.value(0, -0.1), None);
         assert_eq!(t.value(0, 2.1), None);
+    }
+
+    #[test]
+    fn a_window() {
+        let mut t = step();
+        t.keep(1.0..=1.5);
+        assert_eq!((t.times, t.columns[0].as_slice()), (vec![1.0, 1.0], [2.0, 5.0].as_slice()));
+        let mut t = step();
+        t.keep(3.0..=2.0);
+        assert!(t.is_empty());
     }
 
     #[test]

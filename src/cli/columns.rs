@@ -1,0 +1,39 @@
+//! Which variables a result holds.
+
+use super::Failure;
+use super::recorder::Target;
+use crate::diag::{Code, Diagnostic, nearest};
+use crate::expr::VarId;
+use crate::flat::{Variability, Variable};
+use crate::results::Globs;
+use crate::structure::Dae;
+
+/// The variables to write, in declaration order.
+///
+/// Without patterns, and for patterns with `*` or `?`: variables that can change and are neither protected nor annotated
+/// `HideResult`; in a `.mat` file also parameters, which cost nothing there. A variable named exactly is always written.
+pub(super) fn choose(dae: &Dae, patterns: &[String], target: &Target) -> Result<Vec<VarId>, Failure> {
+    let globs = Globs::new(patterns);
+    let with_parameters = matches!(target, Target::Mat(_));
+    let usual = |v: &Variable| !v.hidden && (with_parameters || v.variability >= Variability::Discrete);
+    let wanted = |v: &Variable| {
+        if globs.is_empty() {
+            return usual(v);
+        }
+        globs.names(&v.name) || (usual(v) && globs.matches(&v.name))
+    };
+    let chosen: Vec<VarId> = (0u32..).zip(&dae.variables).filter(|(_, v)| wanted(v)).map(|(i, _)| VarId(i)).collect();
+    let missing = globs.unused(dae.variables.iter().map(|v| v.name.as_str()));
+    if let Some(problem) = missing.iter().map(|name| unknown(dae, name)).reduce(|first, _| first) {
+        return Err(problem.into());
+    }
+    Ok(chosen)
+}
+
+fn unknown(dae: &Dae, pattern: &str) -> Diagnostic {
+    let diagnostic = Diagnostic::new(Code::BadArgument, format!("`--variables {pattern}` matches no variable"));
+    match nearest(pattern, dae.variables.iter().filter(|v| !v.hidden).map(|v| v.name.as_str())) {
+        Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
+        None => diagnostic.help("brackets are literal; `*` stands for any text: 'v[*].p'"),
+    }
+}

@@ -1,0 +1,181 @@
+//! A recording made into the inputs of a model.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::messages::Messages;
+use super::{Failure, data};
+use crate::diag::{Code, Diagnostic, nearest};
+use crate::experiment::{Experiment, Hold, InputMap};
+use crate::expr::VarId;
+use crate::flat::{Type, Variable};
+use crate::results::{Strictness, Trajectory, number, read_csv};
+use crate::solve::{Input, Interpolation};
+use crate::structure::Dae;
+use crate::units::Unit;
+
+/// The inputs of a run, and the time that their recording covers.
+#[derive(Debug, Default)]
+pub(super) struct Recorded {
+    /// One entry an input that the recording drives.
+    pub inputs: Vec<Input>,
+    /// First and last time of the recording, and its usual step.
+    pub covered: Option<Covered>,
+}
+
+/// The time that a recording covers, in seconds.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Covered {
+    /// Of the first row.
+    pub start: f64,
+    /// Of the last row.
+    pub stop: f64,
+    /// Between rows, on average.
+    pub step: f64,
+}
+
+/// Reads the recording that an experiment names, and checks that every input of the model has a value.
+pub(super) fn prepare(experiment: &Experiment, dae: &Dae, messages: &mut Messages) -> Result<Recorded, Failure> {
+    for entry in &experiment.map {
+        if input(dae, &entry.input).is_none() {
+            return Err(no_input(dae, &entry.input).into());
+        }
+    }
+    let Some(file) = &experiment.input else {
+        if let Some(entry) = experiment.map.first() {
+            let text = format!("the input `{}` is mapped to a column, but there is no recording", entry.input);
+            return Err(Diagnostic::new(Code::BadMap, text).help("name it: --input bench.csv").into());
+        }
+        return all_driven(dae, &[]).map(|()| Recorded::default());
+    };
+    let path = Path::new(file);
+    let id = data::text(path, messages)?;
+    let entries = entries(experiment, dae, messages.sources.get(id).text.as_str());
+    let columns: Vec<String> = entries.iter().map(|e| e.column.clone()).collect();
+    let strictness = Strictness::Recording { inputs: &columns, outputs: &[] };
+    let checked = read_csv(&messages.sources, id, experiment.time_column.as_deref(), strictness);
+    let recording = checked.value.ok_or(Failure { diagnostics: checked.diagnostics })?;
+    let times: Arc<[f64]> = recording.times.as_slice().into();
+    let mut inputs = Vec::new();
+    for (k, entry) in entries.iter().enumerate() {
+        let Some(variable) = input(dae, &entry.input) else { continue };
+        inputs.push(track(entry, variable, dae, &recording, k, &times, experiment.interpolation)?);
+    }
+    all_driven(dae, &inputs)?;
+    Ok(Recorded { inputs, covered: covered(&recording) })
+}
+
+fn input(dae: &Dae, name: &str) -> Option<VarId> {
+    dae.inputs.iter().copied().find(|v| dae.variables[v.index()].name == name)
+}
+
+/// The entries of `--map`, and for other inputs the column of equal name where there is one.
+fn entries(experiment: &Experiment, dae: &Dae, text: &str) -> Vec<InputMap> {
+    let mut entries = experiment.map.clone();
+    let columns = crate::results::recording::column_names(text);
+    for v in &dae.inputs {
+        let name = &dae.variables[v.index()].name;
+        if columns.contains(name) && !entries.iter().any(|e| &e.input == name) {
+            entries.push(InputMap { input: name.clone(), column: name.clone(), unit: None, hold: None });
+        }
+    }
+    entries
+}
+
+fn track(
+    entry: &InputMap,
+    variable: VarId,
+    dae: &Dae,
+    recording: &Trajectory,
+    column: usize,
+    times: &Arc<[f64]>,
+    usual: Option<Hold>,
+) -> Result<Input, Failure> {
+    let target = &dae.variables[variable.index()];
+    let unit = entry.unit.as_deref().unwrap_or(&recording.signals[column].unit);
+    let mut values = recording.columns[column].clone();
+    convert(&mut values, unit, target, entry)?;
+    if target.ty != Type::Real
+        && let Some(value) = values.iter().find(|v| v.fract() != 0.0)
+    {
+        let text = format!("`{}` takes whole numbers, the column `{}` holds {value}", target.name, entry.column);
+        return Err(Failure::new(Code::BadMap, text));
+    }
+    let values: Arc<[f64]> = values.into();
+    let linear = target.ty == Type::Real && entry.hold.or(usual) == Some(Hold::Linear);
+    let interpolation = if linear { Interpolation::Linear } else { Interpolation::Held };
+    Ok(Input { variable, times: times.clone(), values, interpolation })
+}
+
+/// From the unit of the column to that of the variable.
+fn convert(values: &mut [f64], unit: &str, target: &Variable, entry: &InputMap) -> Result<(), Failure> {
+    let Some(wanted) = target.unit.as_deref().filter(|u| !u.is_empty() && !unit.is_empty() && *u != unit) else {
+        return Ok(());
+    };
+    let wrong = |why: String| {
+        Failure::from(
+            Diagnostic::new(Code::BadMap, why)
+                .help(format!("say it: --map '{}={}[{wanted}]'", entry.input, entry.column)),
+        )
+    };
+    let from = Unit::parse(unit).map_err(|e| wrong(format!("column `{}`: {e}", entry.column)))?;
+    let Ok(to) = Unit::parse(wanted) else { return Ok(()) };
+    if from.convert(0.0, &to).is_none() {
+        let text = format!("the column `{}` is in `{unit}`, the input `{}` in `{wanted}`", entry.column, target.name);
+        return Err(wrong(text));
+    }
+    values.iter_mut().for_each(|v| *v = from.convert(*v, &to).unwrap_or(*v));
+    Ok(())
+}
+
+/// Every input is driven, or has a value of its own.
+fn all_driven(dae: &Dae, inputs: &[Input]) -> Result<(), Failure> {
+    let own = |v: &Variable| v.binding.is_some() || v.start.is_some();
+    let missing = dae.inputs.iter().filter(|v| !inputs.iter().any(|i| i.variable == **v));
+    let missing: Vec<&Variable> = missing.map(|v| &dae.variables[v.index()]).filter(|v| !own(v)).collect();
+    let diagnostics: Vec<Diagnostic> = missing
+        .iter()
+        .map(|v| {
+            Diagnostic::new(Code::NoInput, format!("the input `{}` has no value", v.name))
+                .at(v.origin.span, "declared here")
+                .help(format!("drive it by a recording: --input bench.csv --map '{}=COLUMN'", v.name))
+                .help(format!("or give it a constant value: --set {}=0", v.name))
+        })
+        .collect();
+    if diagnostics.is_empty() { Ok(()) } else { Err(Failure { diagnostics }) }
+}
+
+fn no_input(dae: &Dae, name: &str) -> Diagnostic {
+    let names: Vec<&str> = dae.inputs.iter().map(|v| dae.variables[v.index()].name.as_str()).collect();
+    let diagnostic = Diagnostic::new(Code::BadMap, format!("the model has no input `{name}`"));
+    let list = names.iter().take(10).map(|n| format!("`{n}`")).collect::<Vec<_>>().join(", ");
+    match nearest(name, names.iter().copied()) {
+        Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
+        None if names.is_empty() => diagnostic.note("it has no inputs at all: `input Real u;` at the top makes one"),
+        None => diagnostic.note(format!("its inputs are {list}")),
+    }
+}
+
+fn covered(recording: &Trajectory) -> Option<Covered> {
+    let (start, stop) = (*recording.times.first()?, *recording.times.last()?);
+    let intervals = recording.len().saturating_sub(1).max(1);
+    Some(Covered { start, stop, step: (stop - start) / intervals as f64 })
+}
+
+/// A run must not go beyond its recording, but for the last sample's own step.
+pub(super) fn check_cover(covered: Covered, start: f64, stop: f64) -> Result<(), Failure> {
+    let slack = 1.01 * covered.step + 1e-9 * (covered.stop - covered.start).abs();
+    if start >= covered.start - slack && stop <= covered.stop + slack {
+        return Ok(());
+    }
+    let shown = |t| number::rounded(t, 9);
+    let text = format!(
+        "the run from {} s to {} s goes beyond its recording, which holds {} s to {} s",
+        shown(start),
+        shown(stop),
+        shown(covered.start),
+        shown(covered.stop)
+    );
+    let help = format!("--start-time {} --stop-time {}", shown(covered.start), shown(covered.stop));
+    Err(Diagnostic::new(Code::BadData, text).help(help).into())
+}

@@ -1,0 +1,182 @@
+//! `bramah simulate`
+
+use std::ops::ControlFlow;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::path::Path;
+use std::time::Instant;
+
+use clap::Args;
+
+use super::inputs::{Recorded, check_cover, prepare};
+use super::messages::Messages;
+use super::progress::Bar;
+use super::recorder::{Recorder, Target, announcement, write_text};
+use super::request::{ModelArgs, RunArgs};
+use super::statistics::{Record, peak_memory};
+use super::{Ending, Failure, columns, interrupt, model, plot};
+use crate::diag::{Code, Diagnostic};
+use crate::experiment::Experiment;
+use crate::flat;
+use crate::lower::System;
+use crate::plot::select::{Choice, Run as Drawn, figure};
+use crate::results::{Trajectory, number};
+use crate::solve::{Control, End, Progress, Run, Settings, Sink, signals, simulate};
+
+/// Run a circuit
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  bramah simulate Press.mo --stop-time 2 -o press.csv
+  bramah simulate Press.mo --set relief.p_set='180 bar' --set N=20 --variables 'cyl.*,line.p'
+  bramah simulate press.toml --stop-time 5          an experiment file; flags go before what stands in it
+  bramah simulate ServoPump.DeadZone --plot dead.png          a model that ships with bramah
+  bramah simulate Axis.mo --input bench.csv --time-column t_s --map 'F=tau_N[N],u=u_V:linear'
+
+Exit status: 0 the run reached its end; 1 the model is wrong or the run stopped early (what it had is written);
+2 bad arguments or files.")]
+pub(super) struct SimulateArgs {
+    #[command(flatten)]
+    model: ModelArgs,
+    #[command(flatten)]
+    run: RunArgs,
+}
+
+pub(super) fn run(args: &SimulateArgs, messages: &mut Messages) -> Result<Ending, Failure> {
+    let experiment = args.model.experiment(Some(&args.run), messages)?;
+    let mut record = Record::default();
+    let work = AssertUnwindSafe(|| execute(&experiment, &mut record, messages));
+    let outcome = catch_unwind(work);
+    record.peak_memory_bytes = peak_memory();
+    let written = match &experiment.statistics {
+        Some(path) => write_text(path, &record.to_json()),
+        None => Ok(()),
+    };
+    // What went wrong with the run matters more than what went wrong with its statistics.
+    outcome.unwrap_or_else(|bug| resume_unwind(bug)).and_then(|ending| written.map(|()| ending))
+}
+
+fn execute(experiment: &Experiment, record: &mut Record, messages: &mut Messages) -> Result<Ending, Failure> {
+    let begun = Instant::now();
+    let compiled = model::compile(experiment, messages);
+    record.compile_s = Some(begun.elapsed().as_secs_f64());
+    let model = compiled?;
+    let dae = &model.dae;
+    let recorded = prepare(experiment, dae, messages)?;
+    let mut settings = settings(experiment, &dae.experiment, &recorded)?;
+    let target = Target::new(&output_name(experiment, &dae.class))?;
+    settings.wanted = columns::choose(dae, &experiment.variables, &target)?;
+    let signals = signals(dae, &settings.wanted);
+    let intervals = (settings.stop_time - settings.start_time) / settings.interval;
+    if let Some(note) = announcement(&signals, intervals.max(1.0), &target) {
+        messages.say(&[note]);
+    }
+    let recorder = Recorder::new(target.clone(), signals, experiment.plot.is_some())?;
+    let (run, recorder) = solve(&model.system, &settings, &recorded, recorder);
+    fill(record, &run, &recorder);
+    let rows = recorder.rows();
+    let outcome = recorder.finish();
+    report(&run, rows, &target, messages);
+    let trajectory = outcome?;
+    if let Some(path) = &experiment.plot {
+        draw(&trajectory, &dae.class, Path::new(path), messages)?;
+    }
+    Ok(if run.end.is_success() { Ending::Fine } else { Ending::Wrong })
+}
+
+/// What the flags, the experiment file, the annotation and the recording say, in this order.
+fn settings(experiment: &Experiment, annotation: &flat::Experiment, recorded: &Recorded) -> Result<Settings, Failure> {
+    let covered = recorded.covered;
+    let said = flat::Experiment {
+        start_time: experiment.start_time.or(annotation.start_time).or(covered.map(|c| c.start)),
+        stop_time: experiment.stop_time.or(annotation.stop_time).or(covered.map(|c| c.stop)),
+        interval: experiment.output_interval.or(annotation.interval),
+        tolerance: experiment.relative_tolerance.or(annotation.tolerance),
+    };
+    let settings = Settings::from_experiment(&said);
+    if settings.stop_time < settings.start_time {
+        let text = format!(
+            "the stop time {} s lies before the start time {} s",
+            number::text(settings.stop_time),
+            number::text(settings.start_time)
+        );
+        return Err(Failure::new(Code::BadArgument, text));
+    }
+    if let Some(covered) = covered {
+        check_cover(covered, settings.start_time, settings.stop_time)?;
+    }
+    Ok(settings)
+}
+
+fn output_name(experiment: &Experiment, class: &str) -> String {
+    experiment.output_file.clone().unwrap_or_else(|| format!("{class}.csv"))
+}
+
+/// Takes rows and says when it makes no sense to go on.
+struct Rows(Recorder);
+
+impl Sink for Rows {
+    fn row(&mut self, time: f64, values: &[f64]) -> ControlFlow<()> {
+        if self.0.row(time, values) { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    }
+}
+
+fn solve(system: &System, settings: &Settings, recorded: &Recorded, recorder: Recorder) -> (Run, Recorder) {
+    let bar = Bar::new(settings.start_time, settings.stop_time);
+    let mut show = |progress: &Progress| {
+        bar.show(progress.time, None, progress.events);
+        true
+    };
+    let mut rows = Rows(recorder);
+    let mut control = Control { interrupt: Some(interrupt::flag()), progress: Some(&mut show) };
+    let run = simulate(system, settings, &recorded.inputs, None, &mut rows, &mut control);
+    bar.clear();
+    (run, rows.0)
+}
+
+fn fill(record: &mut Record, run: &Run, recorder: &Recorder) {
+    let s = &run.statistics;
+    record.initialize_s = Some(s.initialize_s);
+    record.solve_s = Some((s.solve_s - recorder.writing().as_secs_f64()).max(0.0));
+    record.steps = Some(s.steps);
+    record.residual_evaluations = Some(s.residual_evaluations);
+    record.jacobian_evaluations = Some(s.jacobian_evaluations);
+    record.factorizations = Some(s.factorizations);
+    record.error_test_failures = Some(s.error_test_failures);
+    record.events = Some(s.events);
+    record.unknowns = Some(s.unknowns);
+    record.states = Some(s.states);
+    record.end = Some(run.end.word());
+}
+
+/// What the run had to say, and one line on how it went.
+fn report(run: &Run, rows: usize, target: &Target, messages: &Messages) {
+    let mut diagnostics = run.diagnostics.clone();
+    if let Some(error) = diagnostics.iter_mut().find(|d| d.is_error()) {
+        error.notes.push(format!(
+            "the result up to {} s ({rows} rows) is in `{}`",
+            number::text(run.time),
+            target.name()
+        ));
+    }
+    messages.say(&diagnostics);
+    let s = &run.statistics;
+    let work = format!("{} steps, {} events, {} s", s.steps, s.events, number::rounded(s.solve_s, 3));
+    let line = match &run.end {
+        End::Reached => format!("ok: reached {} s ({work}), {rows} rows in {}", number::text(run.time), target.name()),
+        End::Terminated(why) => {
+            format!("ok: terminated at {} s: {why} ({work}), {rows} rows in {}", number::text(run.time), target.name())
+        }
+        _ => return,
+    };
+    messages.remark(&line);
+}
+
+fn draw(trajectory: &Trajectory, class: &str, path: &Path, messages: &Messages) -> Result<(), Failure> {
+    let choice = Choice { title: class.to_owned(), ..Choice::default() };
+    let selected = figure(&[Drawn { label: class, trajectory }], &choice)
+        .map_err(|e| Failure::from(Diagnostic::new(Code::BadArgument, format!("nothing to draw: {e}"))))?;
+    if selected.left_out > 0 {
+        messages.remark(&format!("{} more variables are not drawn; choose with --variables", selected.left_out));
+    }
+    plot::write(&selected.figure, &[("model".to_owned(), class.to_owned())], path, messages)
+}
