@@ -271,7 +271,7 @@ impl Report<'_> {
         let levels: Vec<VarId> = twice.iter().copied().filter(|&v| self.is_potential(v)).collect();
         let message = match (owners.as_slice(), levels.is_empty()) {
             ([a, b], _) => format!("{} is determined by both `{a}` and `{b}`", name(self.draft, twice[0])),
-            (_, true) => format!("{} is determined {} times", name(self.draft, twice[0]), equations.len().max(2)),
+            (_, true) => format!("{} is determined more than once", name(self.draft, twice[0])),
             (_, false) => {
                 let components = cut(&self.components_of(&levels), ", ");
                 let level = kind_of_level(self.draft, &levels).0;
