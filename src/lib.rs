@@ -1,5 +1,49 @@
 //! Bramah: an acausal component-network simulator for electro-hydraulic machines.
 //!
+//! A circuit is text in a strict subset of Modelica, or built in Rust; bramah turns it into a differential-algebraic
+//! system, reduces it, compiles it to machine code and solves it with SUNDIALS IDA.
+//!
+//! ```
+//! use bramah::Circuit;
+//!
+//! # fn main() -> Result<(), bramah::Error> {
+//! let mut circuit = Circuit::new("Emptying");
+//! circuit
+//!     .declare(
+//!         "connector Port Real p(unit = \"Pa\"); flow Real q(unit = \"m3/s\"); end Port;
+//!          model Vessel
+//!            Port port;
+//!            parameter Real C(unit = \"m3/Pa\") = 1e-12;
+//!            Real p(unit = \"Pa\", start = 1e6, fixed = true, nominal = 1e5);
+//!          equation
+//!            p = port.p;
+//!            C*der(p) = port.q;
+//!          end Vessel;
+//!          model Leak
+//!            Port port;
+//!            parameter Real G(unit = \"m3/(s.Pa)\") = 1e-12;
+//!          equation
+//!            port.q = G*port.p;
+//!          end Leak;",
+//!     )
+//!     .add("vessel", "Vessel")
+//!     .add("leak", "Leak")
+//!     .connect("vessel.port", "leak.port");
+//!
+//! let mut simulation = circuit.compile()?;
+//! let first = simulation.stop_time(1.0).run()?;
+//! let p = first.trajectory.column("vessel.p").expect("the vessel has a pressure");
+//! assert!((p[p.len() - 1] - 1e6 * (-1.0f64).exp()).abs() < 10.0);
+//!
+//! // Another leak without compiling again, and then on from where the run ended.
+//! simulation.set("leak.G", 2e-12)?;
+//! let second = simulation.run()?;
+//! let third = simulation.stop_time(2.0).run_from(&second.state)?;
+//! assert_eq!(third.trajectory.times.first(), Some(&1.0));
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! The stages stand here in the order in which a circuit passes through them.
 
 pub mod diag;
@@ -29,6 +73,10 @@ pub use compile::{Flattened, Model, Outcome, Request, analyze, compile, flatten,
 pub mod results;
 
 pub mod solve;
+
+pub mod circuit;
+
+pub use circuit::{Circuit, Error, Simulation};
 
 pub mod plot;
 

@@ -26,6 +26,11 @@ pub fn flatten(instance: &mut Instance<'_, '_>, network: &Network) -> Checked<Fl
     variables(instance, &numbers, &mut flat);
     Walker::new(instance, &numbers, &mut flat).walk(&scopes);
     connections(instance, network, &numbers, &mut flat);
+    for (v, &i) in flat.variables.iter_mut().zip(&instance.order) {
+        if v.variability == Variability::Parameter && instance.variables[i as usize].structural {
+            v.variability = Variability::Constant;
+        }
+    }
     flat.enumerations = instance
         .enumerations
         .iter()

@@ -1,0 +1,198 @@
+//! A compiled model with the settings of a run.
+
+use crate::compile::{Model, Request, compile};
+use crate::diag::render::{Format, render};
+use crate::diag::{Code, Diagnostic, Sources};
+use crate::expr::VarId;
+use crate::flat::Variability;
+use crate::lower;
+use crate::results::Trajectory;
+use crate::solve::{self, Control, End, Input, Interpolation, Settings, State, Statistics};
+use crate::world::World;
+use std::fmt;
+use std::sync::Arc;
+
+/// What went wrong, with the texts that its places point into. Prints as short messages, one a line.
+#[derive(Clone, Debug)]
+pub struct Error {
+    /// The diagnostics, errors among them.
+    pub diagnostics: Vec<Diagnostic>,
+    /// The texts.
+    pub sources: Arc<Sources>,
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(render(&self.sources, &self.diagnostics, Format::Short, 120, false).trim_end())
+    }
+}
+
+impl std::error::Error for Error {}
+
+/// What a run gave.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// The recorded variables over time.
+    pub trajectory: Trajectory,
+    /// How the run ended: at its stop time, or by `terminate`.
+    pub end: End,
+    /// Where it ended; [`Simulation::run_from`] goes on from there.
+    pub state: State,
+    /// The work done.
+    pub statistics: Statistics,
+    /// Warnings.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// A compiled model and the settings of its next run. Clones share the compiled code; runs of several clones may go in
+/// parallel.
+#[derive(Clone, Debug)]
+pub struct Simulation {
+    model: Model,
+    sources: Arc<Sources>,
+    settings: Settings,
+    inputs: Vec<Input>,
+    /// Remarks and warnings of the compilation.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+impl Simulation {
+    /// Compiles what a request names; files are read through `world`.
+    ///
+    /// # Errors
+    /// The diagnostics of the first stage that finds something wrong.
+    pub fn compile(world: &dyn World, request: &Request) -> Result<Self, Error> {
+        let outcome = compile(world, request, &lower::Options::default());
+        let sources = Arc::new(outcome.sources);
+        match outcome.value {
+            Some(model) => {
+                let mut settings = Settings::from_experiment(&model.flat.experiment);
+                settings.wanted = visible(&model);
+                Ok(Simulation { model, sources, settings, inputs: Vec::new(), diagnostics: outcome.diagnostics })
+            }
+            None => Err(Error { diagnostics: outcome.diagnostics, sources }),
+        }
+    }
+
+    /// The compiled model.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// The settings of the next run.
+    pub fn settings(&mut self) -> &mut Settings {
+        &mut self.settings
+    }
+
+    /// Sets the time at which the run ends, in seconds, with 500 output intervals.
+    pub fn stop_time(&mut self, seconds: f64) -> &mut Self {
+        self.settings.stop_time = seconds;
+        self.settings.interval = (seconds - self.settings.start_time) / 500.0;
+        self
+    }
+
+    /// Changes a parameter without compiling again; the value is in the parameter's unit.
+    ///
+    /// # Errors
+    /// `E023` when there is no such parameter, or when the structure of the model depends on it.
+    pub fn set(&mut self, name: &str, value: f64) -> Result<&mut Self, Error> {
+        let v = self.variable(name)?;
+        match self.model.dae.variables[v.index()].variability {
+            Variability::Parameter => {}
+            Variability::Constant => {
+                let d = Diagnostic::new(Code::BadSet, format!("the structure of the model depends on `{name}`"));
+                return Err(self.error(d.help("give its value when the model is compiled")));
+            }
+            _ => {
+                let d = Diagnostic::new(Code::BadSet, format!("`{name}` is not a parameter"));
+                return Err(self.error(d.help("only parameters keep a given value during a run")));
+            }
+        }
+        self.settings.parameters.retain(|(p, _)| *p != v);
+        self.settings.parameters.push((v, value));
+        Ok(self)
+    }
+
+    /// Gives a top-level input its course: samples held, or joined by straight lines.
+    ///
+    /// # Errors
+    /// `E903` when there is no such input, or when times do not grow or do not fit the values.
+    pub fn input(
+        &mut self,
+        name: &str,
+        times: &[f64],
+        values: &[f64],
+        between: Interpolation,
+    ) -> Result<&mut Self, Error> {
+        let variable = self.variable(name)?;
+        let bad = |why: String| Diagnostic::new(Code::BadMap, why);
+        if !self.model.dae.inputs.contains(&variable) {
+            return Err(self.error(bad(format!("`{name}` is not an input of the model"))));
+        }
+        if times.len() != values.len() || times.is_empty() || times.windows(2).any(|w| w[1] <= w[0]) {
+            return Err(self.error(bad(format!("the samples for `{name}` need growing times, one for each value"))));
+        }
+        self.inputs.retain(|i| i.variable != variable);
+        let (times, values) = (Arc::from(times), Arc::from(values));
+        self.inputs.push(Input { variable, times, values, interpolation: between });
+        Ok(self)
+    }
+
+    /// Runs from the initial values.
+    ///
+    /// # Errors
+    /// The diagnostics of a run that did not reach its end.
+    pub fn run(&self) -> Result<Outcome, Error> {
+        self.run_with(None, &mut Control::default())
+    }
+
+    /// Goes on from a saved state to the stop time.
+    ///
+    /// # Errors
+    /// As [`Simulation::run`].
+    pub fn run_from(&self, state: &State) -> Result<Outcome, Error> {
+        self.run_with(Some(state), &mut Control::default())
+    }
+
+    /// Runs under control: with a way to stop it and to watch its progress.
+    ///
+    /// # Errors
+    /// As [`Simulation::run`].
+    pub fn run_with(&self, from: Option<&State>, control: &mut Control<'_>) -> Result<Outcome, Error> {
+        let mut trajectory = Trajectory::new(solve::signals(&self.model.dae, &self.settings.wanted));
+        let system = &self.model.system;
+        let run = solve::simulate(system, &self.settings, &self.inputs, from, &mut trajectory, control);
+        if !run.end.is_success() {
+            return Err(Error { diagnostics: run.diagnostics, sources: self.sources.clone() });
+        }
+        Ok(Outcome {
+            trajectory,
+            end: run.end,
+            state: run.state,
+            statistics: run.statistics,
+            diagnostics: run.diagnostics,
+        })
+    }
+
+    fn variable(&self, name: &str) -> Result<VarId, Error> {
+        let variables = &self.model.flat.variables;
+        if let Some(i) = variables.iter().position(|v| v.name == name) {
+            return Ok(VarId(u32::try_from(i).expect("fewer than 2^32 variables")));
+        }
+        let mut d = Diagnostic::new(Code::BadSet, format!("the model has no variable `{name}`"));
+        if let Some(near) = crate::diag::nearest(name, variables.iter().map(|v| v.name.as_str())) {
+            d = d.help(format!("did you mean `{near}`?"));
+        }
+        Err(self.error(d))
+    }
+
+    fn error(&self, diagnostic: Diagnostic) -> Error {
+        Error { diagnostics: vec![diagnostic], sources: self.sources.clone() }
+    }
+}
+
+/// Variables that results show: all but protected and hidden ones.
+fn visible(model: &Model) -> Vec<VarId> {
+    let shown = (0u32..).zip(&model.flat.variables).filter(|(_, v)| !v.hidden);
+    shown.map(|(i, _)| VarId(i)).collect()
+}
