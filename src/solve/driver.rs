@@ -111,7 +111,8 @@ pub fn run<'a>(
             Ok(())
         }
         None => initialize::solve(system, &scales, &mut modes, &mut values)
-            .map_err(|f| report::block_failure(system, Code::InitialFailed, &f, &values, "at the start")),
+            .map_err(|f| report::block_failure(system, Code::InitialFailed, &f, &values, "at the start"))
+            .and_then(|()| initialize::check_starts(system, &scales, &values)),
     };
     let driver = Driver {
         events: Events::new(system, &scales, &modes),

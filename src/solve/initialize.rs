@@ -3,11 +3,16 @@
 use super::blocks::{BlockFailure, Blocks, Setting};
 use super::modes::Modes;
 use super::newton::Scales;
+use super::report;
 use super::settings::Settings;
+use crate::diag::{Code, Diagnostic};
 use crate::expr::{ExprId, Node};
-use crate::flat::{Type, Variability};
+use crate::flat::{Equation, Type, Variability};
 use crate::lower::{Layout, System};
 use crate::structure::{Block, Dae};
+
+/// A redundant fixed start may be off by this part of its size.
+const CHECK_TOLERANCE: f64 = 1e-6;
 
 /// The shortest step of the homotopy parameter.
 const SMALLEST_STEP: f64 = 1e-4;
@@ -72,6 +77,36 @@ pub fn solve(system: &System, scales: &Scales, modes: &mut Modes, values: &mut [
     result
 }
 
+/// Fixed starts that constraints have made redundant must agree with what the others lead to.
+///
+/// # Errors
+/// The first one that does not (E401).
+pub fn check_starts(system: &System, scales: &Scales, values: &[f64]) -> Result<(), Diagnostic> {
+    for &(residual, equation) in &system.dae.initial_checks {
+        let equation = &system.dae.equations[equation as usize];
+        let (found, asked) = (system.eval(equation.lhs, values), system.eval(equation.rhs, values));
+        let nominal = match system.dae.exprs.node(equation.lhs) {
+            Node::Var(v) => scales.nominal[v.index()],
+            _ => 0.0,
+        };
+        let allowed = CHECK_TOLERANCE * (found.abs().max(asked.abs()) + nominal);
+        if system.eval(residual, values).abs() > allowed {
+            return Err(contradiction(system, equation, found, asked));
+        }
+    }
+    Ok(())
+}
+
+fn contradiction(system: &System, equation: &Equation, found: f64, asked: f64) -> Diagnostic {
+    let dae = &system.dae;
+    let name = dae.text(equation.lhs);
+    let (found, asked) = (report::number(found), report::number(asked));
+    let text =
+        format!("`{name}` is to start at {asked}, but the other start values and the constraints make it {found}");
+    report::at_origin(dae, Code::InitialOver, text, equation.origin, "this start is fixed")
+        .help("fix fewer of the starts that the constraints tie together, or give values that fit")
+}
+
 fn worth_homotopy(dae: &Dae) -> bool {
     let is_homotopy = |e: u32| matches!(dae.exprs.node(ExprId(e)), Node::Homotopy(..));
     let loops = dae.initial.iter().any(|b| !matches!(b, Block::Assign(_)));
@@ -122,5 +157,41 @@ impl Start<'_> {
             }
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lower::{Options, lower};
+    use std::sync::Arc;
+
+    /// Two wheels in mesh with both speeds fixed.
+    fn start(second: &str) -> Result<(), Diagnostic> {
+        let text = format!(
+            "model M
+               Real w1(start = 1, fixed = true), w2(start = {second}, fixed = true), t;
+             equation
+               der(w1) = 3 - t;
+               0.5*der(w2) = t;
+               w2 = 2*w1;
+             end M;"
+        );
+        let flat = crate::flatten_text(&text, None).value.expect("sound").flat;
+        let dae = crate::analyze(&flat).value.expect("sound");
+        let system = lower(Arc::new(dae), &Options { native: false });
+        let mut values = prepare(&system, &Settings::default());
+        let scales = Scales::new(&system, &values);
+        let mut modes = Modes::new(&system, 1e-6);
+        assert!(solve(&system, &scales, &mut modes, &mut values).is_ok());
+        check_starts(&system, &scales, &values)
+    }
+
+    #[test]
+    fn redundant_starts_must_agree() {
+        assert_eq!(start("2"), Ok(()));
+        let error = start("3").expect_err("2*1 is not 3");
+        assert_eq!(error.code, Code::InitialOver);
+        assert!(error.message.contains("`w1` is to start at 1"), "{}", error.message);
     }
 }

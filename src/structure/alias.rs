@@ -384,17 +384,18 @@ fn compare_starts(
     diagnostics: &mut Vec<Diagnostic>,
 ) {
     let ours = draft.variables[alias.target.index()].start.unwrap_or(Exprs::ZERO);
-    let difference = draft.exprs.sub(ours, start.unwrap_or(Exprs::ZERO));
+    let theirs = start.unwrap_or(Exprs::ZERO);
+    let difference = draft.exprs.sub(ours, theirs);
     if difference == Exprs::ZERO {
         return;
     }
-    let ours = known.value(&draft.exprs, ours).unwrap_or(f64::NAN);
+    let size = known.value(&draft.exprs, ours).unwrap_or(f64::NAN);
     let gap = known.value(&draft.exprs, difference).unwrap_or(f64::NAN);
-    if gap.abs() > 1e-9 * ours.abs().max(1e-12) {
+    if gap.abs() > 1e-9 * size.abs().max(1e-12) {
         diagnostics.push(messages::contradicting_aliases(draft, known, alias));
     } else {
         let origin = Origin { kind: OriginKind::Start, ..draft.variables[alias.variable.index()].origin };
-        draft.initial_checks.push((difference, origin));
+        draft.initial_checks.push(Equation { lhs: ours, rhs: theirs, origin });
     }
 }
 

@@ -292,11 +292,11 @@ struct Rest {
 }
 
 fn assemble(flat: &FlatModel, mut draft: Draft, blocks: Blocks, rest: Rest) -> Dae {
-    let checks = std::mem::take(&mut draft.initial_checks);
-    let mut initial_checks = Vec::with_capacity(checks.len());
-    for (e, origin) in checks {
-        draft.add_equation(Equation { lhs: e, rhs: crate::expr::Exprs::ZERO, origin }, RowKind::Definition);
-        initial_checks.push((e, draft.equations.len() as u32 - 1));
+    let mut initial_checks = Vec::new();
+    for equation in std::mem::take(&mut draft.initial_checks) {
+        let residual = draft.exprs.sub(equation.lhs, equation.rhs);
+        draft.add_equation(equation, RowKind::Definition);
+        initial_checks.push((residual, draft.equations.len() as u32 - 1));
     }
     Dae {
         class: flat.class.clone(),

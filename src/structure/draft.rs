@@ -61,8 +61,8 @@ pub(super) struct Draft {
     pub samples: Vec<Sample>,
     pub actions: Vec<Action>,
     pub instances: Vec<flat::InstanceInfo>,
-    /// Expressions that must vanish at the start, each with the equation or the start value it comes from.
-    pub initial_checks: Vec<(ExprId, flat::Origin)>,
+    /// Equations that must hold at the start although they determine nothing there.
+    pub initial_checks: Vec<flat::Equation>,
 }
 
 impl Draft {
@@ -159,7 +159,8 @@ impl Draft {
                 .flatten()
                 .for_each(&mut visit);
         }
-        for equation in self.equations.iter_mut().chain(&mut self.initial_equations) {
+        let equations = self.equations.iter_mut().chain(&mut self.initial_equations);
+        for equation in equations.chain(&mut self.initial_checks) {
             visit(&mut equation.lhs);
             visit(&mut equation.rhs);
         }
@@ -180,7 +181,6 @@ impl Draft {
             visit(&mut sample.interval);
         }
         self.actions.iter_mut().for_each(|action| each_of_action(action, &mut visit));
-        self.initial_checks.iter_mut().for_each(|(e, _)| visit(e));
     }
 
     /// Which nodes of the pool any expression holds; earlier stages leave others behind that may mean nothing here.
