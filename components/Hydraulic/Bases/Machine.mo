@@ -14,7 +14,9 @@ partial model Machine "Displacement machine in four quadrants: delivery and torq
   parameter SI.Pressure p_cav(min = 0, max = 1e6, nominal = 1e4) = 2e4 "Inlet pressure at which nothing is drawn in any more";
   parameter SI.Pressure p_fill(min = 100, max = 1e6, nominal = 1e4) = 3e4 "Inlet pressure above p_cav from which on the chambers fill";
   parameter SI.Pressure p_film0(nominal = 1e5) = oil.p_0 "Pressure above which the mean pressure of the gaps thickens the oil";
+  parameter Boolean useInput = false "true: the displacement follows u, -1 to 1" annotation(Evaluate = true);
   parameter Boolean useHeatPort = false "true: losses heat what is joined to heatPort" annotation(Evaluate = true);
+  Interfaces.RealInput u(unit = "1") if useInput "Displacement over V";
   Interfaces.HeatPort heatPort(Q_flow = -lossPower) if useHeatPort "Heat of the losses";
   SI.AngularVelocity w(nominal = 100) "Speed of the shaft";
   SI.Pressure dp(nominal = 1e6) "Pressure of A above B";
@@ -26,6 +28,7 @@ partial model Machine "Displacement machine in four quadrants: delivery and torq
 protected
   constant Real pi = Modelica.Constants.pi;
   parameter Real D(unit = "m3/rad") = V/(2*pi) "Displacement per radian";
+  Interfaces.RealInput u_used(unit = "1") "Displacement over V, in use";
   Real n(unit = "Hz") "Revolutions per second";
   Real n_abs(unit = "Hz") "Its magnitude, rounded over 1e-3 rev/s";
   Real side(unit = "1") "1: A is the high side, 0: B is";
@@ -41,6 +44,10 @@ protected
 equation
   assert(V > 0, "The displacement V must be positive");
   assert(deadVolume >= 0, "The dead volume must not be negative");
+  connect(u, u_used);
+  if not useInput then
+    u_used = 1;
+  end if;
   w = der(flange.phi);
   dp = port_a.p - port_b.p;
   n = w/(2*pi);
@@ -52,7 +59,7 @@ equation
   mu = oil.thickening(oil.mu, (port_a.p + port_b.p)/2 - p_film0);
   thin = if followViscosity then mu_G/mu else 1;
   if starvation then
-    fill = Smooth.step(((port_a.p + port_b.p)/2 - Smooth.sgn(n, 1e-2)*dp/2 - p_cav)/p_fill);
+    fill = Smooth.step(((port_a.p + port_b.p)/2 - Smooth.sgn(n*u_used, 1e-2)*dp/2 - p_cav)/p_fill);
   else
     fill = 1;
   end if;
@@ -64,14 +71,14 @@ equation
     rho_mean = (rho_a + rho_b)/2;
   end if;
   if compression then
-    m_ideal = fill*V*(n*rho_mean - n_abs*(0.5 + deadVolume)*drho);
+    m_ideal = fill*V*(n*u_used*rho_mean - n_abs*(0.5 + deadVolume)*drho);
   else
-    m_ideal = fill*V*n*rho_high;
+    m_ideal = fill*V*n*u_used*rho_high;
   end if;
   rho_a*Q_A = m_ideal - rho_high*Q_leak;
   port_a.q = -Q_A;
   rho_a*port_a.q + rho_b*port_b.q = 0;
-  T_sh = fill*D*dp + T_loss;
+  T_sh = fill*u_used*D*dp + T_loss;
   flange.tau = T_sh;
   lossPower = T_sh*w - dp*Q_A*rho_a/rho_high;
   annotation(Documentation(info = "<html>
@@ -79,6 +86,7 @@ equation
 <p><b>Delivery.</b> A chamber closes at the inlet with the density there and its dead volume returns what it holds at the outlet, so that a revolution carries the mass
 <code>rho_in (V + V_d) - rho_out V_d</code>. In one formula for both directions of rotation: <code>V (n (rho_A + rho_B)/2 - |n| (1/2 + V_d/V)(rho_A - rho_B))</code>. Pumping this is the known compression loss
 <code>n (V + V_d) dp/beta</code>, motoring <code>n V_d dp/beta</code>; mass is conserved exactly. Without <code>compression</code> the displacement counts at the high side.</p>
+<p><b>Variable displacement</b>: u scales the displacement; half the swept volume and the dead volume together, which compression sees, do not change with it.</p>
 <p><b>Starvation</b>: delivery falls smoothly between <code>p_cav + p_fill</code> and <code>p_cav</code> of inlet pressure, and the torque with it.</p>
 <p>Sources: J. Ivantysyn and M. Ivantysynova, Hydrostatic Pumps and Motors, 2001; compression: D. McCandlish and R. E. Dorey, Proc. IMechE B 198 (1984) 165.</p></html>"));
 end Machine;

@@ -1,0 +1,9 @@
+within Hydraulic;
+model DryResistance "Constant pressure difference against the flow, as by a piston with dry friction"
+  extends Bases.TwoPort;
+  parameter SI.Pressure dp_friction(min = 0, nominal = 1e5) = 1e5 "Pressure difference";
+  parameter SI.VolumeFlowRate q_w(min = 1e-9, nominal = 1e-5) = 1e-6 "Flow over which it changes sign";
+equation
+  assert(dp_friction >= 0, "dp_friction must not be negative");
+  dp = dp_friction*Smooth.sgn(q, q_w);
+end DryResistance;

@@ -1,0 +1,14 @@
+within Hydraulic;
+model PistonAccumulator "Piston accumulator: gas with thermal time constant, seal friction as a pressure difference"
+  Interfaces.HydraulicPort port "Port";
+  parameter SI.Volume V_0(min = 1e-6, max = 1, nominal = 1e-3, displayUnit = "l") = 1e-3 "Volume of the gas at the precharge";
+  parameter SI.Pressure p_pre(min = 1e4, max = 1e8, nominal = 1e6) = 50e5 "Precharge, absolute, at T_wall";
+  parameter SI.Pressure p_start(nominal = 1e6) = 80e5 "Pressure at the start";
+  parameter SI.Pressure dp_friction(min = 0, nominal = 1e5) = 1e5 "Pressure difference that moves the piston";
+  parameter SI.VolumeFlowRate q_w(min = 1e-9, nominal = 1e-5) = 1e-6 "Flow over which the friction changes sign";
+  DryResistance friction(dp_friction = dp_friction, q_w = q_w) "Seal friction";
+  Accumulator gas(V_0 = V_0, p_pre = p_pre, p_start = p_start) "Gas and oil";
+equation
+  connect(port, friction.port_a);
+  connect(friction.port_b, gas.port);
+end PistonAccumulator;

@@ -1,0 +1,9 @@
+within Mechanical.Rotational;
+model SpeedDependentLoad "Load over speed, given by a table"
+  Interfaces.RotationalFlange flange "Flange";
+  parameter Real table[:, 2] = [-1, -1; 1, 1] "Speed in rad/s, torque against the motion in N.m";
+  SI.AngularVelocity w(nominal = 10) "Speed";
+equation
+  w = der(flange.phi);
+  flange.tau = Signal.Functions.interpolate(table, w);
+end SpeedDependentLoad;

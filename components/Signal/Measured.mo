@@ -1,0 +1,26 @@
+within Signal;
+block Measured "A measured value: gain, offset, lag, noise and sampling on a true one"
+  extends Bases.OneToOne(y(start = 0, fixed = true));
+  parameter Real gain = 1 "Gain";
+  parameter Real offset = 0 "Offset";
+  parameter SI.Time tau(min = 1e-9) = 1e-3 "Time constant of the sensor";
+  parameter SI.Time samplePeriod(min = 1e-9) = 1e-3 "Sampling period";
+  parameter Real std(min = 0) = 0 "Standard deviation of the noise";
+  parameter Integer delay(min = 0, max = 16) = 0 "Samples that the value arrives late";
+  parameter Integer seed(min = 1, max = 2147483646) = 1 "Seed of the noise";
+  Real x(start = 0, fixed = true) "Value behind the lag";
+protected
+  discrete Real state(start = seed, fixed = true, nominal = 1e9) "State of the noise";
+  discrete Real late[17](each start = 0, each fixed = true) "Last samples";
+equation
+  assert(tau > 0 and samplePeriod > 0, "tau and samplePeriod must be positive");
+  tau*der(x) = gain*u + offset - x;
+  when sample(0, samplePeriod) then
+    state = mod(16807*pre(state), 2147483647.0);
+    late[1] = x + std*sqrt(12)*(state/2147483647.0 - 0.5);
+    for i in 2:17 loop
+      late[i] = pre(late[i - 1]);
+    end for;
+    y = late[delay + 1];
+  end when;
+end Measured;
