@@ -162,3 +162,20 @@ fn an_input_may_be_declared_by_its_connector() {
     let flat = flatten_text(text, None).value.expect("it is right").flat;
     assert!(flat.variables.iter().any(|v| v.name == "u" && v.input));
 }
+
+#[test]
+fn a_variable_that_a_when_assigns_has_a_left_limit_without_being_declared_discrete() {
+    let text = "
+        model M
+          Real y(start = 0, fixed = true);
+        equation
+          when sample(0, 0.1) then
+            y = 0.5*pre(y) + 1;
+          end when;
+        end M;";
+    let flat = flatten_text(text, None).value.expect("it is right").flat;
+    let dae = bramah::structure::analyze(&flat, &Default::default());
+    assert!(dae.diagnostics.is_empty(), "{:?}", dae.diagnostics);
+    let written = flat.text();
+    assert!(written.contains("pre(y)"), "{written}");
+}

@@ -1,6 +1,6 @@
 within ServoPump;
 model System "Pump-controlled cylinder with position loop (paper's Fig. 1): extend, hold, retract under load"
-  parameter SI.Position x_ref(min = 0, max = 0.18, nominal = 0.1) = 0.056 "Position to extend to";
+  parameter SI.Position x_ref(min = 0, max = 0.18, nominal = 0.1) = 0.055 "Position to extend to";
   parameter SI.Position x_start(min = 0, max = 0.18, nominal = 0.1) = 0.05 "Position at the start, returned to at the end";
   parameter SI.Force F_load(nominal = 1e4) = 20e3 "Force that retracts the rod";
   parameter SI.Mass m_load(min = 1, nominal = 500) = 490 "Mass on the rod";
@@ -8,11 +8,11 @@ model System "Pump-controlled cylinder with position loop (paper's Fig. 1): exte
   parameter SI.Volume V_A(min = 1e-6, max = 1e-2, nominal = 1e-4, displayUnit = "ml") = 100e-6 "Oil volume at port A beside the stroke";
   parameter SI.Volume V_B(min = 1e-6, max = 1e-2, nominal = 1e-4, displayUnit = "ml") = 100e-6 "Oil volume at port B beside the stroke";
   parameter Real K_x(unit = "1/s", min = 0) = 20 "Gain of the position loop";
-  parameter SI.Time t_extend = 0.2 "Begin of the extension";
-  parameter SI.Time t_move(min = 1e-3) = 1 "Time of extension and of retraction";
-  parameter SI.Time t_hold(min = 0) = 0.6 "Time of holding";
+  parameter SI.Time t_extend = 0.1 "Begin of the extension";
+  parameter SI.Time t_move(min = 1e-3) = 1.1 "Time of extension and of retraction";
+  parameter SI.Time t_hold(min = 0) = 0.5 "Time of holding";
   inner Oil.ServoPumpOil oil(T_0 = Modelica.Units.Conversions.from_degC(theta_oil)) "Oil";
-  Signal.Trapezoid reference(amplitude = x_ref - x_start, rising = t_move, holding = t_hold, falling = t_move, offset = x_start, startTime = t_extend) "Reference of position";
+  Signal.SmoothMove reference(amplitude = x_ref - x_start, rising = t_move, holding = t_hold, falling = t_move, offset = x_start, startTime = t_extend) "Reference of position";
   PositionControl control(K_x = K_x, A = cylinder.A_1, D = pump.V/(2*Modelica.Constants.pi)) "11: controller";
   replaceable ContinuousDrive drive constrainedby Drive "1: servo motor";
   Mechanical.Rotational.Inertia rotor(J = 1.8e-4) "Inertia of motor and pump";

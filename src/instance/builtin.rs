@@ -181,8 +181,6 @@ impl<'a> Instance<'a, '_> {
     fn pre(&mut self, v: &Val, span: Span) -> Option<Val> {
         let mut failed = self.eval.constant;
         let value = v.map(&mut |e, _| match self.exprs.node(e) {
-            // The left limit of a continuous variable: it does not move while an event is being handled.
-            Node::Var(var) if self.leaf_variability(var) == Variability::Continuous => e,
             Node::Var(var) => self.exprs.pre(var),
             Node::Num(_) => e,
             _ => {

@@ -80,7 +80,7 @@ impl Draft {
         for (v, _) in variables.iter_mut().zip(&roles).filter(|(_, role)| **role == Role::Discrete) {
             v.variability = Variability::Discrete;
         }
-        Draft {
+        let mut draft = Draft {
             exprs: flat.exprs.clone(),
             variables,
             roles,
@@ -93,7 +93,24 @@ impl Draft {
             asserts: flat.asserts.clone(),
             instances: flat.instances.clone(),
             ..Draft::default()
+        };
+        draft.let_continuous_be_their_left_limit();
+        draft
+    }
+
+    /// `pre` of a variable that no `when` assigns is the variable: it does not move while an event is being handled.
+    fn let_continuous_be_their_left_limit(&mut self) {
+        let roles = self.roles.clone();
+        let continuous = |v: VarId| roles[v.index()] == Role::Continuous;
+        let mut nodes = (0..self.exprs.len() as u32).map(|i| self.exprs.node(ExprId(i)));
+        if !nodes.any(|node| matches!(node, Node::Pre(v) if continuous(v))) {
+            return;
         }
+        let map = self.rewritten(|pool, node| match node {
+            Node::Pre(v) if continuous(v) => Some(pool.var(v)),
+            _ => None,
+        });
+        self.map_expressions(&map);
     }
 
     /// The role of a variable.
