@@ -20,23 +20,27 @@ protected
   SI.Torque tau_fric "Friction torque, against the motion when positive and sliding forward";
   Boolean free "true: no contact";
   Real path "Place on the characteristic: torque while stuck, acceleration beyond it while sliding";
+  Real held "The same while stuck, else 0, so that no relation on it is crossed while sliding";
+  SI.AngularVelocity w_moving "Sliding speed, 0 while stuck, so that no relation on it is crossed by rounding";
   Boolean startForward(start = false, fixed = true) "true: begins to slide forward";
   Boolean startBackward(start = false, fixed = true) "true: begins to slide backward";
   Boolean forward "true: slides forward, or begins to";
 equation
-  startForward = pre(mode) == Stuck and (path > tau_hold/unit_f or pre(startForward) and path > tau_0/unit_f)
-    or pre(mode) == Backward and w_slide > w_small
-    or initial() and w_slide > 0;
-  startBackward = pre(mode) == Stuck and (path < -tau_hold/unit_f or pre(startBackward) and path < -tau_0/unit_f)
-    or pre(mode) == Forward and w_slide < -w_small
-    or initial() and w_slide < 0;
+  held = if pre(mode) == Stuck then path else 0;
+  w_moving = if pre(mode) == Stuck and not startForward and not startBackward then 0 else w_slide;
+  startForward = pre(mode) == Stuck and (held > tau_hold/unit_f or pre(startForward) and held > tau_0/unit_f)
+    or pre(mode) == Backward and w_moving > w_small
+    or initial() and w_moving > 0;
+  startBackward = pre(mode) == Stuck and (held < -tau_hold/unit_f or pre(startBackward) and held < -tau_0/unit_f)
+    or pre(mode) == Forward and w_moving < -w_small
+    or initial() and w_moving < 0;
   locked = not free and not (pre(mode) == Forward or startForward or pre(mode) == Backward or startBackward);
   forward = startForward or pre(mode) == Forward and not startBackward;
   a_slide/unit_a = if locked then 0 elseif free then path elseif forward then path - tau_hold/unit_f else path + tau_hold/unit_f;
   tau_fric = if locked then unit_f*path elseif free then 0 elseif forward then tau_dry + tau_visc else tau_visc - tau_dry;
   mode = if free then Free
-    elseif (pre(mode) == Forward or pre(mode) == Free or startForward) and w_slide > 0 then Forward
-    elseif (pre(mode) == Backward or pre(mode) == Free or startBackward) and w_slide < 0 then Backward
+    elseif (pre(mode) == Forward or pre(mode) == Free or startForward) and w_moving > 0 then Forward
+    elseif (pre(mode) == Backward or pre(mode) == Free or startBackward) and w_moving < 0 then Backward
     else Stuck;
   annotation(Documentation(info = "<html>
 <p>A component that extends this gives the sliding speed and its rate, the greatest holding torque <code>tau_hold</code>, the sliding torque at zero speed <code>tau_0</code> and over speed

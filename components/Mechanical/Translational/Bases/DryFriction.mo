@@ -20,23 +20,27 @@ protected
   SI.Force f_fric "Friction force, against the motion when positive and sliding forward";
   Boolean free "true: no contact";
   Real path "Place on the characteristic: force while stuck, acceleration beyond it while sliding";
+  Real held "The same while stuck, else 0, so that no relation on it is crossed while sliding";
+  SI.Velocity v_moving "Sliding speed, 0 while stuck, so that no relation on it is crossed by rounding";
   Boolean startForward(start = false, fixed = true) "true: begins to slide forward";
   Boolean startBackward(start = false, fixed = true) "true: begins to slide backward";
   Boolean forward "true: slides forward, or begins to";
 equation
-  startForward = pre(mode) == Stuck and (path > f_hold/unit_f or pre(startForward) and path > f_0/unit_f)
-    or pre(mode) == Backward and v_slide > v_small
-    or initial() and v_slide > 0;
-  startBackward = pre(mode) == Stuck and (path < -f_hold/unit_f or pre(startBackward) and path < -f_0/unit_f)
-    or pre(mode) == Forward and v_slide < -v_small
-    or initial() and v_slide < 0;
+  held = if pre(mode) == Stuck then path else 0;
+  v_moving = if pre(mode) == Stuck and not startForward and not startBackward then 0 else v_slide;
+  startForward = pre(mode) == Stuck and (held > f_hold/unit_f or pre(startForward) and held > f_0/unit_f)
+    or pre(mode) == Backward and v_moving > v_small
+    or initial() and v_moving > 0;
+  startBackward = pre(mode) == Stuck and (held < -f_hold/unit_f or pre(startBackward) and held < -f_0/unit_f)
+    or pre(mode) == Forward and v_moving < -v_small
+    or initial() and v_moving < 0;
   locked = not free and not (pre(mode) == Forward or startForward or pre(mode) == Backward or startBackward);
   forward = startForward or pre(mode) == Forward and not startBackward;
   a_slide/unit_a = if locked then 0 elseif free then path elseif forward then path - f_hold/unit_f else path + f_hold/unit_f;
   f_fric = if locked then unit_f*path elseif free then 0 elseif forward then f_dry + f_visc else f_visc - f_dry;
   mode = if free then Free
-    elseif (pre(mode) == Forward or pre(mode) == Free or startForward) and v_slide > 0 then Forward
-    elseif (pre(mode) == Backward or pre(mode) == Free or startBackward) and v_slide < 0 then Backward
+    elseif (pre(mode) == Forward or pre(mode) == Free or startForward) and v_moving > 0 then Forward
+    elseif (pre(mode) == Backward or pre(mode) == Free or startBackward) and v_moving < 0 then Backward
     else Stuck;
   annotation(Documentation(info = "<html>
 <p>A component that extends this gives the sliding speed and its rate, the greatest holding force <code>f_hold</code>, the sliding force at zero speed <code>f_0</code> and over speed
