@@ -506,8 +506,8 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
     }
 
     fn section_failed(&mut self, section: &'a [Statement]) {
-        if !self.instance.diagnostics.iter().any(Diagnostic::is_error) {
-            if let Some(first) = section.first() {
+        if !self.instance.diagnostics.iter().any(Diagnostic::is_error)
+            && let Some(first) = section.first() {
                 self.instance.diagnostics.push(
                     Diagnostic::new(
                         Code::Unsupported,
@@ -517,7 +517,6 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
                     .help("move it into a function"),
                 );
             }
-        }
     }
 
     /// What a variable holds before the section: its `pre` value if discrete, its start value else.

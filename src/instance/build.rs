@@ -141,6 +141,7 @@ impl<'a> Instance<'a, '_> {
         let ids = self.library.add_text("<values given from outside>", &text);
         self.library.own.truncate(own);
         let bad = self.library.diagnostics.split_off(before);
+        self.eval.override_file = ids.first().map(|&id| self.library.class(id).name.span.file);
         if !bad.is_empty() {
             let names: Vec<_> = request.overrides.iter().map(|o| format!("`{}={}`", o.name, o.value)).collect();
             self.report(
@@ -238,11 +239,10 @@ impl<'a> Instance<'a, '_> {
             return self.outer_component(scope, declared, own);
         }
         let reached = self.reached(scope, index);
-        if let Some(condition) = &declared.condition {
-            if !self.constant_boolean(condition, own)? {
+        if let Some(condition) = &declared.condition
+            && !self.constant_boolean(condition, own)? {
                 return None;
             }
-        }
         let (component, view) = match reached.redeclare {
             Some((ArgKind::Component(c), view, ..)) => (c, view),
             _ => (declared, own),

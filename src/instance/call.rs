@@ -55,7 +55,7 @@ impl<'a> Instance<'a, '_> {
         };
         match self.lookup_path(view, &path) {
             Ok(Found::Class(class)) => self.call_class(class, args, named, view, span),
-            Ok(Found::Builtin(Builtin::Enumeration(i))) => self.to_enumeration(i, args, view, span),
+            Ok(Found::Builtin(Builtin::Enumeration(i))) => self.enumeration_of(i, args, view, span),
             _ => match self.instance_function(function, view) {
                 Some(class) => self.call_class(class, args, named, view, span),
                 None => {
@@ -93,7 +93,7 @@ impl<'a> Instance<'a, '_> {
     ) -> Option<Val> {
         let template = self.template(class.class, class.parent);
         if let Some(Builtin::Enumeration(i)) = template.builtin {
-            return self.to_enumeration(i, args, view, span);
+            return self.enumeration_of(i, args, view, span);
         }
         let positional: Option<Vec<Val>> = args.iter().map(|a| self.argument(a, view)).collect();
         let mut by_name = Vec::new();
@@ -127,7 +127,7 @@ impl<'a> Instance<'a, '_> {
         Some(value)
     }
 
-    fn to_enumeration(&mut self, i: u32, args: &'a [Expr], view: View, span: Span) -> Option<Val> {
+    fn enumeration_of(&mut self, i: u32, args: &'a [Expr], view: View, span: Span) -> Option<Val> {
         let [arg] = args else {
             return self.fail(Code::BadCall, "a conversion to an enumeration takes one Integer", span);
         };
@@ -407,10 +407,7 @@ impl<'a> Instance<'a, '_> {
             let ast::ClassBody::Long(body) = &base.ast.body else { continue };
             let view = View { scope: callee.scope, base: u32::try_from(i).expect("few bases") };
             for section in &body.algorithms {
-                match self.execute(section, view)? {
-                    super::algorithm::Flow::Return => break,
-                    _ => {}
-                }
+                if self.execute(section, view)? == super::algorithm::Flow::Return { break }
             }
         }
         let outputs: Vec<Val> = locals

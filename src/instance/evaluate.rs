@@ -149,7 +149,7 @@ impl<'a> Instance<'a, '_> {
         }
         let value = self.constant(e, view)?;
         match (value.scalar(), value.as_number(&self.exprs)) {
-            (Some((_, Type::Integer)), Some(x)) if x >= 0.0 && x < 1e9 => Some(x as usize),
+            (Some((_, Type::Integer)), Some(x)) if (0.0..1e9).contains(&x) => Some(x as usize),
             (Some((_, Type::Integer)), Some(x)) => {
                 self.fail(Code::OutOfRange, &format!("an array cannot have {x} elements"), e.span)
             }
@@ -751,11 +751,10 @@ impl<'a> Instance<'a, '_> {
             self.eval.not_inline = true;
             return None;
         }
-        if self.eval.procedure {
-            if let Some(v) = self.indexed_slot(dims, elements, picks) {
+        if self.eval.procedure
+            && let Some(v) = self.indexed_slot(dims, elements, picks) {
                 return Some(v);
             }
-        }
         let at = picks.iter().position(|p| matches!(p, Pick::Symbolic(_)))?;
         let Pick::Symbolic(index) = picks[at] else { return None };
         let mut result: Option<Val> = None;

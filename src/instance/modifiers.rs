@@ -123,11 +123,10 @@ impl<'a> Reached<'a> {
                 if self.redeclare.is_none() {
                     self.redeclare = Some((arg.kind, arg.view, arg.access.clone(), arg.each));
                 }
-                if let ArgKind::Component(c) = arg.kind {
-                    if let Some(m) = &c.modification {
+                if let ArgKind::Component(c) = arg.kind
+                    && let Some(m) = &c.modification {
                         self.modification(m, arg.view, &arg.access, false, arg.final_, arg.span);
                     }
-                }
             }
         }
     }

@@ -64,9 +64,9 @@ pub fn solve(system: &System, scales: &Scales, modes: &mut Modes, values: &mut [
     let result = match direct {
         Err(failure) if worth_homotopy(&system.dae) => {
             let failed = values.to_vec();
-            start.homotopy(values, &guesses).or_else(|_| {
+            start.homotopy(values, &guesses).map_err(|_| {
                 values.copy_from_slice(&failed);
-                Err(failure)
+                failure
             })
         }
         other => other,
