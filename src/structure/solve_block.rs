@@ -11,8 +11,8 @@ use rustc_hash::FxHashMap;
 /// How an equation can be solved for an unknown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Solved {
-    /// By this value, always.
-    Explicit(ExprId),
+    /// By this value, always; `gentle` when the coefficient is plus or minus one.
+    Explicit { value: ExprId, gentle: bool },
     /// It is affine, but the coefficient may vanish.
     Affine,
     /// Not affine.
@@ -44,7 +44,7 @@ impl<'a> BlockSolver<'a> {
     /// The block of one equation for one unknown.
     pub fn single(&mut self, equation: &Equation, index: u32, unknown: Unknown) -> Block {
         match self.solve(equation, unknown) {
-            Solved::Explicit(value) => Block::Assign(Assign { unknown, value, equation: index }),
+            Solved::Explicit { value, .. } => Block::Assign(Assign { unknown, value, equation: index }),
             other => {
                 let residual = self.draft.exprs.sub(equation.lhs, equation.rhs);
                 let (inner, residuals) = (Vec::new(), vec![(residual, index)]);
@@ -61,27 +61,33 @@ impl<'a> BlockSolver<'a> {
     }
 
     /// The torn loop of several equations; `columns` are their unknowns, as many as members.
+    ///
+    /// In a nonlinear loop only equations with a coefficient of plus or minus one are solved: the integrator finds the
+    /// iteration variables to its tolerance, and dividing by a small coefficient would multiply that error.
     pub fn torn(&mut self, members: &[Member], columns: &[u32], unknowns: &[Unknown]) -> Block {
         let local: FxHashMap<u32, u32> = columns.iter().enumerate().map(|(i, &c)| (c, i as u32)).collect();
         let unknown = |c: u32| unknowns[columns[c as usize] as usize];
+        let linear = self.is_linear(members, columns, unknowns);
         let mut graph = LoopGraph::default();
         for member in members {
             let mut row = Vec::with_capacity(member.columns.len());
             for (at, c) in member.columns.iter().enumerate() {
                 let c = local[c];
-                let safe =
-                    at < member.solvable && matches!(self.solve(&member.equation, unknown(c)), Solved::Explicit(_));
+                let safe = at < member.solvable
+                    && match self.solve(&member.equation, unknown(c)) {
+                        Solved::Explicit { gentle, .. } => linear || gentle,
+                        _ => false,
+                    };
                 row.push((c, safe));
             }
             graph.rows.push(row);
         }
         graph.liking = (0..columns.len() as u32).map(|c| self.liking(unknown(c))).collect();
-        let linear = self.is_linear(members, columns, unknowns);
         let torn = tearing::tear(&graph);
         let inner = torn.inner.iter().map(|&(row, c)| {
             let member = &members[row as usize];
             match self.solve(&member.equation, unknown(c)) {
-                Solved::Explicit(value) => Assign { unknown: unknown(c), value, equation: member.index },
+                Solved::Explicit { value, .. } => Assign { unknown: unknown(c), value, equation: member.index },
                 _ => unreachable!("tearing solves safe entries only"),
             }
         });
@@ -121,7 +127,10 @@ impl<'a> BlockSolver<'a> {
         let pool = &mut self.draft.exprs;
         let solved = match pool.solve_for(equation.lhs, equation.rhs, leaf) {
             None => Solved::No,
-            Some((value, coefficient)) if self.known.is_nonzero(pool, coefficient) => Solved::Explicit(value),
+            Some((value, coefficient)) if self.known.is_nonzero(pool, coefficient) => {
+                let gentle = pool.as_num(coefficient).is_some_and(|c| c.abs() == 1.0);
+                Solved::Explicit { value, gentle }
+            }
             Some(_) => Solved::Affine,
         };
         self.found.insert(key, solved);
