@@ -25,6 +25,7 @@ pub enum Draft {
 pub struct AssignDraft {
     modes: bool,
     targets: Vec<Target>,
+    slots: FxHashSet<Slot>,
     defs: Defs,
 }
 
@@ -109,12 +110,12 @@ impl<'s, 'a> Drafter<'s, 'a> {
 impl AssignDraft {
     /// Whether an assignment may join.
     fn takes(&self, modes: bool, shaped: &Shaped) -> bool {
-        let reads = |target: &Target| shaped.inputs.contains(&slot(target.slot));
-        self.modes == modes && !(modes && self.targets.iter().any(reads))
+        self.modes == modes && !(modes && shaped.inputs.iter().any(|input| self.slots.contains(input)))
     }
 
     fn add(&mut self, target: Target, shaped: &Shaped, shaper: &mut Shaper) {
         self.defs.define(&mut shaper.kernels, slot(target.slot), shaped);
+        self.slots.insert(slot(target.slot));
         self.targets.push(target);
     }
 

@@ -17,6 +17,7 @@ mod parameters;
 mod program;
 mod shape;
 mod system;
+mod translate;
 mod trap;
 
 pub use layout::{Layout, Slot};

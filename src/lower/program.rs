@@ -11,11 +11,18 @@ use super::shape::{Kernel, KernelId, Kernels, Shaped, copy_node};
 use crate::expr::function::Function;
 use crate::expr::{ExprId, Exprs, Node, VarId};
 use rustc_hash::{FxHashMap, FxHashSet};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// Straight code is cut when it has this many nodes; machine code is slow to make beyond.
 const STRAIGHT_SIZE: usize = 1200;
+
+/// The same for programs that are made when the scratch region has its size already.
+const LATE_STRAIGHT_SIZE: usize = 100;
+
+/// No node needs more scratch places than this: a whole power is written out as up to 7 steps, and its arguments may be
+/// numbers without a slot.
+const PLACES_PER_NODE: usize = 12;
 
 /// A shape is run as a loop when it has at least this many instances ...
 const LOOP_INSTANCES: usize = 4;
@@ -231,6 +238,13 @@ impl Loop {
     }
 }
 
+/// How many scratch places programs may need that compute some of `defs` and are made after all others.
+pub fn late_scratch(defs: &Defs, kernels: &Kernels) -> usize {
+    let distinct: BTreeSet<KernelId> = defs.items.iter().map(|&(kernel, _)| kernel).collect();
+    let size = |&kernel: &KernelId| kernels.pool.reachable(&kernels.get(kernel).outputs, |_| true).len();
+    PLACES_PER_NODE * (LATE_STRAIGHT_SIZE + distinct.iter().map(size).max().unwrap_or(0))
+}
+
 /// How definitions are ordered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Order {
@@ -249,6 +263,7 @@ pub struct Assembler<'a> {
     compiler: Compiler,
     native: Compile,
     ready: Option<&'a CompiledLoops>,
+    straight_size: usize,
 }
 
 /// What is compiled to machine code.
@@ -276,12 +291,14 @@ impl<'a> Assembler<'a> {
             compiler: Compiler::default(),
             native: Compile::Nothing,
             ready: None,
+            straight_size: STRAIGHT_SIZE,
         }
     }
 
-    /// The same, with loops that are compiled already.
+    /// For programs that are made after all others: with loops that are compiled already, and with pieces of straight
+    /// code so short that [`late_scratch`] suffices.
     pub fn with_loops(kernels: &'a Kernels, layout: &'a Layout, ready: &'a CompiledLoops) -> Self {
-        Assembler { ready: Some(ready), ..Assembler::new(kernels, layout) }
+        Assembler { ready: Some(ready), straight_size: LATE_STRAIGHT_SIZE, ..Assembler::new(kernels, layout) }
     }
 
     /// Compiles what was to be compiled: all of it in the order of tickets, and loops by kernel.
@@ -313,7 +330,7 @@ impl<'a> Assembler<'a> {
                 self.flush(&mut straight, &mut steps);
                 self.push_loop(kernel, inputs, targets, &mut steps);
             } else {
-                if !straight.takes(targets) {
+                if !straight.takes(targets, self.straight_size) {
                     self.flush(&mut straight, &mut steps);
                 }
                 straight.add(self.kernels, kernel, inputs, targets);
@@ -439,8 +456,8 @@ struct Straight {
 
 impl Straight {
     /// Whether a definition of these slots fits in.
-    fn takes(&self, targets: &[Slot]) -> bool {
-        self.pool.len() < STRAIGHT_SIZE && !targets.iter().any(|target| self.current.contains_key(target))
+    fn takes(&self, targets: &[Slot], size: usize) -> bool {
+        self.pool.len() < size && !targets.iter().any(|target| self.current.contains_key(target))
     }
 
     fn add(&mut self, kernels: &Kernels, kernel: KernelId, inputs: &[Slot], targets: &[Slot]) {

@@ -5,7 +5,7 @@ use super::continuous::Observables;
 use super::layout::Slot;
 use super::native::Entry;
 use super::parameters::Bindings;
-use super::program::{Assembler, CompiledLoops, Order};
+use super::program::{Assembler, CompiledLoops, Order, late_scratch};
 use super::shape::Kernels;
 use super::trap::{self, Trap};
 use super::{BlockCode, Column, Conditions, Layout, NonFinite, Pattern, Program, Row, RowKind};
@@ -205,7 +205,7 @@ impl System {
         let mut program =
             Assembler::with_loops(&p.kernels, &self.layout, &p.loops).assemble(&defs, Order::Dependency, None);
         let room = self.layout.len() - p.scratch as usize;
-        debug_assert!(program.scratch() as usize <= room, "parts of a program need no more scratch than the whole");
+        assert!(program.scratch() as usize <= room, "`late_scratch` is an upper bound");
         program.finish(p.scratch, p.scratch as usize + program.scratch() as usize, &p.functions, &[]);
         program
     }
@@ -232,7 +232,8 @@ impl System {
     pub(super) fn finish(&mut self, entries: &[Entry]) {
         let mut scratch = self.programs.bindings.scratch();
         self.each_program(&mut |program| scratch = scratch.max(program.scratch()));
-        let base = self.layout.work(scratch as usize);
+        let late = late_scratch(&self.programs.observables.defs, &self.programs.kernels);
+        let base = self.layout.work(late.max(scratch as usize));
         let (len, functions) = (self.layout.len(), self.programs.functions.clone());
         self.programs.scratch = base;
         self.programs.bindings.relocate(base);

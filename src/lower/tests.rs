@@ -208,6 +208,21 @@ fn only_what_is_wanted_is_observed() {
 }
 
 #[test]
+fn parts_of_a_looped_program_fit_into_its_scratch_region() {
+    let system = line(200).lower(true);
+    let wanted: Vec<VarId> = (0..system.dae.variables.len()).step_by(71).map(|i| VarId(i as u32)).collect();
+    let (mut some, mut all) = (values_of(&system), values_of(&system));
+    let y: Vec<f64> = (0..200).map(|i| f64::from(i * i % 17)).collect();
+    system.load(0.2, &y, &y, &mut some);
+    system.observe_only(&wanted).run(&mut some);
+    system.observe(0.2, &y, &y, &mut all);
+    for v in wanted {
+        let slot = system.layout.var(v);
+        assert_relative_eq!(some[slot], all[slot], max_relative = 1e-14);
+    }
+}
+
+#[test]
 fn parameters_can_be_overridden() {
     let mut m = Model::default();
     let two = m.number(2.0);
