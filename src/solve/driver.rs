@@ -28,6 +28,10 @@ fn now() -> Instant {
 
 /// Steps between two looks at the outside when no row is due.
 const PAUSE: u32 = 200;
+/// When time moves by less than this part of the run from pause to pause, so many times in a row, the step size counts
+/// as collapsed: the run would not end within days.
+const CREEPING: f64 = 1e-11;
+const PATIENCE: u32 = 20;
 /// The same where states may have to be changed in time.
 const PAUSE_WITH_SELECTIONS: u32 = 10;
 
@@ -99,6 +103,8 @@ pub struct Driver<'a, 'c> {
     grid: Grid,
     /// The first row is out already.
     silent: bool,
+    /// Pauses in a row between which time hardly moved.
+    creep: u32,
     /// Other states to go on with.
     choice: Option<StateChoice>,
     program: Program,
@@ -157,6 +163,7 @@ pub fn run<'a>(
         silent: grid.is_some(),
         grid: grid.unwrap_or_else(|| Grid::new(start, settings.stop_time, settings.interval)),
         choice: None,
+        creep: 0,
         chatter: Chatter::new(settings.stop_time - settings.start_time, settings.events_at_once),
         told: Told::new(system),
         t: start,
@@ -445,6 +452,7 @@ impl<'a> Driver<'a, '_> {
     fn leg(&mut self) -> Flow {
         let (event, to) = (self.next_event(), self.next_stop());
         self.ida().set_stop(to);
+        let span = self.settings.stop_time - self.settings.start_time;
         loop {
             let row = self.grid.next();
             let target = if row < to && !same_time(row, to) { row } else { to };
@@ -457,8 +465,12 @@ impl<'a> Driver<'a, '_> {
                     }
                 }
                 Ok((Reached::Pause, t)) => {
+                    self.creep = if t - self.t < CREEPING * span { self.creep + 1 } else { 0 };
                     self.t = t;
                     self.look_outside()?;
+                    if self.creep >= PATIENCE {
+                        return Err(self.failed(Failure::ErrorTest));
+                    }
                     if self.states_fail() {
                         return Ok(());
                     }
