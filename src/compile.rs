@@ -60,6 +60,14 @@ pub struct Model {
     pub system: Arc<System>,
 }
 
+impl Model {
+    /// The same model lowered for other states; for `solve::Control::reselect`.
+    pub fn with_states(&self, choice: &StateChoice) -> Option<Arc<System>> {
+        let dae = structure::analyze(&self.flat, choice).value?;
+        Some(Arc::new(lower::lower(Arc::new(dae), &lower::Options::default())))
+    }
+}
+
 /// The whole pipeline.
 pub fn compile(world: &dyn World, request: &Request, options: &lower::Options) -> Outcome<Model> {
     let Outcome { sources, mut diagnostics, value } = sort(world, request);

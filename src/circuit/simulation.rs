@@ -7,7 +7,8 @@ use crate::expr::VarId;
 use crate::flat::Variability;
 use crate::lower;
 use crate::results::Trajectory;
-use crate::solve::{self, Control, End, Input, Interpolation, Settings, State, Statistics};
+use crate::solve::{self, Control, End, Input, Interpolation, Progress, Settings, State, Statistics};
+use crate::structure::StateChoice;
 use crate::world::World;
 use std::fmt;
 use std::sync::Arc;
@@ -161,7 +162,10 @@ impl Simulation {
     pub fn run_with(&self, from: Option<&State>, control: &mut Control<'_>) -> Result<Outcome, Error> {
         let mut trajectory = Trajectory::new(solve::signals(&self.model.dae, &self.settings.wanted));
         let system = &self.model.system;
-        let run = solve::simulate(system, &self.settings, &self.inputs, from, &mut trajectory, control);
+        let mut reselect = |choice: &StateChoice| self.model.with_states(choice);
+        let progress = control.progress.as_mut().map(|p| &mut **p as &mut dyn FnMut(&Progress) -> bool);
+        let mut control = Control { interrupt: control.interrupt, progress, reselect: Some(&mut reselect) };
+        let run = solve::simulate(system, &self.settings, &self.inputs, from, &mut trajectory, &mut control);
         if !run.end.is_success() {
             return Err(Error { diagnostics: run.diagnostics, sources: self.sources.clone() });
         }

@@ -2,7 +2,6 @@
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
 
 use super::Failure;
 use super::files::{NewFile, access, print};
@@ -57,7 +56,6 @@ pub(super) struct Recorder {
     rows: Trajectory,
     keep: bool,
     failure: Option<Failure>,
-    writing: Duration,
     written: usize,
     count: usize,
 }
@@ -78,7 +76,6 @@ impl Recorder {
             rows,
             keep,
             failure: None,
-            writing: Duration::ZERO,
             written: 0,
             count: 0,
         };
@@ -122,7 +119,6 @@ impl Recorder {
 
     /// Writes what waits.
     fn flush(&mut self) {
-        let begun = Instant::now();
         if let Some(csv) = &mut self.csv {
             let mut outcome = Ok(());
             for row in self.written..self.rows.len() {
@@ -141,17 +137,11 @@ impl Recorder {
             self.rows.times.clear();
             self.rows.columns.iter_mut().for_each(Vec::clear);
         }
-        self.writing += begun.elapsed();
     }
 
     /// How many rows have come.
     pub fn rows(&self) -> usize {
         self.count
-    }
-
-    /// How long writing took during the run.
-    pub fn writing(&self) -> Duration {
-        self.writing
     }
 
     /// Writes the rest and gives the file its name; hands out the rows where they were to be kept.

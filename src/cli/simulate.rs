@@ -14,13 +14,14 @@ use super::recorder::{Recorder, Target, announcement, write_text};
 use super::request::{ModelArgs, RunArgs};
 use super::statistics::{Record, peak_memory};
 use super::{Ending, Failure, columns, interrupt, model, plot};
+use crate::compile::Model;
 use crate::diag::{Code, Diagnostic};
 use crate::experiment::Experiment;
 use crate::flat;
-use crate::lower::System;
 use crate::plot::select::{Choice, Run as Drawn, figure};
 use crate::results::{Trajectory, number};
 use crate::solve::{Control, End, Progress, Run, Settings, Sink, signals, simulate};
+use crate::structure::StateChoice;
 
 /// Run a circuit
 #[derive(Args, Debug)]
@@ -71,8 +72,8 @@ fn execute(experiment: &Experiment, record: &mut Record, messages: &mut Messages
         messages.say(&[note]);
     }
     let recorder = Recorder::new(target.clone(), signals, experiment.plot.is_some())?;
-    let (run, recorder) = solve(&model.system, &settings, &recorded, recorder);
-    fill(record, &run, &recorder);
+    let (run, recorder) = solve(&model, &settings, &recorded, recorder);
+    fill(record, &run);
     let rows = recorder.rows();
     let outcome = recorder.finish();
     report(&run, rows, &target, messages);
@@ -120,23 +121,25 @@ impl Sink for Rows {
     }
 }
 
-fn solve(system: &System, settings: &Settings, recorded: &Recorded, recorder: Recorder) -> (Run, Recorder) {
+fn solve(model: &Model, settings: &Settings, recorded: &Recorded, recorder: Recorder) -> (Run, Recorder) {
     let bar = Bar::new(settings.start_time, settings.stop_time);
     let mut show = |progress: &Progress| {
         bar.show(progress.time, None, progress.events);
         true
     };
     let mut rows = Rows(recorder);
-    let mut control = Control { interrupt: Some(interrupt::flag()), progress: Some(&mut show) };
-    let run = simulate(system, settings, &recorded.inputs, None, &mut rows, &mut control);
+    let mut reselect = |choice: &StateChoice| model.with_states(choice);
+    let mut control =
+        Control { interrupt: Some(interrupt::flag()), progress: Some(&mut show), reselect: Some(&mut reselect) };
+    let run = simulate(&model.system, settings, &recorded.inputs, None, &mut rows, &mut control);
     bar.clear();
     (run, rows.0)
 }
 
-fn fill(record: &mut Record, run: &Run, recorder: &Recorder) {
+fn fill(record: &mut Record, run: &Run) {
     let s = &run.statistics;
     record.initialize_s = Some(s.initialize_s);
-    record.solve_s = Some((s.solve_s - recorder.writing().as_secs_f64()).max(0.0));
+    record.solve_s = Some(s.solve_s);
     record.steps = Some(s.steps);
     record.residual_evaluations = Some(s.residual_evaluations);
     record.jacobian_evaluations = Some(s.jacobian_evaluations);

@@ -12,11 +12,11 @@ use super::restart::Restart;
 use super::schedule::{Clocks, next_time_crossing};
 use super::settings::{End, Settings, Statistics};
 use super::state::State;
-use super::{Control, Input, Progress, Run, Sink, initialize, report};
+use super::{Control, Input, Progress, Run, Sink, initialize, report, selection};
 use crate::diag::{Code, Diagnostic};
 use crate::expr::Node;
 use crate::lower::{Layout, Pattern, Program, System};
-use crate::structure::ActionKind;
+use crate::structure::{ActionKind, StateChoice};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
@@ -28,6 +28,12 @@ fn now() -> Instant {
 
 /// Steps between two looks at the outside when no row is due.
 const PAUSE: u32 = 200;
+/// When time moves by less than this part of the run from pause to pause, so many times in a row, the step size counts
+/// as collapsed: the run would not end within days.
+const CREEPING: f64 = 1e-11;
+const PATIENCE: u32 = 20;
+/// The same where states may have to be changed in time.
+const PAUSE_WITH_SELECTIONS: u32 = 10;
 
 /// Why a run ends before its stop time.
 pub struct Stop {
@@ -44,6 +50,30 @@ impl Stop {
 }
 
 type Flow = Result<(), Stop>;
+
+/// Where a run starts when not at its initial values.
+pub enum From<'a> {
+    /// At a saved state.
+    State(&'a State),
+    /// Where the same run stopped for other states; its rows go on as if nothing had happened.
+    Switch(&'a State, Grid),
+}
+
+/// A request for other states.
+pub struct Switch {
+    /// What to prefer.
+    pub choice: StateChoice,
+    /// The rows that are out.
+    pub grid: Grid,
+}
+
+/// A run, or the part of it up to a change of states.
+pub struct Leg {
+    /// What it came to.
+    pub run: Run,
+    /// Set when the run is to go on with other states.
+    pub switch: Option<Switch>,
+}
 
 /// What caused an event.
 #[derive(Clone, Copy, PartialEq)]
@@ -71,6 +101,12 @@ pub struct Driver<'a, 'c> {
     events: Events,
     clocks: Clocks,
     grid: Grid,
+    /// The first row is out already.
+    silent: bool,
+    /// Pauses in a row between which time hardly moved.
+    creep: u32,
+    /// Other states to go on with.
+    choice: Option<StateChoice>,
     program: Program,
     slots: Vec<usize>,
     row: Vec<f64>,
@@ -91,12 +127,17 @@ pub fn run<'a>(
     system: &'a System,
     settings: &'a Settings,
     inputs: &[Input],
-    from: Option<&State>,
+    from: Option<From<'_>>,
     sink: &'a mut dyn Sink,
     control: &'a mut Control<'_>,
-) -> Run {
+) -> Leg {
     let clock = now();
     let mut values = initialize::prepare(system, settings);
+    let (from, grid) = match from {
+        None => (None, None),
+        Some(From::State(state)) => (Some(state), None),
+        Some(From::Switch(state, grid)) => (Some(state), Some(grid)),
+    };
     let start = from.map_or(settings.start_time, |s| s.time);
     values[Layout::TIME] = start;
     let mut playback = super::inputs::Playback::new(inputs, &system.layout);
@@ -120,7 +161,10 @@ pub fn run<'a>(
         program: system.observe_only(&settings.wanted),
         slots: settings.wanted.iter().map(|&v| system.layout.var(v)).collect(),
         row: vec![0.0; settings.wanted.len()],
-        grid: Grid::new(start, settings.stop_time, settings.interval),
+        silent: grid.is_some(),
+        grid: grid.unwrap_or_else(|| Grid::new(start, settings.stop_time, settings.interval)),
+        choice: None,
+        creep: 0,
         chatter: Chatter::new(settings.stop_time - settings.start_time, settings.events_at_once),
         told: Told::new(system),
         t: start,
@@ -143,7 +187,7 @@ pub fn run<'a>(
 }
 
 impl<'a> Driver<'a, '_> {
-    fn complete(mut self, mut model: Model<'a>, solved: Result<(), Diagnostic>, resumed: bool, clock: Instant) -> Run {
+    fn complete(mut self, mut model: Model<'a>, solved: Result<(), Diagnostic>, resumed: bool, clock: Instant) -> Leg {
         let end = match solved {
             Err(diagnostic) => {
                 let end = if diagnostic.code == Code::NonFinite { End::NonFinite } else { End::StepTooSmall };
@@ -166,7 +210,7 @@ impl<'a> Driver<'a, '_> {
         self.finish(end, &values)
     }
 
-    fn finish(mut self, end: Flow, values: &[f64]) -> Run {
+    fn finish(mut self, end: Flow, values: &[f64]) -> Leg {
         let end = match end {
             Ok(()) => End::Reached,
             Err(stop) => {
@@ -185,13 +229,15 @@ impl<'a> Driver<'a, '_> {
             self.statistics.error_test_failures = work.error_test_failures;
             self.statistics.crossing_evaluations = work.crossings;
         }
-        Run {
+        let run = Run {
             end,
             time: self.t,
             diagnostics: self.diagnostics,
             statistics: self.statistics,
             state: State::save(self.system, self.t, values),
-        }
+        };
+        let grid = self.grid;
+        Leg { run, switch: self.choice.map(|choice| Switch { choice, grid }) }
     }
 
     /// The event iteration at the start, and the first row.
@@ -218,8 +264,10 @@ impl<'a> Driver<'a, '_> {
         let at_start = self.iterate(model, Cause::Start)?;
         outcome.terminate = outcome.terminate.or(at_start.terminate);
         outcome.failed.extend(at_start.failed);
-        self.write_row(model)?;
-        self.grid.pass(self.t);
+        if !self.silent {
+            self.write_row(model)?;
+            self.grid.pass(self.t);
+        }
         self.judge(model, &outcome)
     }
 
@@ -349,7 +397,7 @@ impl<'a> Driver<'a, '_> {
         let longest = if still { span / 500.0 } else { self.settings.longest_step };
         ida.set_longest_step(longest);
         ida.set_shortest_step(1e-15 * span.abs().max(self.t.abs()));
-        ida.pause_after(PAUSE);
+        ida.pause_after(if system.dae.selections.is_empty() { PAUSE } else { PAUSE_WITH_SELECTIONS });
         self.ida = Some(ida);
         self.first_step(Cause::Start);
         Ok(())
@@ -375,6 +423,9 @@ impl<'a> Driver<'a, '_> {
         let stop = self.settings.stop_time;
         while self.t < stop && !same_time(self.t, stop) {
             self.leg()?;
+            if self.choice.is_some() {
+                return Ok(());
+            }
         }
         if self.uses_terminal() { self.event(Cause::Terminal) } else { Ok(()) }
     }
@@ -403,6 +454,7 @@ impl<'a> Driver<'a, '_> {
     fn leg(&mut self) -> Flow {
         let (event, to) = (self.next_event(), self.next_stop());
         self.ida().set_stop(to);
+        let span = self.settings.stop_time - self.settings.start_time;
         loop {
             let row = self.grid.next();
             let target = if row < to && !same_time(row, to) { row } else { to };
@@ -410,10 +462,20 @@ impl<'a> Driver<'a, '_> {
                 Ok((Reached::Output, t)) => {
                     self.t = t;
                     self.output()?;
+                    if self.states_fail() {
+                        return Ok(());
+                    }
                 }
                 Ok((Reached::Pause, t)) => {
+                    self.creep = if t - self.t < CREEPING * span { self.creep + 1 } else { 0 };
                     self.t = t;
                     self.look_outside()?;
+                    if self.creep >= PATIENCE {
+                        return Err(self.failed(Failure::ErrorTest));
+                    }
+                    if self.states_fail() {
+                        return Ok(());
+                    }
                 }
                 Ok((Reached::Stop, _)) => {
                     self.t = to;
@@ -433,6 +495,19 @@ impl<'a> Driver<'a, '_> {
                 }
             }
         }
+    }
+
+    /// Whether other states should be chosen; notes which.
+    fn states_fail(&mut self) -> bool {
+        if self.system.dae.selections.is_empty() || self.control.reselect.is_none() {
+            return false;
+        }
+        let t = self.t;
+        self.choice = self.with_model(|driver, model, y, yp| {
+            model.observe(t, y, yp);
+            selection::better_choice(driver.system, &driver.scales, &model.values)
+        });
+        self.choice.is_some()
     }
 
     /// At a bend of an input, or at the end.

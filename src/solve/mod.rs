@@ -17,6 +17,7 @@ mod output;
 mod report;
 mod restart;
 mod schedule;
+mod selection;
 mod settings;
 mod state;
 
@@ -27,6 +28,8 @@ pub use state::State;
 
 use crate::diag::Diagnostic;
 use crate::lower::System;
+use crate::structure::StateChoice;
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 /// How far a run is.
@@ -45,6 +48,8 @@ pub struct Control<'a> {
     pub interrupt: Option<&'a AtomicBool>,
     /// Called every now and then; ends the run by returning false.
     pub progress: Option<&'a mut dyn FnMut(&Progress) -> bool>,
+    /// Analyses the model anew with other states, when those chosen have become singular. Called once for each choice.
+    pub reselect: Option<&'a mut dyn FnMut(&StateChoice) -> Option<Arc<System>>>,
 }
 
 /// What a run came to. The rows are in the sink.
@@ -63,6 +68,8 @@ pub struct Run {
 }
 
 /// Runs a system: from its initial values, or from a saved state (then `settings.start_time` is not used).
+///
+/// Where the chosen states become singular and `control.reselect` is given, the run goes on with others.
 pub fn simulate(
     system: &System,
     settings: &Settings,
@@ -71,7 +78,28 @@ pub fn simulate(
     sink: &mut dyn Sink,
     control: &mut Control<'_>,
 ) -> Run {
-    driver::run(system, settings, inputs, from, sink, control)
+    let mut leg = driver::run(system, settings, inputs, from.map(driver::From::State), sink, control);
+    let mut known: Vec<(StateChoice, Arc<System>)> = Vec::new();
+    let mut present: Option<Arc<System>> = None;
+    while let Some(switch) = leg.switch.take() {
+        let found = known.iter().find(|(choice, _)| *choice == switch.choice).map(|(_, system)| system.clone());
+        let found = found.or_else(|| {
+            let made = control.reselect.as_mut().and_then(|analyze| analyze(&switch.choice))?;
+            known.push((switch.choice.clone(), made.clone()));
+            Some(made)
+        });
+        match found {
+            Some(next) => present = Some(next),
+            // no other states: go on with these as long as it lasts
+            None => control.reselect = None,
+        }
+        let before = leg.run;
+        let from = driver::From::Switch(&before.state, switch.grid);
+        leg = driver::run(present.as_deref().unwrap_or(system), settings, inputs, Some(from), sink, control);
+        leg.run.statistics.add(&before.statistics);
+        leg.run.diagnostics.splice(0..0, before.diagnostics);
+    }
+    leg.run
 }
 
 #[cfg(test)]

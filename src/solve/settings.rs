@@ -89,6 +89,23 @@ pub struct Statistics {
     pub states: usize,
 }
 
+impl Statistics {
+    /// Adds the work of an earlier part of the same run.
+    pub fn add(&mut self, earlier: &Statistics) {
+        self.compile_s += earlier.compile_s;
+        self.initialize_s += earlier.initialize_s;
+        self.solve_s += earlier.solve_s;
+        self.steps += earlier.steps;
+        self.residual_evaluations += earlier.residual_evaluations;
+        self.jacobian_evaluations += earlier.jacobian_evaluations;
+        self.factorizations += earlier.factorizations;
+        self.error_test_failures += earlier.error_test_failures;
+        self.crossing_evaluations += earlier.crossing_evaluations;
+        self.events += earlier.events;
+        self.restarts += earlier.restarts;
+    }
+}
+
 /// How a run ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum End {
