@@ -1,5 +1,7 @@
 //! How long lowering takes and how fast its kernels run: a line of N volumes and orifices, native and interpreted.
 
+#![allow(missing_docs, reason = "criterion_group makes a public function")]
+
 use bramah::lower::{Options, System, lower};
 use bramah::structure::Dae;
 use bramah::world::MemoryWorld;

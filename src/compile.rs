@@ -240,9 +240,11 @@ fn only_model(library: &mut Library<'_>, given: &[ClassId]) -> Result<ClassId, B
         }
     }
     if let [only] = given
-        && runnable.contains(only) && with_experiment.is_empty() {
-            return Ok(*only);
-        }
+        && runnable.contains(only)
+        && with_experiment.is_empty()
+    {
+        return Ok(*only);
+    }
     let names: Vec<String> = runnable.iter().map(|&id| library.full_name(id)).collect();
     let d = if names.is_empty() {
         Diagnostic::new(Code::BadModel, "there is no model to run")

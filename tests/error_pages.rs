@@ -1,5 +1,7 @@
 //! The pages behind message codes: the first example of each causes the message, the second is healthy.
 
+#![allow(clippy::disallowed_methods, reason = "tests read their own files")]
+
 use bramah::diag::Code;
 use bramah::world::MemoryWorld;
 use bramah::{Request, sort};

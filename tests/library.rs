@@ -1,5 +1,7 @@
 //! Every class of `components/` and `models/` that can run passes all checks without a word.
 
+#![allow(clippy::disallowed_methods, reason = "tests read their own files")]
+
 use bramah::diag::render::{Format, render};
 use bramah::resolve::{Library, Trees, nested_classes};
 use bramah::syntax::ast::ClassKind;

@@ -69,16 +69,7 @@ impl Recorder {
             Target::Stdout => None,
         };
         let rows = Trajectory::new(signals);
-        let mut recorder = Recorder {
-            target,
-            csv: None,
-            file,
-            rows,
-            keep,
-            failure: None,
-            written: 0,
-            count: 0,
-        };
+        let mut recorder = Recorder { target, csv: None, file, rows, keep, failure: None, written: 0, count: 0 };
         recorder.open_csv();
         Ok(recorder)
     }

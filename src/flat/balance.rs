@@ -109,9 +109,10 @@ impl Counts {
         let mut assigned = BTreeSet::new();
         for action in flat.whens.iter().flat_map(|w| &w.branches).flat_map(|b| &b.actions) {
             if let WhenAction::Assign { variable, origin, .. } = action
-                && assigned.insert(*variable) {
-                    c.have[component_of(flat, *origin)] += 1;
-                }
+                && assigned.insert(*variable)
+            {
+                c.have[component_of(flat, *origin)] += 1;
+            }
         }
         c
     }

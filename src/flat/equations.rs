@@ -507,16 +507,17 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
 
     fn section_failed(&mut self, section: &'a [Statement]) {
         if !self.instance.diagnostics.iter().any(Diagnostic::is_error)
-            && let Some(first) = section.first() {
-                self.instance.diagnostics.push(
-                    Diagnostic::new(
-                        Code::Unsupported,
-                        "this algorithm needs loops or indices that depend on changing values",
-                    )
-                    .at(first.span, "in the section that begins here")
-                    .help("move it into a function"),
-                );
-            }
+            && let Some(first) = section.first()
+        {
+            self.instance.diagnostics.push(
+                Diagnostic::new(
+                    Code::Unsupported,
+                    "this algorithm needs loops or indices that depend on changing values",
+                )
+                .at(first.span, "in the section that begins here")
+                .help("move it into a function"),
+            );
+        }
     }
 
     /// What a variable holds before the section: its `pre` value if discrete, its start value else.

@@ -240,9 +240,10 @@ impl<'a> Instance<'a, '_> {
         }
         let reached = self.reached(scope, index);
         if let Some(condition) = &declared.condition
-            && !self.constant_boolean(condition, own)? {
-                return None;
-            }
+            && !self.constant_boolean(condition, own)?
+        {
+            return None;
+        }
         let (component, view) = match reached.redeclare {
             Some((ArgKind::Component(c), view, ..)) => (c, view),
             _ => (declared, own),

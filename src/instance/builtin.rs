@@ -446,8 +446,9 @@ impl<'a> Instance<'a, '_> {
             ("diagonal", 1) if first.dims().len() == 1 => {
                 let n = first.dims()[0];
                 let zero = Val::Scalar(Exprs::ZERO, first.element_type().unwrap_or(Type::Real));
-                let entry =
-                    |i: usize| if i.is_multiple_of(n + 1) { first.elements()[i / (n + 1)].clone() } else { zero.clone() };
+                let entry = |i: usize| {
+                    if i.is_multiple_of(n + 1) { first.elements()[i / (n + 1)].clone() } else { zero.clone() }
+                };
                 Some(Val::array(vec![n, n], (0..n * n).map(entry).collect()))
             }
             ("outerProduct", 2) => {

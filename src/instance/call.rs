@@ -407,7 +407,9 @@ impl<'a> Instance<'a, '_> {
             let ast::ClassBody::Long(body) = &base.ast.body else { continue };
             let view = View { scope: callee.scope, base: u32::try_from(i).expect("few bases") };
             for section in &body.algorithms {
-                if self.execute(section, view)? == super::algorithm::Flow::Return { break }
+                if self.execute(section, view)? == super::algorithm::Flow::Return {
+                    break;
+                }
             }
         }
         let outputs: Vec<Val> = locals

@@ -752,9 +752,10 @@ impl<'a> Instance<'a, '_> {
             return None;
         }
         if self.eval.procedure
-            && let Some(v) = self.indexed_slot(dims, elements, picks) {
-                return Some(v);
-            }
+            && let Some(v) = self.indexed_slot(dims, elements, picks)
+        {
+            return Some(v);
+        }
         let at = picks.iter().position(|p| matches!(p, Pick::Symbolic(_)))?;
         let Pick::Symbolic(index) = picks[at] else { return None };
         let mut result: Option<Val> = None;

@@ -70,9 +70,10 @@ impl<'a> Instance<'a, '_> {
             let base = &template.bases[view.base as usize];
             if !base.short {
                 if base.names.contains(&name)
-                    && let Some(&i) = template.by_name.get(&name) {
-                        return Some(self.found(view.scope, &template, i));
-                    }
+                    && let Some(&i) = template.by_name.get(&name)
+                {
+                    return Some(self.found(view.scope, &template, i));
+                }
                 if let Some(class) = self.library.child(base.class, name) {
                     return Some(Found::Class(ClassRef { class, parent: view, args: Rc::from([]) }));
                 }
@@ -385,9 +386,10 @@ impl<'a> Instance<'a, '_> {
         while let Some(owner) = at {
             let template = self.scope(owner).template.clone();
             if let Some(&i) = template.by_name.get(&name)
-                && matches!(template.elements[i as usize].kind, Kind::Component(c) if c.prefixes.inner) {
-                    return self.component(owner, i);
-                }
+                && matches!(template.elements[i as usize].kind, Kind::Component(c) if c.prefixes.inner)
+            {
+                return self.component(owner, i);
+            }
             at = self.scope(owner).owner;
         }
         self.inner_declared.get(&(self.root, name)).copied()

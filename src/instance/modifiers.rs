@@ -124,9 +124,10 @@ impl<'a> Reached<'a> {
                     self.redeclare = Some((arg.kind, arg.view, arg.access.clone(), arg.each));
                 }
                 if let ArgKind::Component(c) = arg.kind
-                    && let Some(m) = &c.modification {
-                        self.modification(m, arg.view, &arg.access, false, arg.final_, arg.span);
-                    }
+                    && let Some(m) = &c.modification
+                {
+                    self.modification(m, arg.view, &arg.access, false, arg.final_, arg.span);
+                }
             }
         }
     }

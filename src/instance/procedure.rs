@@ -262,13 +262,14 @@ impl<'a> Instance<'a, '_> {
 
     fn procedure_call_statement(&mut self, call: &'a Expr, view: View) -> Option<()> {
         if let ExprKind::Call { function, args, .. } = &call.kind
-            && function.parts[0].name.name == "assert" {
-                let c = self.eval(args.first()?, view)?;
-                let test = self.boolean_term(&c, call.span)?;
-                let text = args.get(1).and_then(|m| self.eval(m, view)).and_then(|v| v.as_text(&self.exprs));
-                self.emit(Stmt::Assert(test, text.unwrap_or_default()));
-                return Some(());
-            }
+            && function.parts[0].name.name == "assert"
+        {
+            let c = self.eval(args.first()?, view)?;
+            let test = self.boolean_term(&c, call.span)?;
+            let text = args.get(1).and_then(|m| self.eval(m, view)).and_then(|v| v.as_text(&self.exprs));
+            self.emit(Stmt::Assert(test, text.unwrap_or_default()));
+            return Some(());
+        }
         self.eval(call, view).map(|_| ())
     }
 

@@ -436,9 +436,10 @@ impl<'a> Instance<'a, '_> {
         let mut fields = Vec::new();
         for (i, element) in (0u32..).zip(&template.elements) {
             if matches!(element.kind, Kind::Component(_))
-                && let Some(node) = self.component(scope, i) {
-                    fields.push((element.name, self.node_value(node, span)?));
-                }
+                && let Some(node) = self.component(scope, i)
+            {
+                fields.push((element.name, self.node_value(node, span)?));
+            }
         }
         Some(Val::Record(Rc::new(fields)))
     }
@@ -521,9 +522,10 @@ impl<'a> Instance<'a, '_> {
     /// The value bound to a variable; a quantity given from outside is converted to the variable's unit.
     pub fn bound(&mut self, i: u32, b: &super::modifiers::Binding<'a>, constant: bool) -> Option<Val> {
         if Some(b.expr.span.file) == self.eval.override_file
-            && let Some(v) = self.outside_value(i, b) {
-                return v;
-            }
+            && let Some(v) = self.outside_value(i, b)
+        {
+            return v;
+        }
         self.binding_value(b, constant)
     }
 

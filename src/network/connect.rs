@@ -116,22 +116,19 @@ impl Collector {
     ) {
         for e in equations {
             match &e.kind {
-                EquationKind::Connect(a, b)
-                    if !broken.iter().any(|(x, y)| same_pair((a, b), (x, y))) => {
-                        self.connect(instance, a, b, view, e.span);
-                    }
-                EquationKind::For { iterators, body }
-                    if has_connect(body) => {
-                        instance.for_each(iterators, view, &mut |instance| {
-                            self.equations(instance, body, view, broken);
-                        });
-                    }
+                EquationKind::Connect(a, b) if !broken.iter().any(|(x, y)| same_pair((a, b), (x, y))) => {
+                    self.connect(instance, a, b, view, e.span);
+                }
+                EquationKind::For { iterators, body } if has_connect(body) => {
+                    instance.for_each(iterators, view, &mut |instance| {
+                        self.equations(instance, body, view, broken);
+                    });
+                }
                 EquationKind::If { branches, otherwise } => {
                     let connects = branches.iter().any(|(_, b)| has_connect(b)) || has_connect(otherwise);
-                    if connects
-                        && let Some(body) = choose(instance, branches, otherwise, view) {
-                            self.equations(instance, body, view, broken);
-                        }
+                    if connects && let Some(body) = choose(instance, branches, otherwise, view) {
+                        self.equations(instance, body, view, broken);
+                    }
                 }
                 _ => {}
             }
