@@ -2,6 +2,7 @@
 //!
 //! stdout is data, stderr is messages and progress. One file a verb.
 
+#![allow(rustdoc::broken_intra_doc_links, reason = "help texts show brackets as a user types them")]
 #![allow(clippy::disallowed_methods, clippy::print_stderr, reason = "the one place that may")]
 
 mod check;

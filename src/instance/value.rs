@@ -94,7 +94,7 @@ impl Val {
         }
     }
 
-    /// A few words for messages: "a Real", "an array [3]", "a record".
+    /// A few words for messages: "a Real", "an array of size 3", "a record".
     pub fn describe(&self) -> String {
         match self {
             Val::Scalar(_, Type::Real) => "a Real".into(),

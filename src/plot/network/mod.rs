@@ -1,6 +1,6 @@
 //! The network of a model as a picture: components as boxes with ports, connections coloured by connector.
 //!
-//! [`layout`] decides where boxes stand, this file draws them.
+//! `layout` decides where boxes stand, this file draws them.
 
 mod layout;
 
