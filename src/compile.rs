@@ -99,7 +99,7 @@ fn is_structural(d: &Diagnostic) -> bool {
 /// The first level at which something is wrong: a cause in one component is told instead of its consequences.
 fn explained(flat: &FlatModel, found: Vec<Diagnostic>) -> Vec<Diagnostic> {
     let solvable = |changed: &FlatModel| structure::analyze(changed, &StateChoice::default()).value.is_some();
-    let causes = flat::balance::explain(flat, &solvable);
+    let causes = flat::explain(flat, &solvable);
     if causes.is_empty() { found } else { causes }
 }
 

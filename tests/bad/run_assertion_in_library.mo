@@ -1,0 +1,9 @@
+//! run
+//! E215: "beta_wall"
+model M
+  inner Oil.Fluid oil;
+  Hydraulic.Volume volume(V = 1e-3, beta_wall = 0);
+  Hydraulic.Plug plug;
+equation
+  connect(volume.port, plug.port);
+end M;

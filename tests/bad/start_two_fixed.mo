@@ -1,0 +1,9 @@
+//! E401: "`left.s` and `right.s` are equal but start at different values"
+model M
+  Mechanical.Translational.Mass left(s(start = 0, fixed = true));
+  Mechanical.Translational.Mass right(s(start = 1, fixed = true));
+equation
+  connect(left.flange_b, right.flange_a);
+  left.flange_a.f = 0;
+  right.flange_b.f = 1;
+end M;

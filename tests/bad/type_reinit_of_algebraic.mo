@@ -1,0 +1,9 @@
+//! E210 at 7: "`reinit`"
+model M
+  Real x;
+equation
+  x = sin(time);
+  when time > 0.5 then
+    reinit(x, 0);
+  end when;
+end M;
