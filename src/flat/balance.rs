@@ -76,11 +76,8 @@ impl Judge<'_, '_, '_> {
         let message = format!("`{}` has {brought} {plural} but needs {owed}", info.class);
         let class = self.instance.scope(self.scopes[self.at as usize]).template.class;
         let name = self.instance.library.class(class).name.span;
-        let text = if brought < owed {
-            format!("{} too few", owed - brought)
-        } else {
-            format!("{} too many", brought - owed)
-        };
+        let text =
+            if brought < owed { format!("{} too few", owed - brought) } else { format!("{} too many", brought - owed) };
         let mut made = Diagnostic::new(Code::Balance, message).at(name, text).class(info.class.clone());
         if !info.name.is_empty() {
             made = made.instance(info.name.clone());
@@ -160,15 +157,17 @@ impl Judge<'_, '_, '_> {
     /// The equations written in the component.
     fn equations(&self) -> impl Iterator<Item = &Equation> {
         let made = [OriginKind::ConnectPotential, OriginKind::ConnectFlow, OriginKind::OpenPort];
-        self.flat.equations.iter().filter(move |e| {
-            self.census.owner[e.origin.instance as usize] == self.at && !made.contains(&e.origin.kind)
-        })
+        self.flat
+            .equations
+            .iter()
+            .filter(move |e| self.census.owner[e.origin.instance as usize] == self.at && !made.contains(&e.origin.kind))
     }
 
     /// Variables in equations, connections and `when`s of the component.
     fn mentioned(&self) -> FxHashSet<VarId> {
         let here = |instance: u32| self.census.owner[instance as usize] == self.at;
-        let all = self.flat.equations.iter().filter(|e| here(e.origin.instance) && e.origin.kind != OriginKind::OpenPort);
+        let all =
+            self.flat.equations.iter().filter(|e| here(e.origin.instance) && e.origin.kind != OriginKind::OpenPort);
         let roots: Vec<_> = all.flat_map(|e| [e.lhs, e.rhs]).collect();
         let found = self.flat.exprs.dependencies(&roots);
         let whens = self.flat.whens.iter().filter(|w| here(w.origin.instance)).flat_map(super::When::assigned);

@@ -1,11 +1,11 @@
 //! From the component tree to scalar variables and equations.
 
 use super::census::Census;
-use super::{balance, ports, resets};
 use super::equations::Walker;
 use super::{
     Equation, Experiment, FlatModel, InstanceInfo, Origin, OriginKind, StateSelect, Type, Variability, Variable,
 };
+use super::{balance, ports, resets};
 use crate::diag::{Checked, Code, Diagnostic};
 use crate::expr::{ExprId, Exprs};
 use crate::instance::{Instance, ScopeId};

@@ -54,7 +54,10 @@ fn open_port(flat: &FlatModel, flow: VarId, component: u32) -> Diagnostic {
         .at(info.span, format!("its port `{short}` appears in no `connect`"))
         .at(port.span, "declared here")
         .note(format!("an open port means `{} = 0`", variable.name))
-        .help(format!("connect it, or close it on purpose: `Hydraulic.Plug plug;` and `connect({}, plug.port)`", port.name))
+        .help(format!(
+            "connect it, or close it on purpose: `Hydraulic.Plug plug;` and `connect({}, plug.port)`",
+            port.name
+        ))
         .instance(info.name.clone())
         .class(info.class.clone())
 }

@@ -7,8 +7,8 @@ use crate::instance::lookup::Found;
 use crate::instance::reference::Selection;
 use crate::instance::template::Kind;
 use crate::instance::{Instance, Node, NodeId, ScopeId, View};
-use crate::syntax::symbol::Symbol;
 use crate::syntax::ast::{self, ClassBody, ClassKind, Equation, EquationKind, Expr, ExprKind};
+use crate::syntax::symbol::Symbol;
 use rustc_hash::FxHashMap;
 
 /// Disjoint sets over numbers given on demand.
@@ -322,10 +322,9 @@ fn all_ports(instance: &mut Instance<'_, '_>, end: &End, span: Span) -> bool {
             let ports = port_names(instance, *scope);
             let d = d.at(span, format!("`{name}` is a component of class `{class}`"));
             match ports.first() {
-                Some(first) => d.help(format!("name one of its ports: {}", ports.join(", "))).note(format!(
-                    "for instance `connect({name}.{}, ...)`",
-                    first.trim_matches('`')
-                )),
+                Some(first) => d
+                    .help(format!("name one of its ports: {}", ports.join(", ")))
+                    .note(format!("for instance `connect({name}.{}, ...)`", first.trim_matches('`'))),
                 None => d.help("it has no ports"),
             }
         }
@@ -409,9 +408,22 @@ fn mismatch(instance: &mut Instance<'_, '_>, a: NodeId, b: NodeId, at: &Place) {
     let (x, y) = (instance.node_name(a), instance.node_name(b));
     instance.diagnostics.push(
         Diagnostic::new(Code::DomainMismatch, format!("`{x}` and `{y}` are of different kinds and cannot be joined"))
-            .at(at.a, "")
-            .at(at.b, ""),
+            .at(at.a, what_it_is(instance, a))
+            .at(at.b, what_it_is(instance, b))
+            .help("connect ports of the same kind, or put a component between them that changes one into the other"),
     );
+}
+
+fn what_it_is(instance: &Instance<'_, '_>, node: NodeId) -> String {
+    match instance.node(node) {
+        Node::Var(i) => match instance.variables[*i as usize].causality {
+            Some(ast::Causality::Input) => "an input signal".into(),
+            Some(ast::Causality::Output) => "an output signal".into(),
+            None => "a variable".into(),
+        },
+        Node::Object(scope) => format!("a `{}`", instance.library.full_name(instance.scope(*scope).template.class)),
+        Node::Array { dims, .. } => format!("an array of size {}", crate::instance::value::size_text(dims)),
+    }
 }
 
 /// Ports whose variables have units of different dimension belong to different domains.
@@ -434,9 +446,9 @@ fn different_units(instance: &mut Instance<'_, '_>, a: u32, b: u32, at: &Place) 
             Code::DomainMismatch,
             format!("`{}` in `{ua}` and `{}` in `{ub}` cannot be joined", names[0], names[1]),
         )
-        .at(at.a, "")
-        .at(at.b, "")
-        .help("connect ports of the same domain"),
+        .at(at.a, format!("`{ua}`"))
+        .at(at.b, format!("`{ub}`"))
+        .help("put the component between them that turns the one into the other, such as a pump, a cylinder or a gear"),
     );
     true
 }

@@ -1,4 +1,4 @@
-//! E016 at 15: "`world`"
+//! E016 at 15: "`outer world` needs a `World`"
 model World
   parameter Real g = 9.81;
 end World;

@@ -1,4 +1,4 @@
-//! E105 at 7: "cannot be joined"
+//! E104 at 7: "cannot be joined"
 model M
   inner Oil.Fluid oil;
   Hydraulic.Volume volume;

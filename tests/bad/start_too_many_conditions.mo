@@ -1,4 +1,4 @@
-//! E401 at 5: "one condition too many"
+//! E401 at 3: "one condition too many"
 model M
   Real x(start = 1, fixed = true);
 initial equation

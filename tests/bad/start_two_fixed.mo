@@ -4,6 +4,4 @@ model M
   Mechanical.Translational.Mass right(s(start = 1, fixed = true));
 equation
   connect(left.flange_b, right.flange_a);
-  left.flange_a.f = 0;
-  right.flange_b.f = 1;
 end M;

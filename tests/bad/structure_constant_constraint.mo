@@ -1,4 +1,4 @@
-//! E201: "`M` has 3 equations but needs 2"
+//! E201 at 2: "`M` has 3 equations but needs 2"
 model M
   Real x(start = 1);
   Real y(start = 1);

@@ -1,8 +1,8 @@
-//! E301 at 4: "no equation mentions `y`"
+//! E303 at 6: "`y`"
 model M
   Real x;
   Real y;
 equation
   2*x = time;
-  x = time/2 + y - y;
+  x^2 + 1 = time^2;
 end M;

@@ -1,4 +1,4 @@
-//! E302 at 11: "pressure level"
+//! E302 at 15: "pressure level"
 connector Port
   Real p(unit = "Pa");
   flow Real q(unit = "m3/s");

@@ -3,6 +3,6 @@ model M
   input Real s_ref;
   Mechanical.Translational.Mass mass;
 equation
-  mass.flange_a.f = 0;
+  mass.a = s_ref*mass.flange_b.s;
   mass.s = s_ref;
 end M;

@@ -1,4 +1,4 @@
-//! E301 at 4: "no equation mentions `y`"
+//! E303 at 6: "`x` is determined 2 times"
 model M
   Real x;
   Real y;

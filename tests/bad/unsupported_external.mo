@@ -1,5 +1,5 @@
 //! model M
-//! E017 at 6: "external"
+//! E017 at 9: "the external function `f`"
 function f
   input Real u;
   output Real y;

@@ -1,4 +1,4 @@
-//! E212 at 4: "`y` is not known before the run"
+//! E212 at 4: "`start` of `x` must be known before the run"
 model M
   Real y = time;
   Real x(start = y, fixed = true);

@@ -1,4 +1,4 @@
-//! E212 at 4: "`x` is not known before the run"
+//! E212 at 4: "the parameter `k` is given a value that changes"
 model M
   Real x = time;
   parameter Real k = 2*x;
