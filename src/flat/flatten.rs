@@ -5,7 +5,7 @@ use super::equations::Walker;
 use super::{
     Equation, Experiment, FlatModel, InstanceInfo, Origin, OriginKind, StateSelect, Type, Variability, Variable,
 };
-use super::{balance, ports, resets};
+use super::{balance, ports};
 use crate::diag::{Checked, Code, Diagnostic};
 use crate::expr::{ExprId, Exprs};
 use crate::instance::{Instance, ScopeId};
@@ -43,7 +43,6 @@ pub fn flatten(instance: &mut Instance<'_, '_>, network: &Network) -> Checked<Fl
         let census = Census::take(instance, network, &flat, &scopes);
         flat.doubts = balance::doubts(instance, network, &flat, &census, &scopes);
         diagnostics.extend(ports::open_lines(&flat, &census));
-        diagnostics.extend(resets::check(&flat));
     }
     // Bodies of functions were built in the same pool, with variables of their own.
     if !flat.exprs.functions.is_empty() {
@@ -129,10 +128,12 @@ fn attributes(instance: &mut Instance<'_, '_>, i: u32, v: &mut Variable) {
                 };
                 let e = value.scalar().map(|(e, _)| e);
                 if e.is_some_and(|e| instance.variability(e) > Variability::Parameter) {
-                    let name = v.name.clone();
+                    let message = format!("`{name}` of `{}` must be known before the run", v.name);
                     instance.diagnostics.push(
-                        Diagnostic::new(Code::NotConstant, format!("an attribute of `{name}` changes during the run"))
-                            .at(b.expr.span, "only parameters and constants may stand here"),
+                        Diagnostic::new(Code::NotConstant, message)
+                            .at(b.expr.span, "this changes during it")
+                            .at(v.origin.span, "declared here")
+                            .help("only parameters and constants may stand here"),
                     );
                     continue;
                 }

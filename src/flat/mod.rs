@@ -7,7 +7,6 @@ mod explain;
 mod flatten;
 mod ports;
 mod print;
-mod resets;
 mod roots;
 
 pub use explain::explain;

@@ -1,4 +1,4 @@
-//! E303 at 8: "faces"
+//! E201 at 5: "holds no unknown"
 model Sphere
   constant Integer faces = 6;
 end Sphere;

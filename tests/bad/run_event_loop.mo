@@ -1,5 +1,5 @@
 //! run
-//! E506 at 8: "b"
+//! E506 at 4: "no consistent values of `a` at the event at time 0.5 s"
 model M
   Boolean a(start = false, fixed = true);
   Boolean b(start = false, fixed = true);

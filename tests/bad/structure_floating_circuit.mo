@@ -1,4 +1,4 @@
-//! E302 at 15: "nothing fixes the pressure level of {upper, lower}"
+//! E302 at 15: "nothing fixes the pressure level of {upper"
 connector Port
   Real p(unit = "Pa");
   flow Real q(unit = "m3/s");

@@ -1,8 +1,8 @@
 //! E304: "the derivative of the input `s_ref` is needed"
 model M
   input Real s_ref;
-  Mechanical.Translational.Mass mass;
+  Mechanical.Translational.Position drive(s_ref = s_ref);
+  Mechanical.Translational.Mass mass(s(fixed = false), v(fixed = false));
 equation
-  mass.a = s_ref*mass.flange_b.s;
-  mass.s = s_ref;
+  connect(drive.flange, mass.flange_a);
 end M;

@@ -1,4 +1,4 @@
-//! E210 at 7: "`reinit`"
+//! E305 at 7: "x"
 model M
   Real x;
 equation

@@ -1,4 +1,4 @@
-//! E303 at 7: "holds no unknown"
+//! E201 at 2: "this equation holds no unknown"
 model M
   parameter Real k = 2;
   Real x;

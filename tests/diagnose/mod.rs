@@ -2,7 +2,12 @@
 #![allow(dead_code, reason = "each test file uses a part")]
 
 use bramah::diag::{Diagnostic, Severity, Sources};
-use bramah::structure::{StateChoice, analyze};
+use bramah::expr::VarId;
+use bramah::lower::Options;
+use bramah::solve::{Control, Settings, Sink, simulate};
+use bramah::world::MemoryWorld;
+use bramah::{Outcome, Request};
+use std::ops::ControlFlow;
 
 /// All that is said about a text.
 pub struct Report {
@@ -28,12 +33,23 @@ impl Report {
 
 /// Compiles a model held in memory; with `run`, also simulates it for a second.
 pub fn report(text: &str, model: Option<&str>, run: bool) -> Report {
-    let outcome = bramah::flatten_text(text, model);
-    let mut diagnostics = outcome.diagnostics;
-    if let Some(flattened) = outcome.value {
-        diagnostics.extend(bramah::units::check(&flattened.flat));
-        let dae = analyze(&flattened.flat, &StateChoice::default()).sink(&mut diagnostics);
-        let _ = (dae, run);
+    let world = MemoryWorld::single("model.mo", text);
+    let request = Request { source: "model.mo".into(), model: model.map(Into::into), ..Request::default() };
+    let Outcome { sources, mut diagnostics, value } = bramah::compile(&world, &request, &Options { native: false });
+    if let Some(model) = value.filter(|_| run) {
+        let all = (0..model.flat.variables.len()).map(|i| VarId(u32::try_from(i).expect("few variables")));
+        let settings = Settings { wanted: all.collect(), ..Settings::from_experiment(&model.flat.experiment) };
+        let ended = simulate(&model.system, &settings, &[], None, &mut Nowhere, &mut Control::default());
+        diagnostics.extend(ended.diagnostics);
     }
-    Report { sources: outcome.sources, diagnostics }
+    Report { sources, diagnostics }
+}
+
+/// Forgets the results.
+struct Nowhere;
+
+impl Sink for Nowhere {
+    fn row(&mut self, _time: f64, _values: &[f64]) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
 }
