@@ -9,7 +9,7 @@ use bramah::diag::{Code, Severity};
 use std::fmt::Write;
 
 /// Codes found in a run only.
-const FOUND_IN_RUNS: [&str; 8] = ["E403", "E501", "E502", "E503", "E504", "W505", "E506", "E508"];
+const FOUND_IN_RUNS: [&str; 7] = ["E403", "E501", "E502", "E503", "E504", "W505", "E506"];
 
 fn page(code: Code) -> String {
     let path = format!("{}/docs/errors/{}.md", env!("CARGO_MANIFEST_DIR"), code.id());
@@ -29,7 +29,7 @@ fn every_code_has_a_page_and_every_page_a_code() {
         assert!(page(code).contains("\n## What to do\n"), "{}.md gives no advice", code.id());
     }
     let folder = std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/errors")).expect("the folder is there");
-    assert_eq!(folder.count(), Code::ALL.len());
+    assert_eq!(folder.count(), Code::ALL.len() + 1, "a page for each code, and the README");
 }
 
 /// What is said about an example that should not be said; notes do not count unless wanted.
