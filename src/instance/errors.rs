@@ -30,7 +30,7 @@ impl<'a> Instance<'a, '_> {
     pub(super) fn unsupported_function(&mut self, span: Span, name: &str) {
         let advice = match name {
             "delay" => {
-                "a first-order lag is often near enough: `T*der(y) = u - y`; sampled signals keep values with `pre`"
+                "`Signal.PadeDelay` is near enough for slow signals, `Signal.SampledDelay` is exact for sampled ones"
             }
             "spatialDistribution" => "cut the line into a chain of volumes and resistances",
             "inStream" | "actualStream" => "give the connector a potential and a flow for what is carried along",
