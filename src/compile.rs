@@ -107,7 +107,7 @@ fn is_structural(d: &Diagnostic) -> bool {
 /// The first level at which something is wrong: a cause in one component is told instead of its consequences.
 fn explained(flat: &FlatModel, found: Vec<Diagnostic>) -> Vec<Diagnostic> {
     let solvable = |changed: &FlatModel| structure::analyze(changed, &StateChoice::default()).value.is_some();
-    let causes = flat::balance::explain(flat, &solvable);
+    let causes = flat::explain(flat, &solvable);
     if causes.is_empty() { found } else { causes }
 }
 
@@ -125,7 +125,12 @@ pub fn flatten(world: &dyn World, request: &Request) -> Outcome<Flattened> {
         .filter(|_| !library.diagnostics.iter().any(Diagnostic::is_error))
         .and_then(|class| flatten_class(&mut library, class, request, &mut diagnostics));
     let mut all = std::mem::take(&mut library.diagnostics);
+    if all.iter().any(Diagnostic::is_error) {
+        // A class may be missing because its text could not be read.
+        diagnostics.retain(|d| d.code != Code::BadModel);
+    }
     all.extend(diagnostics);
+    once(&mut all);
     let failed = all.iter().any(Diagnostic::is_error);
     Outcome { sources: std::mem::take(&mut library.sources), diagnostics: all, value: value.filter(|_| !failed) }
 }
@@ -286,6 +291,12 @@ fn has_experiment(class: &ast::Class) -> bool {
 /// Errors first shown where they stand: by file and place, messages without a place first.
 fn sort_messages(diagnostics: &mut [Diagnostic]) {
     diagnostics.sort_by_key(|d| d.labels.first().map(|l| (l.span.file, l.span.start)));
+}
+
+/// One mistake in a class shows in each of its instances: one message a place is enough.
+fn once(diagnostics: &mut Vec<Diagnostic>) {
+    let mut seen = rustc_hash::FxHashSet::default();
+    diagnostics.retain(|d| d.labels.first().is_none_or(|l| seen.insert((d.code, l.span))));
 }
 
 /// Compiles one text held in memory; for tests and examples.

@@ -107,7 +107,6 @@ codes! {
     AssertionWarning = "W505", Warning, "an assertion of level warning does not hold";
     EventFailed = "E506", Error, "no consistent state after an event";
     Interrupted = "E507", Error, "the run was interrupted";
-    SingularAtRun = "E508", Error, "the equations became singular";
     // 6xx data
     BadData = "E601", Error, "a data file cannot be used";
     BadExperiment = "E602", Error, "an experiment file cannot be used";

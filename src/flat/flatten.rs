@@ -1,9 +1,11 @@
 //! From the component tree to scalar variables and equations.
 
+use super::census::Census;
 use super::equations::Walker;
 use super::{
     Equation, Experiment, FlatModel, InstanceInfo, Origin, OriginKind, StateSelect, Type, Variability, Variable,
 };
+use super::{balance, ports};
 use crate::diag::{Checked, Code, Diagnostic};
 use crate::expr::{ExprId, Exprs};
 use crate::instance::{Instance, ScopeId};
@@ -21,7 +23,6 @@ pub fn flatten(instance: &mut Instance<'_, '_>, network: &Network) -> Checked<Fl
         numbers.insert(scope, i);
     }
     flat.instances = scopes.iter().map(|&s| instance_info(instance, s, &numbers)).collect();
-    flat.is_port = scopes.iter().map(|&s| is_port(instance, s)).collect();
     flat.experiment = experiment(instance);
     variables(instance, &numbers, &mut flat);
     Walker::new(instance, &numbers, &mut flat).walk(&scopes);
@@ -37,19 +38,21 @@ pub fn flatten(instance: &mut Instance<'_, '_>, network: &Network) -> Checked<Fl
         .map(|e| (e.name.clone(), e.literals.iter().map(|l| l.as_str().to_string()).collect()))
         .collect();
     flat.exprs = std::mem::take(&mut instance.exprs);
+    let mut diagnostics = std::mem::take(&mut instance.diagnostics);
+    if !diagnostics.iter().any(Diagnostic::is_error) {
+        let census = Census::take(instance, network, &flat, &scopes);
+        flat.doubts = balance::doubts(instance, network, &flat, &census, &scopes);
+        diagnostics.extend(ports::open_lines(&flat, &census));
+    }
     // Bodies of functions were built in the same pool, with variables of their own.
     if !flat.exprs.functions.is_empty() {
         flat.compact();
     }
-    Checked::new(flat, std::mem::take(&mut instance.diagnostics))
+    Checked::new(flat, diagnostics)
 }
 
 fn class_name(instance: &Instance<'_, '_>, scope: ScopeId) -> String {
     instance.library.full_name(instance.scope(scope).template.class)
-}
-
-fn is_port(instance: &Instance<'_, '_>, scope: ScopeId) -> bool {
-    matches!(instance.scope(scope).template.kind, ast::ClassKind::Connector { .. })
 }
 
 fn instance_info(instance: &Instance<'_, '_>, scope: ScopeId, numbers: &FxHashMap<ScopeId, u32>) -> InstanceInfo {
@@ -61,10 +64,6 @@ fn instance_info(instance: &Instance<'_, '_>, scope: ScopeId, numbers: &FxHashMa
 fn variables(instance: &mut Instance<'_, '_>, numbers: &FxHashMap<ScopeId, u32>, flat: &mut FlatModel) {
     for k in 0..instance.order.len() {
         let i = instance.order[k];
-        let data = &instance.variables[i as usize];
-        if data.causality == Some(ast::Causality::Input) && !data.top && data.variability > Variability::Parameter {
-            flat.given.push(data.id);
-        }
         let v = variable(instance, i, numbers, flat);
         flat.variables.push(v);
     }
@@ -129,10 +128,12 @@ fn attributes(instance: &mut Instance<'_, '_>, i: u32, v: &mut Variable) {
                 };
                 let e = value.scalar().map(|(e, _)| e);
                 if e.is_some_and(|e| instance.variability(e) > Variability::Parameter) {
-                    let name = v.name.clone();
+                    let message = format!("`{name}` of `{}` must be known before the run", v.name);
                     instance.diagnostics.push(
-                        Diagnostic::new(Code::NotConstant, format!("an attribute of `{name}` changes during the run"))
-                            .at(b.expr.span, "only parameters and constants may stand here"),
+                        Diagnostic::new(Code::NotConstant, message)
+                            .at(b.expr.span, "this changes during it")
+                            .at(v.origin.span, "declared here")
+                            .help("only parameters and constants may stand here"),
                     );
                     continue;
                 }

@@ -1,14 +1,18 @@
 //! The flat model: scalar variables and equations, each with its origin.
 
-pub mod balance;
+mod balance;
+mod census;
 mod equations;
+mod explain;
 mod flatten;
+mod ports;
 mod print;
 mod roots;
 
+pub use explain::explain;
 pub use flatten::flatten;
 
-use crate::diag::Span;
+use crate::diag::{Diagnostic, Span};
 use crate::expr::{ExprId, Exprs, VarId};
 
 /// The flattened circuit.
@@ -30,10 +34,9 @@ pub struct FlatModel {
     pub asserts: Vec<Assert>,
     /// Component instances, parents before children; entry 0 is the model itself with an empty name.
     pub instances: Vec<InstanceInfo>,
-    /// For each instance, whether it is a port.
-    pub is_port: Vec<bool>,
-    /// Inputs of components below the top level: their values come from outside the component.
-    pub given: Vec<VarId>,
+    /// What seems wrong with signals or with the balance of single components: told when the equations turn out not to
+    /// determine the unknowns.
+    pub doubts: Vec<Diagnostic>,
     /// Enumeration types: full name and literals.
     pub enumerations: Vec<(String, Vec<String>)>,
     /// The model's `experiment` annotation.
@@ -199,6 +202,16 @@ pub struct When {
     pub branches: Vec<WhenBranch>,
     /// Where it comes from.
     pub origin: Origin,
+}
+
+impl When {
+    /// The variables that its branches assign.
+    pub fn assigned(&self) -> impl Iterator<Item = VarId> {
+        self.branches.iter().flat_map(|b| &b.actions).filter_map(|a| match a {
+            WhenAction::Assign { variable, .. } => Some(*variable),
+            _ => None,
+        })
+    }
 }
 
 /// One branch of a `when`. `when {c1, c2}` has several conditions: it fires when any of them becomes true.

@@ -58,6 +58,7 @@ pub fn instantiate<'a, 'l>(library: &'l mut Library<'a>, request: &ModelRequest)
         array_values: FxHashMap::default(),
         inner_declared: FxHashMap::default(),
         procedures: FxHashMap::default(),
+        outer_checked: FxHashMap::default(),
         variabilities: Vec::new(),
         eval: evaluate::State::default(),
     };
@@ -287,7 +288,7 @@ impl<'a> Instance<'a, '_> {
     fn outer_component(&mut self, scope: ScopeId, declared: &'a ast::Component, view: View) -> Option<NodeId> {
         let name = declared.name.name;
         if let Some(node) = self.inner_of(scope, name) {
-            return Some(node);
+            return self.fits_outer(node, declared, view).then_some(node);
         }
         let found = self.class_at(view, &declared.class)?;
         let Found::Class(class) = &found else { return None };
@@ -318,6 +319,35 @@ impl<'a> Instance<'a, '_> {
         let node = self.build_shaped(&plan, &found, &[], Reached::default())?;
         self.inner_declared.insert((root, name), node);
         Some(node)
+    }
+
+    /// Whether an `inner` component has what the class of the `outer` one promises (MLS 5.4).
+    fn fits_outer(&mut self, node: NodeId, declared: &'a ast::Component, view: View) -> bool {
+        let Node::Object(inner) = *self.node(node) else { return true };
+        let key = (node, std::ptr::from_ref(declared));
+        if let Some(&known) = self.outer_checked.get(&key) {
+            return known;
+        }
+        let mut fits = true;
+        if let Ok(Found::Class(want)) = self.lookup_path(view, &declared.class) {
+            let (want, have) = (self.template(want.class, want.parent), self.scope(inner).template.clone());
+            let missing = want.elements.iter().find(|e| !e.protected && !have.by_name.contains_key(&e.name));
+            if let Some(missing) = missing.filter(|_| !want.broken && !have.broken) {
+                fits = false;
+                let name = declared.name.name;
+                let (want, have) = (self.library.full_name(want.class), self.library.full_name(have.class));
+                let message = format!("`inner {name}` is a `{have}`, but `outer {name}` needs a `{want}`");
+                let at = self.scope(inner).span;
+                self.report(
+                    Diagnostic::new(Code::NoInner, message)
+                        .at(at, format!("`{have}` has no `{}`", missing.name))
+                        .at(declared.name.span, "needed here")
+                        .help(format!("declare it with a class that extends `{want}`, or give it another name")),
+                );
+            }
+        }
+        self.outer_checked.insert(key, fits);
+        fits
     }
 
     /// Array dimensions; `:` is taken from the value.
@@ -544,6 +574,9 @@ impl<'a> Instance<'a, '_> {
             None if ty != Type::Real => Variability::Discrete,
             None => Variability::Continuous,
         };
+        if plan.declared.prefix.stream {
+            self.unsupported(plan.declared.name.span, "a `stream` variable");
+        }
         let attributes = self.attributes(args.iter().chain(chain), builtin, name);
         let mut data = VarData {
             name: name.to_string(),

@@ -62,7 +62,7 @@ impl<'a> Instance<'a, '_> {
         }
         let name = function.parts[0].name.name.as_str();
         if UNSUPPORTED.contains(&name) {
-            self.unsupported(span, &format!("`{name}()`"));
+            self.unsupported_function(span, name);
             return Some(None);
         }
         Some(match name {

@@ -26,6 +26,24 @@ impl<'a> Instance<'a, '_> {
         );
     }
 
+    /// A built-in function left out, with what to write instead.
+    pub(super) fn unsupported_function(&mut self, span: Span, name: &str) {
+        let advice = match name {
+            "delay" => {
+                "`Signal.PadeDelay` is near enough for slow signals, `Signal.SampledDelay` is exact for sampled ones"
+            }
+            "spatialDistribution" => "cut the line into a chain of volumes and resistances",
+            "inStream" | "actualStream" => "give the connector a potential and a flow for what is carried along",
+            "getInstanceName" => "write the name as a String parameter",
+            _ => "use `when sample(start, interval) then`, with `pre` for the value before",
+        };
+        self.report(
+            Diagnostic::new(Code::Unsupported, format!("`{name}()` is not supported"))
+                .at(span, "valid Modelica that bramah cannot use yet")
+                .help(advice),
+        );
+    }
+
     pub(super) fn unknown_class(&mut self, path: &ast::Path, class: ClassId) {
         let inside = self.library.full_name(class);
         self.report(
@@ -37,12 +55,21 @@ impl<'a> Instance<'a, '_> {
 
     pub(super) fn unknown_base(&mut self, path: &ast::Path, class: ClassId, parent: View) {
         let part = self.lookup_path(parent, path).err().unwrap_or(0);
+        if part == 0 && self.broken_import(parent, path.parts[0].name).is_some() {
+            self.unknown_class_at(parent, path, part);
+            return;
+        }
         let mut names = self.class_names_around(class);
         names.extend(self.class_names_at(parent));
         self.unknown_class_message(path, part, &names);
     }
 
     pub(super) fn unknown_class_at(&mut self, view: View, path: &ast::Path, part: usize) {
+        if let Some(import) = self.broken_import(view, path.parts[0].name).filter(|_| part == 0) {
+            let part = self.lookup_path(super::ROOT, &import).err().unwrap_or(0);
+            self.unknown_class_at(super::ROOT, &import, part);
+            return;
+        }
         let names = if part == 0 {
             self.class_names_at(view)
         } else {
@@ -53,6 +80,23 @@ impl<'a> Instance<'a, '_> {
             }
         };
         self.unknown_class_message(path, part, &names);
+    }
+
+    /// The import that should have brought a name, where its own path leads nowhere.
+    fn broken_import(&mut self, mut view: View, name: Symbol) -> Option<ast::Path> {
+        while view.scope != super::ROOT.scope {
+            let template = self.scope(view.scope).template.clone();
+            let base = template.bases.get(view.base as usize)?;
+            for import in &base.imports {
+                if let ast::Import::Single { alias, path } = import
+                    && alias.as_ref().or(path.parts.last()).is_some_and(|i| i.name == name)
+                {
+                    return Some(path.clone());
+                }
+            }
+            view = base.parent;
+        }
+        None
     }
 
     fn unknown_class_message(&mut self, path: &ast::Path, part: usize, names: &[Symbol]) {

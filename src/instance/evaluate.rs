@@ -219,7 +219,7 @@ impl<'a> Instance<'a, '_> {
                     let d = Diagnostic::new(
                         Code::SizeMismatch,
                         format!(
-                            "an array with an element [{}] is needed here, and this is {}",
+                            "an array of at least {} elements is needed here, and this is {}",
                             i + 1,
                             value.describe()
                         ),

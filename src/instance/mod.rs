@@ -209,6 +209,7 @@ pub struct Instance<'a, 'l> {
     dynamic_packages: Vec<(ClassRef<'a>, ScopeId)>,
     array_values: FxHashMap<(*const ast::Expr, View, bool), Val>,
     inner_declared: FxHashMap<(ScopeId, Symbol), NodeId>,
+    outer_checked: FxHashMap<(NodeId, *const ast::Component), bool>,
     procedures: FxHashMap<String, (crate::expr::FunctionId, Vec<Val>)>,
     variabilities: Vec<Variability>,
     eval: evaluate::State,

@@ -238,6 +238,9 @@ impl<'a> Instance<'a, '_> {
                 self.unknown_member(scope, name, p.name.span);
                 return Descent::Failed;
             };
+            if template.elements[i as usize].protected {
+                self.protected_element(scope, name, p.name.span);
+            }
             if matches!(template.elements[i as usize].kind, Kind::Class(_)) {
                 let owner = View { scope, base: 0 };
                 return match self.lookup(owner, name) {
@@ -277,6 +280,18 @@ impl<'a> Instance<'a, '_> {
         let own = inner.len();
         let dims = at.dims.iter().copied().chain(inner).collect();
         Descent::Nodes(Selection { dims, own, nodes })
+    }
+
+    fn protected_element(&mut self, scope: ScopeId, name: Symbol, span: Span) {
+        let (instance, class) = (self.scope(scope).name.clone(), self.scope(scope).template.class);
+        let class = self.library.full_name(class);
+        self.report(
+            Diagnostic::new(Code::UnknownName, format!("`{instance}.{name}` is protected"))
+                .at(span, format!("`{class}` keeps this element to itself"))
+                .instance(instance)
+                .class(class)
+                .help("use a public variable, or declare it above `protected` in its class"),
+        );
     }
 
     fn unknown_member(&mut self, scope: ScopeId, name: Symbol, span: Span) {

@@ -1,6 +1,6 @@
 //! `connect` equations to connection sets (MLS 9.2).
 
-use super::{Connection, FlowSet, Network, PotentialSet};
+use super::{Connection, FlowSet, Network, PotentialSet, SignalPair};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::flat::{Type, Variability};
 use crate::instance::lookup::Found;
@@ -8,6 +8,7 @@ use crate::instance::reference::Selection;
 use crate::instance::template::Kind;
 use crate::instance::{Instance, Node, NodeId, ScopeId, View};
 use crate::syntax::ast::{self, ClassBody, ClassKind, Equation, EquationKind, Expr, ExprKind};
+use crate::syntax::symbol::Symbol;
 use rustc_hash::FxHashMap;
 
 /// Disjoint sets over numbers given on demand.
@@ -138,6 +139,18 @@ impl Collector {
     fn connect<'a>(&mut self, instance: &mut Instance<'a, '_>, a: &'a Expr, b: &'a Expr, view: View, span: Span) {
         let (x, y) = (end(instance, a, view), end(instance, b, view));
         let (Some(Some(x)), Some(Some(y))) = (x, y) else { return };
+        if !all_ports(instance, &x, a.span) || !all_ports(instance, &y, b.span) {
+            return;
+        }
+        if x.selection.nodes == y.selection.nodes {
+            let name = instance.node_name(x.selection.nodes[0]);
+            instance.diagnostics.push(
+                Diagnostic::new(Code::BadConnect, format!("`{name}` is connected to itself"))
+                    .at(span, "both sides are the same port")
+                    .help("name the port of another component, or remove the line"),
+            );
+            return;
+        }
         if x.selection.dims != y.selection.dims {
             let text = crate::instance::value::size_text;
             instance.diagnostics.push(
@@ -219,6 +232,9 @@ impl Collector {
             return;
         }
         let flow = x.flow;
+        if x.causality.is_some() || y.causality.is_some() {
+            self.network.signals.push(SignalPair { a: a.0, b: b.0, span: at.span, scope: at.scope });
+        }
         let sets = if flow { &mut self.flows } else { &mut self.potentials };
         let side = |s: (u32, bool)| if flow { s } else { (s.0, false) };
         let i = sets.key(side(a), at.span, at.scope);
@@ -288,6 +304,80 @@ fn end<'a>(instance: &mut Instance<'a, '_>, e: &'a Expr, view: View) -> Option<O
     Some(Some(End { selection, outside }))
 }
 
+/// Says so if an end is no port.
+fn all_ports(instance: &mut Instance<'_, '_>, end: &End, span: Span) -> bool {
+    let Some(&node) = end.selection.nodes.iter().find(|&&n| !is_port(instance, n)) else { return true };
+    let name = instance.node_name(node);
+    let mut d = Diagnostic::new(Code::BadConnect, "only ports can be connected");
+    d = match instance.node(node) {
+        Node::Object(scope) => {
+            let template = instance.scope(*scope).template.clone();
+            let class = instance.library.full_name(template.class);
+            let ports = port_names(instance, *scope);
+            let d = d.at(span, format!("`{name}` is a component of class `{class}`"));
+            match ports.first() {
+                Some(first) => d
+                    .help(format!("name one of its ports: {}", ports.join(", ")))
+                    .note(format!("for instance `connect({name}.{}, ...)`", first.trim_matches('`'))),
+                None => d.help("it has no ports"),
+            }
+        }
+        _ => d.at(span, format!("`{name}` is a variable")).help("write an equation instead of `connect`"),
+    };
+    instance.diagnostics.push(d);
+    false
+}
+
+/// The ports of a component, in backticks.
+fn port_names(instance: &mut Instance<'_, '_>, scope: ScopeId) -> Vec<String> {
+    let template = instance.scope(scope).template.clone();
+    let mut names = Vec::new();
+    for (i, e) in (0u32..).zip(&template.elements) {
+        let public = matches!(e.kind, Kind::Component(_)) && !e.protected;
+        if let Some(node) = public.then(|| instance.component(scope, i)).flatten()
+            && is_port(instance, node)
+        {
+            names.push(format!("`{}`", e.name));
+        }
+    }
+    names
+}
+
+fn is_port(instance: &mut Instance<'_, '_>, node: NodeId) -> bool {
+    match instance.node(node).clone() {
+        Node::Object(s) => {
+            let record = matches!(instance.scope(s).template.kind, ClassKind::Record { .. });
+            record || matches!(instance.scope(s).template.kind, ClassKind::Connector { .. })
+        }
+        Node::Array { elements, .. } => elements.first().is_none_or(|&e| is_port(instance, e)),
+        Node::Var(i) => {
+            let v = &instance.variables[i as usize];
+            let (scope, name) = (v.scope, v.name.clone());
+            let around = &instance.scope(scope).template.kind;
+            let inside = matches!(around, ClassKind::Connector { .. } | ClassKind::Record { .. });
+            inside || v.causality.is_some() || declared_as_connector(instance, scope, &name)
+        }
+    }
+}
+
+/// Whether a variable's type is a `connector` such as `connector Signal = Real`.
+fn declared_as_connector(instance: &mut Instance<'_, '_>, scope: ScopeId, name: &str) -> bool {
+    let last = name.rsplit('.').next().unwrap_or(name);
+    let last = Symbol::new(last.split('[').next().unwrap_or(last));
+    let template = instance.scope(scope).template.clone();
+    let Some(&index) = template.by_name.get(&last) else { return false };
+    let element = &template.elements[index as usize];
+    let Kind::Component(c) = element.kind else { return false };
+    match instance.lookup_path(View { scope, base: element.base }, &c.class) {
+        Ok(Found::Class(class)) => {
+            let t = instance.template(class.class, class.parent);
+            matches!(t.kind, ClassKind::Connector { .. })
+                || matches!(instance.library.class(class.class).kind, ClassKind::Connector { .. })
+        }
+        _ => false,
+    }
+}
+
 /// Whether an element is itself a connector, so that it is seen from inside its component.
 fn is_connector(instance: &mut Instance<'_, '_>, scope: ScopeId, index: u32, view: View) -> bool {
     if scope != view.scope {
@@ -312,9 +402,22 @@ fn mismatch(instance: &mut Instance<'_, '_>, a: NodeId, b: NodeId, at: &Place) {
     let (x, y) = (instance.node_name(a), instance.node_name(b));
     instance.diagnostics.push(
         Diagnostic::new(Code::DomainMismatch, format!("`{x}` and `{y}` are of different kinds and cannot be joined"))
-            .at(at.a, "")
-            .at(at.b, ""),
+            .at(at.a, what_it_is(instance, a))
+            .at(at.b, what_it_is(instance, b))
+            .help("connect ports of the same kind, or put a component between them that changes one into the other"),
     );
+}
+
+fn what_it_is(instance: &Instance<'_, '_>, node: NodeId) -> String {
+    match instance.node(node) {
+        Node::Var(i) => match instance.variables[*i as usize].causality {
+            Some(ast::Causality::Input) => "an input signal".into(),
+            Some(ast::Causality::Output) => "an output signal".into(),
+            None => "a variable".into(),
+        },
+        Node::Object(scope) => format!("a `{}`", instance.library.full_name(instance.scope(*scope).template.class)),
+        Node::Array { dims, .. } => format!("an array of size {}", crate::instance::value::size_text(dims)),
+    }
 }
 
 /// Ports whose variables have units of different dimension belong to different domains.
@@ -337,9 +440,9 @@ fn different_units(instance: &mut Instance<'_, '_>, a: u32, b: u32, at: &Place) 
             Code::DomainMismatch,
             format!("`{}` in `{ua}` and `{}` in `{ub}` cannot be joined", names[0], names[1]),
         )
-        .at(at.a, "")
-        .at(at.b, "")
-        .help("connect ports of the same domain"),
+        .at(at.a, format!("`{ua}`"))
+        .at(at.b, format!("`{ub}`"))
+        .help("put the component between them that turns the one into the other, such as a pump, a cylinder or a gear"),
     );
     true
 }

@@ -42,6 +42,19 @@ pub struct FlowSet {
     pub scope: ScopeId,
 }
 
+/// Two signals joined by a `connect`: indices into `Instance::variables`.
+#[derive(Clone, Copy, Debug)]
+pub struct SignalPair {
+    /// One variable.
+    pub a: u32,
+    /// The other.
+    pub b: u32,
+    /// The `connect`.
+    pub span: Span,
+    /// The instance in which it stands.
+    pub scope: ScopeId,
+}
+
 /// The connections of a model.
 #[derive(Clone, Debug, Default)]
 pub struct Network {
@@ -51,6 +64,8 @@ pub struct Network {
     pub potentials: Vec<PotentialSet>,
     /// Flow sums.
     pub flows: Vec<FlowSet>,
+    /// Joined inputs and outputs.
+    pub signals: Vec<SignalPair>,
     /// Flow variables of ports that nothing is connected to from outside.
     pub open: Vec<u32>,
 }

@@ -35,6 +35,7 @@ fn run(flat: &FlatModel, choice: &StateChoice, diagnostics: &mut Vec<Diagnostic>
     let mut draft = Draft::new(flat);
     let order = parameters::order(&mut draft)?;
     let values = parameters::values(&draft, &order);
+    diagnostics.extend(parameters::check(&draft, &order, &values));
     let mut known = Known::new(values.clone());
     make_discrete_equations(&mut draft);
     prefer_reinitialized(&mut draft);

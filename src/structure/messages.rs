@@ -6,7 +6,7 @@ use super::dulmage_mendelsohn::Part;
 use super::parameters::Known;
 use super::regularity::Singularity;
 use super::{Alias, Unknown};
-use crate::diag::{Code, Diagnostic, Severity};
+use crate::diag::{Code, Diagnostic, Severity, Span};
 use crate::expr::{ExprId, VarId};
 use crate::flat::{Equation, Origin, OriginKind};
 
@@ -278,8 +278,16 @@ impl Report<'_> {
                 format!("the {level} of {{{components}}} is determined once too often")
             }
         };
-        with_equations(self.draft, Diagnostic::new(Code::Overdetermined, message), &equations)
-            .help("two ideal sources cannot act on the same quantity: put a resistance or a storage between them, or remove one")
+        let made = with_equations(self.draft, Diagnostic::new(Code::Overdetermined, message), &equations);
+        let left: Vec<String> = self.variables(self.under()).iter().map(|&v| name(self.draft, v)).collect();
+        if owners.len() < 2 && !left.is_empty() {
+            return made
+                .help(format!("one of these equations is meant to determine {}, or is too much", listed(&left)));
+        }
+        if owners.len() < 2 {
+            return made.help("remove one of these equations");
+        }
+        made.help("two ideal sources cannot act on the same quantity: put a resistance or a storage between them, or remove one")
     }
 
     fn with_facts(&self, made: Diagnostic) -> Diagnostic {
@@ -321,7 +329,7 @@ impl Report<'_> {
     fn labelled(&self, mut made: Diagnostic, unknowns: &[VarId]) -> Diagnostic {
         for &v in unknowns.iter().take(MOST_ITEMS) {
             let variable = &self.draft.variables[v.index()];
-            made = made.at(variable.origin.span, format!("`{}` is undetermined", variable.name));
+            made = made.at(self.place(v), format!("`{}` is undetermined", variable.name));
         }
         match unknowns.first() {
             Some(&v) => {
@@ -348,6 +356,17 @@ impl Report<'_> {
         column.is_some_and(|c| {
             (0..overview.incidence.rows() as u32).all(|r| !overview.incidence.solvable(r).contains(&c))
         })
+    }
+
+    /// The declaration of a variable; of a connector's, that of the component with the connector.
+    fn place(&self, v: VarId) -> Span {
+        let origin = self.draft.variables[v.index()].origin;
+        if !self.has_flow(origin.instance) {
+            return origin.span;
+        }
+        let connector = &self.draft.instances[origin.instance as usize];
+        let component = &self.draft.instances[connector.parent as usize];
+        if component.name.is_empty() { connector.span } else { component.span }
     }
 
     /// All names of a quantity.

@@ -2,7 +2,7 @@
 
 use super::draft::{Draft, Role};
 use super::{blt, messages};
-use crate::diag::Diagnostic;
+use crate::diag::{Code, Diagnostic};
 use crate::expr::{ExprId, Exprs, Node, VarId};
 use crate::flat::Equation;
 use crate::flat::{OriginKind, Type};
@@ -95,6 +95,64 @@ pub(super) fn values(draft: &Draft, order: &[VarId]) -> Vec<f64> {
         };
     }
     values
+}
+
+/// Parameters whose value is no number (E217) or lies outside their range (E215).
+pub(super) fn check(draft: &Draft, order: &[VarId], values: &[f64]) -> Vec<Diagnostic> {
+    order.iter().filter_map(|&v| check_one(draft, v, values)).collect()
+}
+
+fn check_one(draft: &Draft, v: VarId, values: &[f64]) -> Option<Diagnostic> {
+    let variable = &draft.variables[v.index()];
+    let value = values[v.index()];
+    let known = |e: ExprId| {
+        if let Some(number) = draft.exprs.as_num(e) {
+            return Some(number);
+        }
+        let used = draft.exprs.dependencies(&[e]).vars;
+        used.iter().all(|u| values[u.index()].is_finite()).then(|| {
+            draft.exprs.eval(e, &mut |node| match node {
+                Node::Var(u) => values[u.index()],
+                _ => f64::NAN,
+            })
+        })
+    };
+    if !value.is_finite() {
+        let binding = variable.binding.filter(|&b| known(b).is_some_and(|x| !x.is_finite()))?;
+        let message = format!("`{}` = `{}` is not a finite number", variable.name, draft.text(binding));
+        let used: Vec<String> = draft
+            .exprs
+            .dependencies(&[binding])
+            .vars
+            .iter()
+            .map(|u| format!("`{}` is {}", draft.variables[u.index()].name, values[u.index()]))
+            .collect();
+        let made = Diagnostic::new(Code::Evaluation, message)
+            .at(variable.origin.span, "its value cannot be computed")
+            .instance(draft.instances[variable.origin.instance as usize].name.clone())
+            .help(
+                "check the numbers it is computed from: a division by zero, the root or logarithm of a negative number",
+            );
+        return Some(if used.is_empty() { made } else { made.note(used.join(", ")) });
+    }
+    let bound = |e: Option<ExprId>| e.and_then(known);
+    let (low, high) = (bound(variable.min), bound(variable.max));
+    let told = match (low, high) {
+        (Some(low), _) if value < low => format!("less than its `min`, {low}"),
+        (_, Some(high)) if value > high => format!("more than its `max`, {high}"),
+        _ => return None,
+    };
+    let unit = variable.unit.as_deref().map(|u| format!(" {u}")).unwrap_or_default();
+    let message = format!("`{}` is {value}{unit}, {told}{unit}", variable.name);
+    let mut made = Diagnostic::new(Code::OutOfRange, message);
+    let holder = &draft.instances[variable.origin.instance as usize];
+    if variable.origin.instance != 0 {
+        made = made.at(holder.span, "in this component").instance(holder.name.clone()).class(holder.class.clone());
+    }
+    Some(
+        made.at(variable.origin.span, "declared here")
+            .help("check the unit: a value in a model's text is in the unit of the variable, here without conversion"),
+    )
 }
 
 /// The start value of a type when none is given.

@@ -1,0 +1,4 @@
+//! E024 at 3: "`Hydraulic` is a package"
+model M
+  Hydraulic pump;
+end M;

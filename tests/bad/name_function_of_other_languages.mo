@@ -1,0 +1,6 @@
+//! E020 at 5: "`pow`"
+model M
+  Real x;
+equation
+  x = pow(time, 2);
+end M;

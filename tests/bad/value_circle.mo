@@ -1,0 +1,6 @@
+//! E214 at 3: "circle"
+model M
+  parameter Real a = 2*b;
+  parameter Real b = a + 1;
+  Real x = a;
+end M;
