@@ -76,6 +76,8 @@ pub mod solve;
 
 pub mod circuit;
 
+pub mod analysis;
+
 pub use circuit::{Circuit, Error, Simulation};
 
 pub mod plot;

@@ -14,6 +14,7 @@ mod modes;
 mod monitor;
 mod newton;
 mod output;
+mod point;
 mod report;
 mod restart;
 mod schedule;
@@ -23,6 +24,7 @@ mod state;
 
 pub use inputs::{Input, Interpolation};
 pub use output::{Sink, signals};
+pub use point::Point;
 pub use settings::{End, Settings, Statistics};
 pub use state::State;
 

@@ -1,0 +1,213 @@
+//! Parameters and inputs made states that stand still, outputs made states that add up: the Jacobian of the system so
+//! made holds every derivative of the original one.
+
+use crate::expr::visit::Substitution;
+use crate::expr::{ExprId, Exprs, Node, VarId};
+use crate::flat::{
+    Equation, FlatModel, Origin, OriginKind, StateSelect, Type, Variability, Variable, When, WhenAction,
+};
+
+/// A flat model whose chosen parameters and inputs are states with derivative 0, and whose outputs are the derivatives
+/// of further states.
+#[derive(Clone, Debug)]
+pub struct Lifted {
+    /// The model.
+    pub flat: FlatModel,
+    /// For each chosen parameter, in the order asked for.
+    pub parameters: Vec<Raised>,
+    /// For each top-level input, in declaration order.
+    pub inputs: Vec<Raised>,
+    /// For each output asked for: the state whose derivative it is.
+    pub outputs: Vec<VarId>,
+}
+
+/// A quantity that became a state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Raised {
+    /// The state.
+    pub state: VarId,
+    /// The parameter that holds its value at the start.
+    pub start: VarId,
+}
+
+/// Lifts `parameters`, all inputs and `outputs`. Parameters that depend on lifted ones become algebraic variables;
+/// attributes (`start`, `nominal`, bounds) keep reading the parameters' values at the start.
+pub fn lift(flat: &FlatModel, parameters: &[VarId], outputs: &[VarId]) -> Lifted {
+    let mut lift = Lift::new(flat.clone());
+    let raised: Vec<Raised> = parameters.iter().map(|&p| lift.parameter(p)).collect();
+    lift.dependents(parameters);
+    lift.substitute();
+    let inputs = (0..).map(VarId).zip(&flat.variables).filter(|(_, v)| v.input).map(|(v, _)| v);
+    let inputs: Vec<Raised> = inputs.map(|u| lift.input(u)).collect();
+    let outputs = outputs.iter().map(|&y| lift.output(y)).collect();
+    Lifted { flat: lift.flat, parameters: raised, inputs, outputs }
+}
+
+struct Lift {
+    flat: FlatModel,
+    replacements: Vec<(ExprId, ExprId)>,
+}
+
+impl Lift {
+    fn new(flat: FlatModel) -> Self {
+        Lift { flat, replacements: Vec::new() }
+    }
+
+    fn add(&mut self, variable: Variable) -> VarId {
+        let v = VarId(u32::try_from(self.flat.variables.len()).expect("fewer than 2^32 variables"));
+        self.flat.variables.push(variable);
+        v
+    }
+
+    /// A hidden variable like `of` under another name.
+    fn beside(&mut self, of: VarId, name: String, variability: Variability) -> VarId {
+        let model = &self.flat.variables[of.index()];
+        let origin = Origin { kind: OriginKind::Made, ..model.origin };
+        let variable = Variable {
+            name,
+            ty: Type::Real,
+            variability,
+            input: false,
+            output: false,
+            flow: false,
+            hidden: true,
+            binding: None,
+            start: None,
+            fixed: variability <= Variability::Parameter,
+            min: None,
+            max: None,
+            state_select: StateSelect::Default,
+            origin,
+            ..model.clone()
+        };
+        self.add(variable)
+    }
+
+    fn equation(&mut self, lhs: ExprId, rhs: ExprId, of: VarId) {
+        let origin = Origin { kind: OriginKind::Made, ..self.flat.variables[of.index()].origin };
+        self.flat.equations.push(Equation { lhs, rhs, origin });
+    }
+
+    /// `der(state) = 0` from the value of `start`.
+    fn stand_still(&mut self, state: VarId, start: VarId) {
+        let value = self.flat.exprs.var(start);
+        let variable = &mut self.flat.variables[state.index()];
+        variable.start = Some(value);
+        variable.fixed = true;
+        variable.state_select = StateSelect::Always;
+        let der = self.flat.exprs.der(state);
+        self.equation(der, Exprs::ZERO, state);
+    }
+
+    fn parameter(&mut self, p: VarId) -> Raised {
+        let name = format!("{} (free)", self.flat.variables[p.index()].name);
+        let state = self.beside(p, name, Variability::Continuous);
+        self.stand_still(state, p);
+        self.replace(p, state);
+        Raised { state, start: p }
+    }
+
+    fn replace(&mut self, old: VarId, new: VarId) {
+        let (old, new) = (self.flat.exprs.var(old), self.flat.exprs.var(new));
+        self.replacements.push((old, new));
+    }
+
+    /// Real parameters whose bindings read a lifted one, however indirectly.
+    fn dependents(&mut self, lifted: &[VarId]) {
+        let mut moved = vec![false; self.flat.variables.len()];
+        lifted.iter().for_each(|p| moved[p.index()] = true);
+        let mut found: Vec<(VarId, ExprId)> = Vec::new();
+        let mut grown = true;
+        while grown {
+            grown = false;
+            for (v, variable) in (0..).map(VarId).zip(&self.flat.variables) {
+                let real = variable.variability == Variability::Parameter && variable.ty == Type::Real;
+                if moved.get(v.index()).copied().unwrap_or(true) || !real {
+                    continue;
+                }
+                let Some(binding) = variable.binding else { continue };
+                if self.flat.exprs.variables(binding).iter().any(|w| moved.get(w.index()) == Some(&true)) {
+                    moved[v.index()] = true;
+                    found.push((v, binding));
+                    grown = true;
+                }
+            }
+        }
+        for &(v, _) in &found {
+            let name = format!("{} (dependent)", self.flat.variables[v.index()].name);
+            let new = self.beside(v, name, Variability::Continuous);
+            self.replace(v, new);
+        }
+        let mut substitution = Substitution::new(self.replacements.iter().copied());
+        for (v, binding) in found {
+            let old = self.flat.exprs.var(v);
+            let lhs = substitution.apply(&mut self.flat.exprs, old);
+            let rhs = substitution.apply(&mut self.flat.exprs, binding);
+            self.equation(lhs, rhs, v);
+        }
+    }
+
+    /// Puts the states in the place of their parameters in everything that holds during the run.
+    fn substitute(&mut self) {
+        let mut substitution = Substitution::new(self.replacements.drain(..));
+        let FlatModel { exprs, equations, initial_equations, whens, asserts, .. } = &mut self.flat;
+        let mut change = |e: &mut ExprId| *e = substitution.apply(exprs, *e);
+        for equation in equations.iter_mut().chain(initial_equations) {
+            change(&mut equation.lhs);
+            change(&mut equation.rhs);
+        }
+        asserts.iter_mut().for_each(|a| change(&mut a.condition));
+        whens.iter_mut().for_each(|w| change_when(w, &mut change));
+    }
+
+    fn input(&mut self, u: VarId) -> Raised {
+        let variable = &self.flat.variables[u.index()];
+        let binding = variable.binding.or(variable.start);
+        let name = format!("{} (start)", variable.name);
+        let start = self.beside(u, name, Variability::Parameter);
+        self.flat.variables[start.index()].binding = Some(binding.unwrap_or(Exprs::ZERO));
+        let variable = &mut self.flat.variables[u.index()];
+        variable.input = false;
+        variable.binding = None;
+        variable.variability = Variability::Continuous;
+        self.stand_still(u, start);
+        Raised { state: u, start }
+    }
+
+    fn output(&mut self, y: VarId) -> VarId {
+        let name = format!("integral of {}", self.flat.variables[y.index()].name);
+        let sum = self.beside(y, name, Variability::Continuous);
+        let variable = &mut self.flat.variables[sum.index()];
+        variable.start = Some(Exprs::ZERO);
+        variable.fixed = true;
+        variable.unit = None;
+        variable.state_select = StateSelect::Always;
+        let (der, value) = (self.flat.exprs.der(sum), self.flat.exprs.var(y));
+        self.equation(der, value, y);
+        sum
+    }
+}
+
+fn change_when(when: &mut When, change: &mut impl FnMut(&mut ExprId)) {
+    for branch in &mut when.branches {
+        branch.conditions.iter_mut().for_each(&mut *change);
+        for action in &mut branch.actions {
+            match action {
+                WhenAction::Assign { value, .. } | WhenAction::Reinit { value, .. } => change(value),
+                WhenAction::Assert(assert) => change(&mut assert.condition),
+                WhenAction::Terminate { .. } => {}
+            }
+        }
+    }
+}
+
+/// Whether a parameter's binding reads no other parameter: the roots of all parameter values.
+pub fn is_root(flat: &FlatModel, v: VarId) -> bool {
+    let variable = &flat.variables[v.index()];
+    let reads = |e: ExprId| {
+        let variables = flat.exprs.variables(e);
+        variables.iter().any(|w| flat.variables[w.index()].variability == Variability::Parameter)
+            || matches!(flat.exprs.node(e), Node::Time)
+    };
+    variable.variability == Variability::Parameter && variable.ty == Type::Real && !variable.binding.is_some_and(reads)
+}

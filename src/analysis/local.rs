@@ -1,0 +1,401 @@
+//! A model as x' = f(x, theta, u), y = g(x, theta, u) at one point: values, and exact derivatives by the system's own
+//! Jacobian. Algebraic unknowns are eliminated by the implicit function theorem.
+
+use super::lift::{Lifted, Raised};
+use crate::diag::Diagnostic;
+use crate::expr::VarId;
+use crate::lower::{Options, RowKind, System, lower};
+use crate::solve::Point;
+use crate::structure::{self, StateChoice};
+use nalgebra::{DMatrix, DVector};
+use std::sync::Arc;
+
+/// What is evaluated: n states x, m parameters theta, k inputs u, p outputs y.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// The lifted system; shared by all threads.
+    pub system: Arc<System>,
+    /// Columns of the system that are states of the model, and their variables.
+    states: Vec<(usize, VarId)>,
+    /// Parameters, then inputs.
+    raised: Vec<Place>,
+    /// How many of `raised` are parameters.
+    parameters: usize,
+    /// Columns whose derivatives are the outputs.
+    outputs: Vec<usize>,
+    /// Unknowns that are not explicit: algebraic columns (false) and columns whose derivative is torn (true).
+    implicit: Vec<(usize, bool)>,
+    /// What each entry of the system's Jacobian means.
+    roles: Vec<Role>,
+    /// Discrete variables or loops: values need the event blocks.
+    blocks: bool,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    column: usize,
+    negated: bool,
+    start: VarId,
+}
+
+/// Where a column stands among the independent and implicit quantities.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Role {
+    State(usize),
+    Raised(usize),
+    Implicit(usize),
+    Nothing,
+}
+
+/// Why there is no value.
+#[derive(Clone, Debug, thiserror::Error)]
+pub enum LocalError {
+    /// The equations have no solution there.
+    #[error("{}", .0.message)]
+    NoSolution(Box<Diagnostic>),
+    /// A value or derivative is not finite.
+    #[error("a value is not finite")]
+    NonFinite,
+    /// The algebraic part does not determine its unknowns.
+    #[error("the equations are singular")]
+    Singular,
+}
+
+impl From<Box<Diagnostic>> for LocalError {
+    fn from(d: Box<Diagnostic>) -> Self {
+        LocalError::NoSolution(d)
+    }
+}
+
+impl Plan {
+    /// Analyses and lowers a lifted model.
+    ///
+    /// # Errors
+    /// The diagnostics of the structural analysis.
+    pub fn new(lifted: &Lifted) -> Result<Plan, Vec<Diagnostic>> {
+        let checked = structure::analyze(&lifted.flat, &StateChoice::default());
+        let Some(dae) = checked.value else { return Err(checked.diagnostics) };
+        let system = Arc::new(lower(Arc::new(dae), &Options::default()));
+        Ok(Plan::of(system, lifted))
+    }
+
+    fn of(system: Arc<System>, lifted: &Lifted) -> Plan {
+        let raised: Vec<Place> = lifted.parameters.iter().chain(&lifted.inputs).map(|r| place(&system, r)).collect();
+        let outputs: Vec<usize> = lifted.outputs.iter().map(|&v| column(&system, v).0).collect();
+        let mut roles = vec![Role::Nothing; system.columns.len()];
+        raised.iter().enumerate().for_each(|(i, p)| roles[p.column] = Role::Raised(i));
+        let mut states = Vec::new();
+        let mut implicit = Vec::new();
+        for (j, c) in system.columns.iter().enumerate() {
+            if c.state && roles[j] == Role::Nothing && !outputs.contains(&j) {
+                roles[j] = Role::State(states.len());
+                states.push((j, c.variable));
+            }
+            if system.rows[j].kind != RowKind::Derivative {
+                if !c.state {
+                    roles[j] = Role::Implicit(implicit.len());
+                }
+                implicit.push((j, c.state));
+            }
+        }
+        let blocks = !implicit.is_empty() || !system.dae.discrete.is_empty();
+        let parameters = lifted.parameters.len();
+        Plan { system, states, raised, parameters, outputs, implicit, roles, blocks }
+    }
+
+    /// How many states.
+    pub fn states(&self) -> usize {
+        self.states.len()
+    }
+
+    /// The states' variables.
+    pub fn state_variables(&self) -> impl Iterator<Item = VarId> {
+        self.states.iter().map(|s| s.1)
+    }
+
+    /// How many parameters.
+    pub fn parameters(&self) -> usize {
+        self.parameters
+    }
+
+    /// How many inputs.
+    pub fn inputs(&self) -> usize {
+        self.raised.len() - self.parameters
+    }
+
+    /// How many outputs.
+    pub fn outputs(&self) -> usize {
+        self.outputs.len()
+    }
+
+    /// The values of the chosen parameters as the model gives them, SI.
+    pub fn parameter_values(&self) -> Vec<f64> {
+        let mut values = self.system.layout.values();
+        self.system.evaluate_parameters(&mut values, &[]);
+        self.raised[..self.parameters].iter().map(|p| values[self.system.layout.var(p.start)]).collect()
+    }
+}
+
+fn place(system: &System, raised: &Raised) -> Place {
+    let (column, negated) = column(system, raised.state);
+    Place { column, negated, start: raised.start }
+}
+
+/// The column of a state that may be an alias of another.
+fn column(system: &System, v: VarId) -> (usize, bool) {
+    let alias = system.dae.aliases.iter().find(|a| a.variable == v);
+    let (target, negated) = alias.map_or((v, false), |a| (a.target, a.negated));
+    let found = system.columns.iter().position(|c| c.state && c.variable == target);
+    (found.expect("a variable with stateSelect = always and an explicit derivative is a state"), negated)
+}
+
+/// Derivatives at a point. Columns of `b` and `d`: parameters, then inputs.
+#[derive(Clone, Debug)]
+pub struct Linearization {
+    /// d x' / d x, n by n.
+    pub a: DMatrix<f64>,
+    /// d x' / d (theta, u), n by m + k.
+    pub b: DMatrix<f64>,
+    /// d y / d x, p by n.
+    pub c: DMatrix<f64>,
+    /// d y / d (theta, u), p by m + k.
+    pub d: DMatrix<f64>,
+}
+
+/// A model that is evaluated point by point; one for each thread.
+#[derive(Debug)]
+pub struct Local {
+    plan: Arc<Plan>,
+    point: Point,
+    y: Vec<f64>,
+    yp: Vec<f64>,
+    residual: Vec<f64>,
+    entries: Vec<f64>,
+    torn_entries: Vec<f64>,
+    /// x' at the last point.
+    pub rates: Vec<f64>,
+    /// y at the last point.
+    pub outputs: Vec<f64>,
+    /// Derivatives at the last point.
+    pub linear: Linearization,
+}
+
+impl Local {
+    /// At the start of the model, with these parameters and inputs.
+    ///
+    /// # Errors
+    /// When the initial system has no solution.
+    pub fn start(plan: Arc<Plan>, time: f64, theta: &[f64], u: &[f64]) -> Result<Self, LocalError> {
+        let given = plan.raised.iter().zip(theta.iter().chain(u)).map(|(p, v)| (p.start, *v)).collect();
+        let point = Point::start(plan.system.clone(), time, given)?;
+        let (n, p, r) = (plan.states.len(), plan.outputs.len(), plan.raised.len());
+        let columns = plan.system.columns.len();
+        let entries = plan.system.pattern.nnz();
+        let linear = Linearization {
+            a: DMatrix::zeros(n, n),
+            b: DMatrix::zeros(n, r),
+            c: DMatrix::zeros(p, n),
+            d: DMatrix::zeros(p, r),
+        };
+        Ok(Local {
+            point,
+            y: vec![0.0; columns],
+            yp: vec![0.0; columns],
+            residual: vec![0.0; columns],
+            entries: vec![0.0; entries],
+            torn_entries: vec![0.0; entries],
+            rates: vec![0.0; n],
+            outputs: vec![0.0; p],
+            linear,
+            plan,
+        })
+    }
+
+    /// What is evaluated.
+    pub fn plan(&self) -> &Arc<Plan> {
+        &self.plan
+    }
+
+    /// The states at the last point.
+    pub fn state(&self) -> Vec<f64> {
+        let layout = &self.plan.system.layout;
+        self.plan.states.iter().map(|&(_, v)| self.point.values[layout.var(v)]).collect()
+    }
+
+    /// The usual size of each state, positive.
+    pub fn nominals(&self) -> Vec<f64> {
+        self.plan.states.iter().map(|&(_, v)| self.point.nominal(v)).collect()
+    }
+
+    /// The value of any variable at the last point.
+    pub fn value(&self, v: VarId) -> f64 {
+        self.point.values[self.plan.system.layout.var(v)]
+    }
+
+    /// Values of x' and y.
+    ///
+    /// # Errors
+    /// [`LocalError`]; the values are then meaningless.
+    pub fn evaluate(&mut self, time: f64, x: &[f64], theta: &[f64], u: &[f64]) -> Result<(), LocalError> {
+        let Local { plan, point, y, yp, residual, .. } = self;
+        let system = &plan.system;
+        for (&(column, _), &value) in plan.states.iter().zip(x) {
+            y[column] = value;
+        }
+        for (place, &value) in plan.raised.iter().zip(theta.iter().chain(u)) {
+            y[place.column] = if place.negated { -value } else { value };
+        }
+        if plan.blocks {
+            for (j, c) in system.columns.iter().enumerate().filter(|(_, c)| c.state) {
+                point.values[system.layout.var(c.variable)] = y[j];
+            }
+            point.settle(time)?;
+            for (j, c) in system.columns.iter().enumerate() {
+                y[j] = point.values[system.layout.var(c.variable)];
+                yp[j] = if c.state { point.values[system.layout.der(c.variable).expect("a state")] } else { 0.0 };
+            }
+        } else {
+            yp.fill(0.0);
+            system.residual(time, y, yp, &mut point.values, residual).map_err(|_| LocalError::NonFinite)?;
+            yp.iter_mut().zip(residual.iter()).for_each(|(yp, r)| *yp = -r);
+        }
+        for (rate, &(column, _)) in self.rates.iter_mut().zip(&plan.states) {
+            *rate = yp[column];
+        }
+        for (output, &column) in self.outputs.iter_mut().zip(&plan.outputs) {
+            *output = yp[column];
+        }
+        let finite = self.rates.iter().chain(&self.outputs).all(|v| v.is_finite());
+        if finite { Ok(()) } else { Err(LocalError::NonFinite) }
+    }
+
+    /// Values and derivatives.
+    ///
+    /// # Errors
+    /// [`LocalError`]; values and derivatives are then meaningless.
+    pub fn linearize(&mut self, time: f64, x: &[f64], theta: &[f64], u: &[f64]) -> Result<(), LocalError> {
+        self.evaluate(time, x, theta, u)?;
+        let Local { plan, point, y, yp, entries, torn_entries, .. } = self;
+        let system = &plan.system;
+        system.jacobian(time, 0.0, y, yp, &mut point.values, entries).map_err(|_| LocalError::NonFinite)?;
+        let torn = plan.implicit.iter().any(|i| i.1);
+        if torn {
+            system.jacobian(time, 1.0, y, yp, &mut point.values, torn_entries).map_err(|_| LocalError::NonFinite)?;
+        }
+        self.scatter();
+        if self.plan.implicit.is_empty() { Ok(()) } else { self.eliminate(torn) }
+    }
+
+    /// The explicit part: minus the entries of rows `der(x) - value`.
+    fn scatter(&mut self) {
+        let Local { plan, entries, linear, .. } = self;
+        let Linearization { a, b, c, d } = linear;
+        for m in [&mut *a, &mut *b, &mut *c, &mut *d] {
+            m.fill(0.0);
+        }
+        let pattern = &plan.system.pattern;
+        let signs: Vec<f64> = plan.raised.iter().map(|p| if p.negated { -1.0 } else { 1.0 }).collect();
+        for (column, role) in plan.roles.iter().enumerate() {
+            for k in pattern.colptr[column]..pattern.colptr[column + 1] {
+                let value = -entries[k];
+                match (plan.target(pattern.rowidx[k]), *role) {
+                    (Target::Rate(i), Role::State(j)) => a[(i, j)] = value,
+                    (Target::Rate(i), Role::Raised(j)) => b[(i, j)] = value * signs[j],
+                    (Target::Output(i), Role::State(j)) => c[(i, j)] = value,
+                    (Target::Output(i), Role::Raised(j)) => d[(i, j)] = value * signs[j],
+                    _ => {}
+                }
+            }
+        }
+    }
+
+    /// Adds what goes through the implicit unknowns.
+    fn eliminate(&mut self, torn: bool) -> Result<(), LocalError> {
+        let Local { plan, entries, torn_entries, linear, .. } = self;
+        let (n, r, p, q) = (plan.states.len(), plan.raised.len(), plan.outputs.len(), plan.implicit.len());
+        let mut rows = vec![None; plan.system.columns.len()];
+        plan.implicit.iter().enumerate().for_each(|(i, &(row, _))| rows[row] = Some(i));
+        let mut unknown = DMatrix::zeros(q, q);
+        let mut known = DMatrix::zeros(q, n + r);
+        // how rates and outputs depend on the unknowns
+        let mut through = DMatrix::zeros(n + p, q);
+        let pattern = &plan.system.pattern;
+        let mut implicit_of = vec![None; plan.system.columns.len()];
+        plan.implicit.iter().enumerate().filter(|(_, i)| i.1).for_each(|(i, &(c, _))| implicit_of[c] = Some(i));
+        for column in 0..plan.roles.len() {
+            for k in pattern.colptr[column]..pattern.colptr[column + 1] {
+                let row = pattern.rowidx[k];
+                let value = entries[k];
+                let target = match plan.target(row) {
+                    Target::Rate(i) => Some(i),
+                    Target::Output(i) => Some(n + i),
+                    Target::Other => None,
+                };
+                match (rows[row], plan.roles[column]) {
+                    (Some(i), Role::State(j)) => known[(i, j)] = value,
+                    (Some(i), Role::Raised(j)) => {
+                        known[(i, n + j)] = if plan.raised[j].negated { -value } else { value };
+                    }
+                    (Some(i), Role::Implicit(j)) => unknown[(i, j)] = value,
+                    (None, Role::Implicit(j)) => {
+                        if let Some(t) = target {
+                            through[(t, j)] = -value;
+                        }
+                    }
+                    _ => {}
+                }
+                if torn && let Some(j) = implicit_of[column] {
+                    let value = torn_entries[k] - entries[k];
+                    match (rows[row], target) {
+                        (Some(i), _) => unknown[(i, j)] += value,
+                        // the rate of a state that is not torn, read by another row
+                        (None, Some(t)) => through[(t, j)] -= value,
+                        (None, None) => {}
+                    }
+                }
+            }
+        }
+        let solution = unknown.lu().solve(&known).ok_or(LocalError::Singular)?;
+        let through_all = &through * &solution;
+        let Linearization { a, b, c, d } = linear;
+        *a -= through_all.view((0, 0), (n, n));
+        *b -= through_all.view((0, n), (n, r));
+        *c -= through_all.view((n, 0), (p, n));
+        *d -= through_all.view((n, n), (p, r));
+        for (i, &(column, torn)) in plan.implicit.iter().enumerate() {
+            if torn && let Role::State(k) = plan.roles[column] {
+                a.row_mut(k).copy_from(&(-solution.row(i).columns(0, n)));
+                b.row_mut(k).copy_from(&(-solution.row(i).columns(n, r)));
+            }
+        }
+        let finite = a.iter().chain(b.iter()).chain(c.iter()).chain(d.iter()).all(|v| v.is_finite());
+        if finite { Ok(()) } else { Err(LocalError::NonFinite) }
+    }
+
+    /// x' as a vector.
+    pub fn rate_vector(&self) -> DVector<f64> {
+        DVector::from_column_slice(&self.rates)
+    }
+}
+
+/// What a row computes.
+enum Target {
+    Rate(usize),
+    Output(usize),
+    Other,
+}
+
+impl Plan {
+    fn target(&self, row: usize) -> Target {
+        if self.system.rows[row].kind != RowKind::Derivative {
+            return Target::Other;
+        }
+        match self.roles[row] {
+            Role::State(i) => Target::Rate(i),
+            _ => self.outputs.iter().position(|&o| o == row).map_or(Target::Other, Target::Output),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,7 @@
+//! What is asked of a model beyond one run: derivatives of its right-hand side, and all that stands on them.
+
+pub mod lift;
+pub mod local;
+
+pub use lift::{Lifted, lift};
+pub use local::{Local, LocalError};
