@@ -84,4 +84,6 @@ pub mod plot;
 
 pub mod experiment;
 
+pub mod study;
+
 pub mod cli;

@@ -43,6 +43,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ),
     ("plot", &["network", "results", "units"]),
     ("experiment", &["diag", "results", "units"]),
+    ("study", &["compile", "diag", "expr", "flat", "results", "solve", "units", "world"]),
 ];
 
 /// The one file besides `cli` that reads a clock, for the statistics of a run.

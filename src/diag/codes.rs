@@ -111,6 +111,8 @@ codes! {
     BadData = "E601", Error, "a data file cannot be used";
     BadExperiment = "E602", Error, "an experiment file cannot be used";
     LargeResult = "N603", Note, "the result will be large";
+    BadStudy = "E604", Error, "a study cannot be used";
+    StuckSignal = "W605", Warning, "a measured signal never changes";
     // 9xx command line
     BadArgument = "E901", Error, "an argument cannot be used";
     FileAccess = "E902", Error, "a file cannot be read or written";

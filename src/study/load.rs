@@ -1,0 +1,162 @@
+//! Recordings read, checked and converted to the units of the model.
+
+use super::bind::{Bound, conversion};
+use super::table::at;
+use super::{RecordingFile, Role};
+use crate::diag::{Checked, Code, Diagnostic, Sources, Span};
+use crate::results::{Strictness, Trajectory, number, read_csv};
+use crate::world::World;
+use std::path::Path;
+
+/// One recording in the units of the model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recording {
+    /// The file as the study names it.
+    pub file: String,
+    /// What it is for.
+    pub role: Role,
+    /// Times of the samples in seconds, growing.
+    pub times: Vec<f64>,
+    /// One column an entry of [`Bound::inputs`], each as long as `times`, without NaN.
+    pub inputs: Vec<Vec<f64>>,
+    /// One column an entry of [`Bound::signals`], each as long as `times`, with the sign applied. NaN where nothing
+    /// was measured.
+    pub signals: Vec<Vec<f64>>,
+}
+
+impl Bound {
+    /// Reads the recordings of one role. File names are taken relative to `data`, or to the folder of the study.
+    ///
+    /// Texts are added to `sources`. Optional recordings that do not exist are left out.
+    ///
+    /// # Errors
+    /// [`Code::BadStudy`] for files that are not there or hold nothing in the window; [`Code::BadData`] for missing
+    /// columns, times that do not grow, gaps, inputs with empty cells, columns without any number or in a unit that
+    /// cannot be converted. A signal that never changes is a warning.
+    pub fn load(
+        &self,
+        world: &dyn World,
+        data: Option<&Path>,
+        role: Role,
+        sources: &mut Sources,
+    ) -> Checked<Vec<Recording>> {
+        let mut loader = Loader { bound: self, role, sources, diagnostics: Vec::new() };
+        let mut found = Vec::new();
+        for file in self.recordings.iter().filter(|r| r.role == role) {
+            let path = data.unwrap_or(&self.folder).join(&file.file);
+            found.extend(loader.recording(world, file, &path));
+        }
+        if found.is_empty() && role == Role::Train && loader.diagnostics.is_empty() {
+            let d = Diagnostic::new(Code::BadStudy, "there is no recording to fit to");
+            loader.diagnostics.push(d.help("give at least one existing recording the role `train`"));
+        }
+        if loader.diagnostics.iter().any(Diagnostic::is_error) {
+            Checked::failed(loader.diagnostics)
+        } else {
+            Checked::new(found, loader.diagnostics)
+        }
+    }
+
+    /// True where the study has recordings of this role.
+    pub fn has(&self, role: Role) -> bool {
+        self.recordings.iter().any(|r| r.role == role)
+    }
+
+    /// The files of the study and their roles, in its order.
+    pub fn files(&self) -> impl Iterator<Item = (&str, Role)> {
+        self.recordings.iter().map(|r| (r.file.as_str(), r.role))
+    }
+}
+
+/// The sensors' ranges in the units of the variables: as the study says, or peak to peak over `train`.
+pub fn full_scales(bound: &Bound, train: &[Recording]) -> Vec<f64> {
+    let range = |k: usize| {
+        let values = || train.iter().flat_map(|r| r.signals[k].iter().copied()).filter(|v| !v.is_nan());
+        values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
+    };
+    bound.signals.iter().enumerate().map(|(k, s)| s.full_scale.unwrap_or_else(|| range(k))).collect()
+}
+
+struct Loader<'a> {
+    bound: &'a Bound,
+    role: Role,
+    sources: &'a mut Sources,
+    diagnostics: Vec<Diagnostic>,
+}
+
+impl Loader<'_> {
+    fn recording(&mut self, world: &dyn World, file: &RecordingFile, path: &Path) -> Option<Recording> {
+        let text = match world.read(path) {
+            Ok(text) => text,
+            Err(_) if file.optional => return None,
+            Err(why) => {
+                let text = format!("the recording `{}` cannot be read: {why}", path.display());
+                self.diagnostics.push(at(file.span, text, "named here"));
+                return None;
+            }
+        };
+        let id = self.sources.add(path.display().to_string(), text);
+        let head = Span { file: id, start: 0, end: 0 };
+        let inputs: Vec<String> = self.bound.inputs.iter().map(|i| i.entry.column.clone()).collect();
+        let outputs: Vec<String> = self.bound.signals.iter().map(|s| s.entry.column.clone()).collect();
+        let strictness = Strictness::Recording { inputs: &inputs, outputs: &outputs };
+        let mut table = read_csv(self.sources, id, file.time.as_deref(), strictness).sink(&mut self.diagnostics)?;
+        if let Some((from, to)) = file.window {
+            table.keep(from..=to);
+        }
+        if table.len() < 2 {
+            let text = format!("the recording `{}` has {} samples in its window", file.file, table.len());
+            self.diagnostics.push(at(file.span, text, "too few to use"));
+            return None;
+        }
+        Some(self.converted(file, table, head))
+    }
+
+    fn converted(&mut self, file: &RecordingFile, table: Trajectory, head: Span) -> Recording {
+        let count = self.bound.inputs.len();
+        let mut columns = table.columns.into_iter();
+        let mut inputs = Vec::new();
+        for (input, values) in self.bound.inputs.iter().zip(columns.by_ref()) {
+            let said = &table.signals[inputs.len()].unit;
+            let unit = input.entry.unit.as_deref().unwrap_or(said);
+            inputs.push(self.in_unit(values, unit, &input.unit, 1.0, &input.entry.column, head));
+        }
+        let mut signals = Vec::new();
+        for (signal, values) in self.bound.signals.iter().zip(columns) {
+            let said = &table.signals[count + signals.len()].unit;
+            let unit = signal.entry.unit.as_deref().unwrap_or(said);
+            let values = self.in_unit(values, unit, &signal.unit, signal.entry.sign, &signal.entry.column, head);
+            self.check_signal(&values, &signal.entry.column, head);
+            signals.push(values);
+        }
+        Recording { file: file.file.clone(), role: self.role, times: table.times, inputs, signals }
+    }
+
+    fn in_unit(&mut self, values: Vec<f64>, from: &str, to: &str, sign: f64, column: &str, head: Span) -> Vec<f64> {
+        match conversion(from, to) {
+            Ok(None) => values.into_iter().map(|v| sign * v).collect(),
+            Ok(Some((own, wanted))) => {
+                values.into_iter().map(|v| sign * own.convert(v, &wanted).unwrap_or(f64::NAN)).collect()
+            }
+            Err(()) => {
+                let text = format!("the column `{column}` is in `{from}`, which cannot be converted to `{to}`");
+                self.diagnostics.push(Diagnostic::new(Code::BadData, text).at(head, "in this file"));
+                values
+            }
+        }
+    }
+
+    fn check_signal(&mut self, values: &[f64], column: &str, head: Span) {
+        let mut known = values.iter().copied().filter(|v| !v.is_nan());
+        let Some(first) = known.next() else {
+            let d = Diagnostic::new(Code::BadData, format!("the column `{column}` holds no number"));
+            self.diagnostics.push(d.at(head, "in this file"));
+            return;
+        };
+        if known.all(|v| v == first) {
+            let text = format!("the column `{column}` never changes: it is {} throughout", number::text(first));
+            let d = Diagnostic::new(Code::StuckSignal, text).at(head, "in this file");
+            self.diagnostics.push(d.help("is the sensor connected? Take the signal out of the study if not"));
+        }
+    }
+}

@@ -1,0 +1,155 @@
+use super::*;
+use crate::diag::render::short_list;
+use crate::world::MemoryWorld;
+
+const MODEL: &str = "
+model Tank
+  input Real u(unit = \"m3/s\");
+  input Real T(unit = \"K\") = 300;
+  parameter Real A(unit = \"m2\") = 1;
+  parameter Real k(unit = \"m3/(s.Pa)\") = 1e-6;
+  parameter Integer n = 2;
+  Real p(unit = \"Pa\", start = 0, fixed = true);
+equation
+  A*der(p) = 1e4*u - k*p;
+end Tank;";
+
+const STUDY: &str = r#"version = 1
+model = "Tank.mo"
+class = "Tank"
+[inputs]
+u = { column = "q", unit = "l/min" }
+[signals]
+p1 = { variable = "p", column = "level", unit = "bar", sign = -1, full_scale = "2 bar", accuracy = "0.5 %" }
+[[recordings]]
+file = "a.csv"
+time = "t_s"
+window = [0.0, 2.5]
+[[recordings]]
+file = "b.csv"
+role = "held"
+[[recordings]]
+file = "c.csv"
+optional = true
+[parameters]
+A = { sigma = "3 %", min = "10 dm2" }
+"k" = "exact"
+[effects]
+exclude = ["backlash"]
+"#;
+
+const RECORDING: &str = "t_s,q,level,T\n0,60,0,1\n1,60,-1,1\n2,120,,1\n3,120,-3,1\n";
+
+fn world(study: &str) -> MemoryWorld {
+    let mut world = MemoryWorld::default();
+    world.add("lab/Tank.mo", MODEL);
+    world.add("lab/study.toml", study);
+    world.add("lab/a.csv", RECORDING);
+    world
+}
+
+/// Reads, binds and loads the training recordings; hands out what was made and what was said.
+fn load(world: &MemoryWorld) -> (Option<(Bound, Vec<Recording>)>, String) {
+    let mut sources = Sources::default();
+    let mut said = Vec::new();
+    let made = (|| {
+        let study = Study::read(world, Path::new("lab/study.toml"), &mut sources).sink(&mut said)?;
+        let flat = crate::flatten(world, &study.request()).value.expect("the model is right").flat;
+        let bound = study.bind(&flat).sink(&mut said)?;
+        let recordings = bound.load(world, None, Role::Train, &mut sources).sink(&mut said)?;
+        Some((bound, recordings))
+    })();
+    (made, short_list(&sources, &said))
+}
+
+#[test]
+fn a_study_becomes_recordings_in_the_units_of_the_model() {
+    let (made, said) = load(&world(STUDY));
+    assert_eq!(said, "");
+    let (bound, recordings) = made.unwrap();
+    assert_eq!(recordings.len(), 1);
+    let r = &recordings[0];
+    assert_eq!(
+        (r.times.as_slice(), r.inputs[0].as_slice()),
+        ([0.0, 1.0, 2.0].as_slice(), [1e-3, 1e-3, 2e-3].as_slice())
+    );
+    assert_eq!(r.signals[0][..2], [0.0, 1e5]);
+    assert!(r.signals[0][2].is_nan());
+    assert_eq!(full_scales(&bound, &recordings), [2e5]);
+    assert_eq!(bound.signals[0].deviation(2e5), Some(1e3));
+    let a = &bound.parameters[0];
+    assert_eq!((a.knowledge, a.min, a.max), (Knowledge::Relative(0.03), Some(0.1), None));
+    assert_eq!(bound.parameters[1].knowledge, Knowledge::Exact);
+}
+
+#[test]
+fn held_recordings_are_read_only_when_asked_for() {
+    let mut world = world(STUDY);
+    let bound = load(&world).0.unwrap().0;
+    let held = |world: &MemoryWorld| bound.load(world, Some(Path::new("lab")), Role::Held, &mut Sources::default());
+    assert!(bound.has(Role::Held) && held(&world).value.is_none());
+    world.add("lab/b.csv", "t,q,level\n0,1,2\n1,1,3\n");
+    assert_eq!(held(&world).value.unwrap()[0].signals[0], [-2e5, -3e5]);
+}
+
+#[test]
+fn mistakes_are_shown_at_their_place() {
+    let changes = [
+        ("version = 1", "version = 2"),
+        ("version = 1", ""),
+        ("model = \"Tank.mo\"", "modl = \"Tank.mo\""),
+        ("column = \"q\", unit = \"l/min\"", "colum = \"q\""),
+        ("unit = \"bar\", sign", "unit = \"barr\", sign"),
+        ("sign = -1", "sign = 2"),
+        ("\"2 bar\"", "\"2 N\""),
+        ("\"0.5 %\"", "\"-1 %\""),
+        ("variable = \"p\"", "variable = \"pp\""),
+        ("variable = \"p\"", "variable = \"A\""),
+        ("unit = \"bar\", sign", "unit = \"N\", sign"),
+        ("u = { column = \"q\", unit = \"l/min\" }", ""),
+        ("u = {", "v = {"),
+        ("column = \"q\"", "column = \"Q\""),
+        ("\"a.csv\"", "\"z.csv\""),
+        ("time = \"t_s\"", "time = \"tt\""),
+        ("window = [0.0, 2.5]", "window = [2.5, 0.0]"),
+        ("window = [0.0, 2.5]", "window = [20.0, 25.0]"),
+        ("role = \"held\"", "role = \"test\""),
+        ("optional = true", "optional = 1"),
+        ("A = { sigma = \"3 %\", min = \"10 dm2\" }", "B = { sigma = \"3 %\" }"),
+        ("A = { sigma = \"3 %\", min = \"10 dm2\" }", "A = 3"),
+        ("A = { sigma = \"3 %\", min = \"10 dm2\" }", "n = { min = 1 }"),
+        ("min = \"10 dm2\"", "min = 2, max = 1"),
+        ("min = \"10 dm2\"", "min = \"1 s\""),
+        ("exclude = [\"backlash\"]", "exclud = []"),
+        ("exclude = [\"backlash\"]", "exclude = \"x"),
+    ];
+    let said = changes.map(|(from, to)| {
+        assert!(STUDY.contains(from), "{from}");
+        format!("{to}\n{}\n", load(&world(&STUDY.replacen(from, to, 1))).1)
+    });
+    insta::assert_snapshot!(said.join(""));
+}
+
+#[test]
+fn bad_columns() {
+    let texts = [
+        "t_s,q,level\n0,1,2\n1,1,2\n",
+        "t_s,q,level\n0,1,\n1,1,\n",
+        "t_s,q,level\n0,1,1\n0,1,2\n",
+        "t_s,q,level\n0,,1\n1,1,2\n",
+        "t_s,q,level\n0,1,1\n1,1,x\n",
+    ];
+    let said = texts.map(|text| {
+        let mut world = world(STUDY);
+        world.add("lab/a.csv", text);
+        load(&world).1
+    });
+    insta::assert_snapshot!(said.join(""));
+}
+
+proptest::proptest! {
+    #[test]
+    fn never_panics(text in "(?s)(version|inputs|\\[|\\]|recordings|file|=|\\{|\\}|\"|\\.|1|a|\n|,){0,30}") {
+        load(&world(&text));
+    }
+}
