@@ -58,6 +58,7 @@ pub(super) struct Recorder {
     failure: Option<Failure>,
     written: usize,
     count: usize,
+    unread: bool,
 }
 
 impl Recorder {
@@ -69,7 +70,8 @@ impl Recorder {
             Target::Stdout => None,
         };
         let rows = Trajectory::new(signals);
-        let mut recorder = Recorder { target, csv: None, file, rows, keep, failure: None, written: 0, count: 0 };
+        let mut recorder =
+            Recorder { target, csv: None, file, rows, keep, failure: None, written: 0, count: 0, unread: false };
         recorder.open_csv();
         Ok(recorder)
     }
@@ -90,9 +92,10 @@ impl Recorder {
     }
 
     fn fail(&mut self, error: &std::io::Error) {
-        if error.kind() != std::io::ErrorKind::BrokenPipe {
-            let path = PathBuf::from(self.target.name());
-            self.failure = Some(access(&path, "written", error));
+        if error.kind() == std::io::ErrorKind::BrokenPipe {
+            self.unread = true;
+        } else {
+            self.failure = Some(access(&PathBuf::from(self.target.name()), "written", error));
         }
         self.csv = None;
     }
@@ -105,7 +108,12 @@ impl Recorder {
         if waiting > BUFFER_BYTES {
             self.flush();
         }
-        self.failure.is_none()
+        self.failure.is_none() && !self.unread
+    }
+
+    /// True when the reader of stdout has gone away (`| head`): nothing is left to do, and nothing is wrong.
+    pub fn is_unread(&self) -> bool {
+        self.unread
     }
 
     /// Writes what waits.

@@ -74,6 +74,9 @@ fn execute(experiment: &Experiment, record: &mut Record, messages: &mut Messages
     let recorder = Recorder::new(target.clone(), signals, experiment.plot.is_some())?;
     let (run, recorder) = solve(&model, &settings, &recorded, recorder);
     fill(record, &run);
+    if recorder.is_unread() {
+        return Ok(Ending::Fine);
+    }
     let rows = recorder.rows();
     let outcome = recorder.finish();
     report(&run, rows, &target, messages);

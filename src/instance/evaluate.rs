@@ -52,8 +52,10 @@ pub fn override_text(value: &str) -> String {
         return value.to_string();
     }
     let trimmed = value.trim();
-    let split = trimmed.find(|c: char| c.is_whitespace()).unwrap_or(trimmed.len());
+    let is_number = |i: &usize| trimmed.get(..*i).is_some_and(|t| t.trim_end().parse::<f64>().is_ok());
+    let split = (1..=trimmed.len().min(60)).rev().find(is_number).unwrap_or(trimmed.len());
     let (number, unit) = trimmed.split_at(split);
+    let number = number.trim_end();
     match number.parse::<f64>() {
         Ok(_) if !unit.trim().is_empty() => {
             format!("{QUANTITY}({number}, \"{}\")", unit.trim().replace(['\\', '"'], ""))

@@ -53,18 +53,47 @@ pub struct Grid {
     start: f64,
     stop: f64,
     interval: f64,
+    /// Start and interval as whole numbers of this part of a second, where they are decimal numbers: then the k-th time
+    /// is the number nearest to its decimal notation, 0.3 and not 0.30000000000000004.
+    decimal: Option<Decimal>,
     next: u64,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Decimal {
+    start: f64,
+    interval: f64,
+    parts: f64,
+}
+
+impl Decimal {
+    fn new(start: f64, interval: f64) -> Option<Self> {
+        let whole = |x: f64| (x.abs() < 1e12 && (x - x.round()).abs() <= 1e-12 * x.abs()).then(|| x.round());
+        [1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9].into_iter().find_map(|parts| {
+            let (start, interval) = (whole(start * parts)?, whole(interval * parts)?);
+            (interval > 0.0).then_some(Decimal { start, interval, parts })
+        })
+    }
+
+    fn time(&self, k: u64) -> f64 {
+        (self.start + k as f64 * self.interval) / self.parts
+    }
 }
 
 impl Grid {
     /// Standing at the first row.
     pub fn new(start: f64, stop: f64, interval: f64) -> Self {
-        Grid { start, stop, interval: if interval > 0.0 { interval } else { f64::INFINITY }, next: 0 }
+        let interval = if interval > 0.0 { interval } else { f64::INFINITY };
+        Grid { start, stop, interval, decimal: Decimal::new(start, interval), next: 0 }
     }
 
     /// The next output time; infinite when all rows are out.
     pub fn next(&self) -> f64 {
-        let t = if self.next == 0 { self.start } else { self.start + self.next as f64 * self.interval };
+        let t = match &self.decimal {
+            _ if self.next == 0 => self.start,
+            Some(decimal) => decimal.time(self.next),
+            None => self.start + self.next as f64 * self.interval,
+        };
         if t < self.stop && !same_time(t, self.stop) {
             t
         } else if self.next == u64::MAX {
@@ -105,5 +134,8 @@ mod tests {
         assert_eq!(times(Grid::new(1.0, 1.25, 0.1)), [1.0, 1.1, 1.2, 1.25]);
         assert_eq!(times(Grid::new(0.0, 2.0, 0.0)), [0.0, 2.0]);
         assert_eq!(times(Grid::new(0.0, 20.0, 0.01)).len(), 2001);
+        assert_eq!(times(Grid::new(0.5, 1.3, 0.2)), [0.5, 0.7, 0.9, 1.1, 1.3]);
+        assert_eq!(times(Grid::new(0.0, 1.0, 0.15)), [0.0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.9, 1.0]);
+        assert_eq!(times(Grid::new(0.0, 1.0, 1.0 / 3.0)).len(), 4);
     }
 }
