@@ -385,7 +385,6 @@ impl<'a> Driver<'a, '_> {
         let tolerances = Tolerances {
             relative: self.settings.tolerance,
             absolute: nominal.iter().map(|n| n * self.settings.tolerance).collect(),
-            differential: if still { 1 } else { system.dae.states.len() },
         };
         let lu = Lu::new(&pattern, nominal);
         self.restart.gather(system, &model.values);

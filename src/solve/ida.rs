@@ -70,11 +70,9 @@ pub enum Failure {
 pub struct Tolerances {
     /// Relative to the values.
     pub relative: f64,
-    /// Absolute, per unknown; positive.
+    /// Absolute, per unknown; positive. Algebraic unknowns are held to them too: they are results as much as the states,
+    /// and between two steps they are interpolated, which only the error test watches.
     pub absolute: Vec<f64>,
-    /// How many unknowns, the first ones, have a derivative. Only they are held to the tolerances: a flow through a
-    /// small resistance follows from pressures that are accurate enough, but is itself a difference of large numbers.
-    pub differential: usize,
 }
 
 /// Work done since the beginning, restarts included.
@@ -389,17 +387,12 @@ impl<E: Equations> Ida<E> {
 
     fn configure(&mut self, t: f64, tolerances: &Tolerances) -> Result<(), Failure> {
         let absolute = new_vector(&tolerances.absolute, self.sundials);
-        let count = tolerances.differential;
-        let kinds: Vec<f64> = (0..tolerances.absolute.len()).map(|i| f64::from(i < count)).collect();
-        let kinds = new_vector(&kinds, self.sundials);
         let roots = c_int::try_from(self.found.len()).expect("fewer than 2^31 crossings");
-        // SAFETY: all objects are alive; the two vectors are copied by IDA and freed here
+        // SAFETY: all objects are alive; the tolerance vector is copied by IDA and freed here
         unsafe {
             let results = [
                 s::IDAInit(self.memory, Some(on_residual::<E>), t, self.y, self.yp),
                 s::IDASVtolerances(self.memory, tolerances.relative, absolute),
-                s::IDASetId(self.memory, kinds),
-                s::IDASetSuppressAlg(self.memory, c_int::from(count > 0)),
                 s::IDASetUserData(self.memory, self.context.cast()),
                 s::IDASetLinearSolver(self.memory, self.solver, self.matrix),
                 s::IDASetJacFn(self.memory, Some(on_jacobian::<E>)),
@@ -407,7 +400,6 @@ impl<E: Equations> Ida<E> {
                 s::IDASetNoInactiveRootWarn(self.memory),
             ];
             s::N_VDestroy(absolute);
-            s::N_VDestroy(kinds);
             results.into_iter().try_for_each(check)
         }
     }
