@@ -31,7 +31,8 @@ use clap::{Parser, Subcommand};
 
 pub use world::DiskWorld;
 
-use crate::diag::{Code, Diagnostic};
+use crate::diag::{Code, Diagnostic, Sources};
+use crate::instance::GIVEN;
 use messages::{MessageFormat, Messages};
 
 /// Acausal simulator for electro-hydraulic machines: circuits in a strict subset of Modelica, solved by SUNDIALS IDA.
@@ -89,10 +90,11 @@ impl Failure {
         Diagnostic::new(code, message).into()
     }
 
-    /// Wrong data, arguments and files give 2, wrong models 1.
-    fn exit_code(&self) -> u8 {
-        let ours = |d: &&Diagnostic| d.is_error();
-        self.diagnostics.iter().find(ours).map_or(2, |d| exit_code(d.code))
+    /// Wrong data, arguments and files give 2, wrong models 1. A wrong name in `--set` is a wrong argument.
+    fn exit_code(&self, sources: &Sources) -> u8 {
+        let given = |d: &Diagnostic| d.labels.first().is_some_and(|l| sources.get(l.span.file).path == GIVEN);
+        let first = self.diagnostics.iter().find(|d| d.is_error());
+        first.map_or(2, |d| if given(d) { 2 } else { exit_code(d.code) })
     }
 }
 
@@ -125,7 +127,7 @@ pub fn main() -> ExitCode {
         Ok(Ending::Wrong) => ExitCode::from(1),
         Err(failure) => {
             messages.say(&failure.diagnostics);
-            ExitCode::from(failure.exit_code())
+            ExitCode::from(failure.exit_code(&messages.sources))
         }
     }
 }

@@ -166,7 +166,8 @@ fn report(run: &Run, rows: usize, target: &Target, messages: &Messages) {
     }
     messages.say(&diagnostics);
     let s = &run.statistics;
-    let work = format!("{} steps, {} events, {} s", s.steps, s.events, number::rounded(s.solve_s, 3));
+    let events = if s.events == 1 { "event" } else { "events" };
+    let work = format!("{} steps, {} {events}, {} s", s.steps, s.events, number::rounded(s.solve_s, 3));
     let line = match &run.end {
         End::Reached => format!("ok: reached {} s ({work}), {rows} rows in {}", number::text(run.time), target.name()),
         End::Terminated(why) => {

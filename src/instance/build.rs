@@ -19,6 +19,9 @@ const MOST_VARIABLES: usize = 20_000_000;
 /// The deepest nesting of components.
 const DEEPEST: usize = 60;
 
+/// Where messages place values given from outside.
+pub const GIVEN: &str = "<values given from outside>";
+
 /// A value for a parameter or start attribute, given from outside.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Override {
@@ -139,7 +142,7 @@ impl<'a> Instance<'a, '_> {
         let text = format!("model Set\n  extends Model(\n    {}\n  );\nend Set;\n", list.join(",\n    "));
         let before = self.library.diagnostics.len();
         let own = self.library.own.len();
-        let ids = self.library.add_text("<values given from outside>", &text);
+        let ids = self.library.add_text(GIVEN, &text);
         self.library.own.truncate(own);
         let bad = self.library.diagnostics.split_off(before);
         self.eval.override_file = ids.first().map(|&id| self.library.class(id).name.span.file);

@@ -18,7 +18,7 @@ pub mod reference;
 pub mod template;
 pub mod value;
 
-pub use build::{ModelRequest, Override, instantiate};
+pub use build::{GIVEN, ModelRequest, Override, instantiate};
 
 use crate::diag::{Diagnostic, Span};
 use crate::expr::{ExprId, Exprs, VarId};
