@@ -1,0 +1,148 @@
+//! Study files that ship: each ties to its model; with the recordings at hand, the models follow them as published.
+
+#![allow(clippy::disallowed_methods, reason = "tests read their own files")]
+#![allow(clippy::print_stdout, reason = "a test without its data says so")]
+
+use bramah::diag::Sources;
+use bramah::diag::render::{Format, render};
+use bramah::study::{Bound, Recording, Role, Study};
+use bramah::world::{MemoryWorld, World};
+use bramah::{Request, Simulation};
+use std::path::{Path, PathBuf};
+
+struct Disk;
+
+impl World for Disk {
+    fn read(&self, path: &Path) -> Result<String, String> {
+        std::fs::read_to_string(path).map_err(|e| e.to_string())
+    }
+
+    fn list(&self, path: &Path) -> Option<Vec<(String, bool)>> {
+        let entries = std::fs::read_dir(path).ok()?.flatten();
+        Some(entries.map(|e| (e.file_name().to_string_lossy().into_owned(), e.path().is_dir())).collect())
+    }
+}
+
+fn models() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("models")
+}
+
+fn shipped(class: &str) -> Simulation {
+    let request = Request { source: PathBuf::from(class), ..Request::default() };
+    Simulation::compile(&MemoryWorld::default(), &request).unwrap_or_else(|e| panic!("{class}: {e}"))
+}
+
+fn study(file: &str) -> Study {
+    let mut sources = Sources::default();
+    let read = Study::read(&Disk, &models().join(file), &mut sources);
+    read.value.unwrap_or_else(|| panic!("{}", render(&sources, &read.diagnostics, Format::Short, 120, false)))
+}
+
+/// A study tied to its class, or to another one with the same signals.
+fn tied(study: &Study, class: Option<&str>) -> (Bound, Simulation) {
+    let simulation = shipped(class.or(study.class.as_deref()).expect("a class"));
+    let tied = study.bind(&simulation.model().flat);
+    let said: Vec<&str> = tied.diagnostics.iter().map(|d| d.message.as_str()).collect();
+    assert!(said.is_empty(), "{said:?}");
+    (tied.value.expect("no diagnostics"), simulation)
+}
+
+/// The recordings of one role, or nothing where the data of the bench are not at hand.
+fn recordings(bound: &Bound, folder: &str, role: Role) -> Option<Vec<Recording>> {
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared").join(folder);
+    if !data.is_dir() {
+        println!("skipped: no folder ../shared/{folder}");
+        return None;
+    }
+    let mut sources = Sources::default();
+    let loaded = bound.load(&Disk, Some(&data), role, &mut sources);
+    let said = render(&sources, &loaded.diagnostics, Format::Short, 120, false);
+    Some(loaded.value.unwrap_or_else(|| panic!("{said}")))
+}
+
+/// Root mean square of measured minus simulated, a number for each signal; and that of the measured signal itself.
+fn errors(simulation: &mut Simulation, bound: &Bound, recording: &Recording) -> Vec<(f64, f64)> {
+    let times = &recording.times;
+    for (input, values) in bound.inputs.iter().zip(&recording.inputs) {
+        simulation.input(&input.name, times, values, input.interpolation).expect("an input");
+    }
+    let end = *times.last().expect("samples");
+    simulation.stop_time(end).settings().interval = times[1] - times[0];
+    let run = simulation.run().unwrap_or_else(|e| panic!("{e}")).trajectory;
+    let signals = bound.signals.iter().zip(&recording.signals);
+    signals
+        .map(|(signal, measured)| {
+            let index = run.index(&simulation.model().flat.variables[signal.variable.index()].name).expect("recorded");
+            let pairs = || times.iter().zip(measured).filter(|(_, m)| m.is_finite());
+            let mean = |of: &dyn Fn(f64, f64) -> f64| {
+                let sum: f64 = pairs().map(|(t, m)| of(*t, *m).powi(2)).sum();
+                (sum / pairs().count() as f64).sqrt()
+            };
+            (mean(&|t, m| m - run.value(index, t).expect("inside the run")), mean(&|_, m| m))
+        })
+        .collect()
+}
+
+#[test]
+fn every_study_ties_to_its_model() {
+    for file in [
+        "CascadedTanks/identify.toml",
+        "CascadedTanks/gap.toml",
+        "CoupledDrives/identify.toml",
+        "CoupledDrives/gap.toml",
+        "Emps/identify.toml",
+        "Emps/gap.toml",
+        "GapAxis/study.toml",
+    ] {
+        let (bound, _) = tied(&study(file), None);
+        assert!(!bound.signals.is_empty(), "{file}");
+    }
+}
+
+/// With one initial state for both records: 0.67 V without overflow and dead zone, at most 0.34 V with them.
+#[test]
+fn the_tanks_follow_the_validation_record() {
+    for (class, wanted) in [("CascadedTanks.Nominal", 0.67), ("CascadedTanks.Complete", 0.33)] {
+        let (bound, mut simulation) = tied(&study("CascadedTanks/gap.toml"), Some(class));
+        let Some(held) = recordings(&bound, "data/cascaded_tanks", Role::Held) else { return };
+        let (error, _) = errors(&mut simulation, &bound, &held[0])[0];
+        assert!((error - wanted).abs() < 0.01, "{class}: {error} V");
+    }
+}
+
+/// In the loop the position stays within micrometres, the force shows the friction.
+#[test]
+fn the_axis_follows_force_and_position() {
+    for (class, share) in [("Emps.Nominal", 0.38), ("Emps.Complete", 0.06)] {
+        let (bound, mut simulation) = tied(&study("Emps/gap.toml"), Some(class));
+        let Some(train) = recordings(&bound, "data/emps", Role::Train) else { return };
+        let found = errors(&mut simulation, &bound, &train[0]);
+        assert!(found[0].0 < 2e-5, "position: {} m", found[0].0);
+        assert!((found[1].0 / found[1].1 - share).abs() < 0.02, "{class}: force {:?}", found[1]);
+    }
+}
+
+#[test]
+fn the_drives_follow_the_held_record_with_the_rectifying_pick_up() {
+    for (class, wanted) in [("CoupledDrives.Nominal", 2.5), ("CoupledDrives.Complete", 0.7)] {
+        let (bound, mut simulation) = tied(&study("CoupledDrives/gap.toml"), Some(class));
+        let Some(held) = recordings(&bound, "data/ced_coupled_drives", Role::Held) else { return };
+        let (error, _) = errors(&mut simulation, &bound, &held[0])[0];
+        assert!((error - wanted).abs() < 0.1, "{class}: {error} V");
+    }
+}
+
+/// The nominal plant of the gap bench, made by another simulator: relative deviation below 1e-4 for each signal.
+#[test]
+fn the_axis_of_the_gap_bench_reproduces_its_nominal_plant() {
+    for file in ["chirp.csv", "steps.csv"] {
+        let mut nominal = study("GapAxis/study.toml");
+        nominal.recordings.truncate(1);
+        nominal.recordings[0].file = file.into();
+        let (bound, mut simulation) = tied(&nominal, None);
+        let Some(train) = recordings(&bound, "gapbench/nominal", Role::Train) else { return };
+        for (signal, (error, size)) in bound.signals.iter().zip(errors(&mut simulation, &bound, &train[0])) {
+            assert!(error < 1e-4 * size, "{file}: {} by {}", signal.name, error / size);
+        }
+    }
+}
