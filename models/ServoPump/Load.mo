@@ -4,6 +4,7 @@ model Load "Speed held against a load pressure set by a throttle (paper's Fig. 1
   parameter SI.Pressure p_load(min = 1e5, max = 21e6, nominal = 1e7) = 10e6 "Load pressure p_A - p_B that the throttle is set for";
   parameter Real theta_oil(unit = "degC", min = 0, max = 90) = 35 "Temperature of the oil";
   parameter SI.Volume V_A(min = 1e-6, max = 1e-2, nominal = 1e-4, displayUnit = "ml") = 50e-6 "Oil volume at port A";
+  parameter SI.Torque T_rated(min = 0.1) = 3.18 "Rated torque of the motor";
   inner Oil.ServoPumpOil oil(T_0 = Modelica.Units.Conversions.from_degC(theta_oil)) "Oil";
   Signal.Ramp speed(height = Modelica.Units.Conversions.from_rpm(N_set), duration = 1) "Speed command";
   replaceable SampledDrive drive constrainedby Drive "1: servo motor";
@@ -30,6 +31,8 @@ model Load "Speed held against a load pressure set by a throttle (paper's Fig. 1
   SI.VolumeFlowRate Q_A(nominal = 1e-5) "Volume flow out of port A of the pump";
   SI.Torque T_e "Torque of the motor";
   SI.Torque T_sh "Torque of the shaft";
+  Real reserve_ideal(unit = "1") "Torque reserve as table 3 prints it: of the ideal torque of the pump";
+  Real reserve(unit = "1") "Torque reserve with the losses of pump, bearings and seal";
 equation
   connect(speed.y, drive.w_ref);
   connect(drive.flange, rotor.flange_a);
@@ -57,6 +60,8 @@ equation
   Q_A = pump.Q_A;
   T_e = drive.T_e;
   T_sh = pump.T_sh;
+  reserve_ideal = 1 - pump.V*pump.dp/(2*Modelica.Constants.pi)/T_rated;
+  reserve = 1 - (pump.T_sh + friction.tau)/T_rated;
   annotation(
     experiment(StartTime = 0, StopTime = 8, Interval = 0.000625, Tolerance = 1e-5),
     Documentation(info = "<html><p>The standard deviation of <code>N_meas</code> over the last 2 s, all samples of the drive, is that of tables 3 (600 r/min, 2 to 19 MPa) and 4 (10 MPa, 300 to 3000 r/min). It comes from a torque ripple once per revolution in proportion to the load, passed on by the speed loop, and from the resolution of the encoder; Stribeck friction adds little.</p></html>"));

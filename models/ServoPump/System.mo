@@ -2,7 +2,9 @@ within ServoPump;
 model System "Pump-controlled cylinder with position loop (paper's Fig. 1): extend, hold, retract under load"
   parameter SI.Position x_ref(min = 0, max = 0.18, nominal = 0.1) = 0.055 "Position to extend to";
   parameter SI.Position x_start(min = 0, max = 0.18, nominal = 0.1) = 0.05 "Position at the start, returned to at the end";
-  parameter SI.Force F_load(nominal = 1e4) = 20e3 "Force that retracts the rod";
+  parameter SI.Force F_load(nominal = 1e4) = 20e3 "Force against the extension";
+  parameter SI.Force F_return(nominal = 1e4) = 20e3 "Force against the retraction";
+  parameter SI.Time t_turn(min = 1e-3) = 0.2 "Time in which the force turns round, from the begin of holding";
   parameter SI.Mass m_load(min = 1, nominal = 500) = 490 "Mass on the rod";
   parameter Real theta_oil(unit = "degC", min = 0, max = 90) = 35 "Temperature of the oil";
   parameter SI.Volume V_A(min = 1e-6, max = 1e-2, nominal = 1e-4, displayUnit = "ml") = 100e-6 "Oil volume at port A beside the stroke";
@@ -30,7 +32,8 @@ model System "Pump-controlled cylinder with position loop (paper's Fig. 1): exte
     p_1_start = 101325 + (F_load + 37.70e-4*(5e5 - 101325))/50.27e-4, p_2_start = 5e5) "9: cylinder";
   Mechanical.Translational.PositionSensor positionSensor "10: displacement sensor";
   Mechanical.Translational.Mass load(m = m_load, s(start = x_start, fixed = false), v(fixed = false)) "Load";
-  Mechanical.Translational.ConstantForce force(f_constant = -F_load) "Load force";
+  Signal.Ramp loadForce(offset = -F_load, height = F_load + F_return, duration = t_turn, startTime = t_extend + t_move) "Course of the load force";
+  Mechanical.Translational.Force force "Load force";
   SI.Position x(nominal = 0.1) "Position of the rod";
   SI.Velocity v(nominal = 0.01) "Velocity of the rod";
   Real N(unit = "rev/min", nominal = 1e3) "Speed of the shaft";
@@ -65,6 +68,7 @@ equation
   connect(cylinder.flange, positionSensor.flange);
   connect(cylinder.flange, load.flange_a);
   connect(load.flange_b, force.flange);
+  connect(loadForce.y, force.f);
   x = cylinder.s;
   v = cylinder.v;
   N = Modelica.Units.Conversions.to_rpm(pump.w);
@@ -75,5 +79,7 @@ equation
   Q_A = pump.Q_A;
   T_e = drive.T_e;
   T_sh = pump.T_sh;
-  annotation(experiment(StartTime = 0, StopTime = 3, Interval = 0.002, Tolerance = 1e-6));
+  annotation(
+    experiment(StartTime = 0, StopTime = 3, Interval = 0.002, Tolerance = 1e-6),
+    Documentation(info = "<html><p>The load always acts against the motion, as in a press that also lifts its tool out: extending, A is the high side and the accumulator supplies the difference of the areas through 7.2; retracting, B is the high side and A returns the surplus through 7.1, which B holds open.</p></html>"));
 end System;
