@@ -31,8 +31,8 @@ equation
   p = port.p;
   p_s = max(p, 1e-3*p_pre);
   V_free = V_0*(p_pre/p_s)*(T/T_wall);
-  V_gas = V_0*(1 - Smooth.ramp(1 - V_free/V_0, w_stop));
-  V_gas_dot = min(max((1 - V_free/V_0)/w_stop, 0), 1)*V_free*(der(T)/T - der(p)/p_s);
+  V_gas = V_0*(1 - Smooth.ramp(1 - V_free/V_0 + w_stop, 2*w_stop));
+  V_gas_dot = min(max((1 - V_free/V_0 + w_stop)/(2*w_stop), 0), 1)*V_free*(der(T)/T - der(p)/p_s);
   der(T) = (T_wall - T)/tau - R*T/(c_v*V_gas)*V_gas_dot;
   V_oil = V_0*(1 + V_min) - V_gas;
   (rho, beta) = oil.density(p);
@@ -40,6 +40,6 @@ equation
   mass = rho*V_oil;
   annotation(Documentation(info = "<html>
 <p>Ideal gas, <code>p V_gas = m R T</code>, and its balance of energy with Newton's cooling, <code>dT/dt = (T_wall - T)/tau - R T/(c_v V_gas) dV_gas/dt</code>: fast strokes are adiabatic (exponent 1.40), slow ones isothermal, and the pressure relaxes
-after a fast stroke. Below the precharge the bladder rests on its valve and only the oil in the neck (<code>V_min V_0</code>) is compressed; the passage is rounded over <code>w_stop V_0</code>, which keeps back half of that as gas.</p>
+after a fast stroke. Below the precharge the bladder rests on its valve and only the oil in the neck (<code>V_min V_0</code>) is compressed; the passage is rounded within <code>w_stop V_0</code> of it on either side; beyond, the law of the gas holds exactly.</p>
 <p>Real gas matters above some 10 MPa; Newton's cooling misses the phase of fast oscillation. Source: D. R. Otis and A. Pourmovahed, J. Dyn. Syst. Meas. Control 107 (1985) 116.</p></html>"));
 end Accumulator;

@@ -25,10 +25,10 @@ equation
   p = port.p;
   p_s = max(p, 1e-3*p_pre);
   v = (p_pre/p_s)^(1/n);
-  V_gas = V_0*(1 - Smooth.ramp(1 - v, w_stop));
+  V_gas = V_0*(1 - Smooth.ramp(1 - v + w_stop, 2*w_stop));
   V_oil = V_0*(1 + V_min) - V_gas;
   (rho, beta) = oil.density(p);
-  port.q = (V_oil/beta + V_0*min(max((1 - v)/w_stop, 0), 1)*v/(n*p_s))*der(p);
+  port.q = (V_oil/beta + V_0*min(max((1 - v + w_stop)/(2*w_stop), 0), 1)*v/(n*p_s))*der(p);
   mass = rho*V_oil;
   annotation(Documentation(info = "<html>
 <p><code>p V_gas^n = p_pre V_0^n</code>, with the empty stop and the compression of the oil as in <code>Accumulator</code>. The exponent must be chosen for the speed of the process; where both fast strokes and holding occur,

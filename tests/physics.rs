@@ -1,0 +1,456 @@
+//! Physics of the shipped components: balances, passivity, closed forms, published problems, order of convergence.
+
+mod rig;
+
+use bramah::world::MemoryWorld;
+use bramah::{Request, Simulation};
+use rig::{Numbers, at, circuit, column, last, mean_from, near, run, shipped};
+use std::f64::consts::PI;
+use std::path::{Path, PathBuf};
+
+// --- Balances ---------------------------------------------------------------------------------------------------------
+
+#[test]
+fn oil_is_neither_made_nor_lost() {
+    for (name, masses) in [
+        ("ServoPump.DeadZone", ["volume_A.mass", "volume_B.mass", "accumulator.mass"]),
+        ("ServoPump.System", ["cylinder.chamber_1.mass", "cylinder.chamber_2.mass", "accumulator.mass"]),
+    ] {
+        let outcome = shipped(name).run().expect("it runs");
+        let t = &outcome.trajectory;
+        let sum = |i: usize| masses.iter().map(|m| column(t, m)[i]).sum::<f64>();
+        for i in 0..t.len() {
+            near(sum(i), sum(0), 1e-6);
+        }
+    }
+}
+
+/// A rotor drives a pump against a closed volume and an orifice until it stands: what it had is in the losses, the
+/// rest in the oil.
+#[test]
+fn energy_goes_from_the_rotor_into_oil_and_losses() {
+    let mut simulation = circuit(
+        "inner Oil.Fluid oil(redeclare function density = Oil.Compression.constantDensity(beta_0 = 1.2e9));
+         Mechanical.Rotational.Inertia rotor(J = 0.05, w(start = 150));
+         Hydraulic.Pump pump(V = 1e-5, starvation = false, compression = false);
+         Hydraulic.Volume high(V = 2e-3, p_start = 1e6);
+         Hydraulic.Orifice orifice(A = 2e-6);
+         Hydraulic.Tank low(p = 1e6);
+         Real lost(start = 0, fixed = true, nominal = 100);",
+        "connect(rotor.flange_b, pump.flange);
+         connect(pump.port_a, high.port);
+         connect(high.port, orifice.port_a);
+         connect(orifice.port_b, low.port);
+         connect(pump.port_b, low.port);
+         der(lost) = pump.lossPower + orifice.lossPower;",
+    );
+    simulation.settings().tolerance = 1e-8;
+    let t = run(simulation.stop_time(3.0));
+    for time in [0.024, 0.102, 0.504, 0.996, 3.0] {
+        // Only the pressure above the low side counts: the rest goes round with the constant low side.
+        let oil = 2e-3 * (at(&t, "high.p", time) - 1e6).powi(2) / (2.0 * 1.2e9);
+        let rotor = 0.025 * at(&t, "rotor.w", time).powi(2);
+        near(rotor + oil + at(&t, "lost", time), 0.025 * 150.0 * 150.0, 1e-5);
+    }
+}
+
+#[test]
+fn a_pendulum_keeps_its_energy() {
+    let mut simulation = circuit(
+        "Mechanical.Rotational.Inertia arm(J = 2, phi(start = 2));
+         Mechanical.Rotational.Torque weight;",
+        "weight.tau = -9.81*3*sin(arm.phi); connect(weight.flange, arm.flange_a);",
+    );
+    simulation.settings().tolerance = 1e-9;
+    let t = run(simulation.stop_time(60.0));
+    let energy = |i: usize| column(&t, "arm.w")[i].powi(2) - 29.43 * column(&t, "arm.phi")[i].cos();
+    for i in 0..t.len() {
+        assert!((energy(i) - energy(0)).abs() < 1e-4 * 29.43, "{} at {} s", energy(i) - energy(0), t.times[i]);
+    }
+}
+
+/// A hundred times tighter, at least twenty times closer to the closed form, over four steps.
+#[test]
+fn the_error_falls_with_the_tolerance() {
+    let mut simulation = circuit(
+        "Mechanical.Translational.Mass mass(m = 2, s(start = 1));
+         Mechanical.Translational.SpringDamper spring(c = 800, d = 4);
+         Mechanical.Translational.Fixed wall;",
+        "connect(wall.flange, spring.flange_a); connect(spring.flange_b, mass.flange_a);",
+    );
+    simulation.stop_time(2.0);
+    let exact = |time: f64| {
+        let (decay, w) = (1.0, (400.0f64 - 1.0).sqrt());
+        (-decay * time).exp() * ((w * time).cos() + decay / w * (w * time).sin())
+    };
+    let mut error = |tolerance: f64| {
+        simulation.settings().tolerance = tolerance;
+        let t = run(&simulation);
+        let errors = t.times.iter().zip(column(&t, "mass.s")).map(|(time, s)| (s - exact(*time)).abs());
+        errors.fold(0.0f64, f64::max)
+    };
+    let found: Vec<f64> = [1e-4, 1e-6, 1e-8, 1e-10].map(&mut error).to_vec();
+    assert!(found.windows(2).all(|w| w[1] < w[0] / 20.0) && found[3] < 1e-7, "{found:?}");
+}
+
+// --- Published problems ---------------------------------------------------------------------------------------------
+
+#[test]
+fn the_mass_on_the_belt_sticks_27_times() {
+    let mut simulation = shipped("Belt");
+    let outcome = simulation.run().expect("it runs");
+    let t = &outcome.trajectory;
+    let locked = column(t, "friction.locked");
+    assert_eq!(locked.windows(2).filter(|w| w[0] == 0.0 && w[1] == 1.0).count(), 27);
+    simulation.settings().tolerance = 1e-10;
+    let exact = simulation.run().expect("it runs").trajectory;
+    let (x, e) = (t.index("x").expect("x"), exact.index("x").expect("x"));
+    let squares = (0..=2000).map(|k| {
+        let time = f64::from(k) * 0.01;
+        (t.value(x, time).expect("a value") - exact.value(e, time).expect("a value")).powi(2)
+    });
+    let rms = (squares.sum::<f64>() / 2001.0).sqrt();
+    assert!(rms < 2e-6, "{rms}");
+}
+
+#[test]
+fn stiff_problems_end_at_their_published_values() {
+    let published = [
+        ("Robertson", vec![("y_1", 0.7158), ("y_2", 9.185e-6), ("y_3", 0.2842)], 1e-3),
+        (
+            "AkzoNobel",
+            vec![("y_1", 0.1150794920661702), ("y_4", 0.3656156421249283e-3), ("y_6", 0.4873531310307455e-2)],
+            1e-4,
+        ),
+        ("TransistorAmplifier", vec![("y[3]", 2.849958788608128), ("y[8]", 1.236995868091548)], 1e-3),
+    ];
+    for (name, values, relative) in published {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/stiff").join(format!("{name}.mo"));
+        let text = std::fs::read_to_string(root).expect("the file is there");
+        let request = Request { source: "model.mo".into(), model: Some(name.into()), ..Request::default() };
+        let mut world = MemoryWorld::single("model.mo", text);
+        world.add("note.txt", "a world with the file alone");
+        let outcome = Simulation::compile(&world, &request).expect("it is right").run().expect("it runs");
+        for (variable, wanted) in values {
+            near(last(&outcome.trajectory, variable), wanted, relative);
+        }
+    }
+}
+
+// --- Closed forms ---------------------------------------------------------------------------------------------------
+
+#[test]
+fn a_fast_stroke_of_the_accumulator_is_adiabatic_and_a_slow_one_isothermal() {
+    for (flow, stop, exponent, relative) in [(-1e-2, 0.02, 1.0 + 296.8 / 743.0, 4e-3), (-1e-7, 2000.0, 1.0, 4e-3)] {
+        let mut simulation = circuit(
+            &format!(
+                "inner Oil.Fluid oil;
+                 Hydraulic.Accumulator gas(V_0 = 1e-3, p_pre = 50e5, p_start = 100e5);
+                 Hydraulic.FlowSource source(q = {flow:e});"
+            ),
+            "connect(source.port, gas.port);",
+        );
+        let t = simulation.stop_time(stop).run().expect("it runs").trajectory;
+        let (p, v) = (column(&t, "gas.p"), column(&t, "gas.V_gas"));
+        let end = p.len() - 1;
+        near((p[end] / p[0]).ln() / (v[0] / v[end]).ln(), exponent, relative);
+    }
+}
+
+/// Merritt, Hydraulic Control Systems, section 3.4: the square root above, a straight line below the transition.
+#[test]
+fn the_orifice_is_turbulent_above_and_laminar_below_its_transition() {
+    let mut simulation = circuit(
+        "inner Oil.Fluid oil(redeclare function density = Oil.Compression.constantDensity);
+         Hydraulic.PressureSource a;
+         Hydraulic.PressureSource b(p = 1e6);
+         Hydraulic.Orifice orifice(A = 1e-6);",
+        "connect(a.port, orifice.port_a); connect(orifice.port_b, b.port);",
+    );
+    let mut flow = |dp: f64| {
+        let t = run(simulation.set("a.p", 1e6 + dp).expect("a parameter").stop_time(1e-6));
+        (last(&t, "orifice.q"), last(&t, "oil.mu"))
+    };
+    let (q, mu) = flow(1e7);
+    near(q, 0.65e-6 * (2.0 * 1e7 / 860.0f64).sqrt(), 1e-3);
+    let transition = PI / (8.0 * 1e-6 * 860.0) * (150.0 * mu / 0.65).powi(2);
+    near(flow(10.0).0, 0.65e-6 * (2.0 / 860.0 / transition).sqrt() * 10.0, 1e-3);
+    assert!(flow(-1e7).0 == -q && flow(0.0).0 == 0.0);
+}
+
+/// Hagen and Poiseuille below the critical Reynolds number, Blasius above.
+#[test]
+fn the_pipe_is_laminar_below_and_turbulent_above() {
+    let mut simulation = circuit(
+        "inner Oil.Fluid oil(redeclare function density = Oil.Compression.constantDensity);
+         Hydraulic.FlowSource source;
+         Hydraulic.PipeResistance pipe(L = 2, d = 0.01);
+         Hydraulic.Tank tank;",
+        "connect(source.port, pipe.port_a); connect(pipe.port_b, tank.port);",
+    );
+    let mut drop = |q: f64| {
+        let t = run(simulation.set("source.q", q).expect("a parameter").stop_time(1e-6));
+        (last(&t, "pipe.dp"), last(&t, "oil.mu"))
+    };
+    let (laminar, mu) = drop(1e-5);
+    near(laminar, 128.0 * mu * 2.0 / (PI * 1e-8) * 1e-5, 1e-2);
+    let v = 4e-3 / (PI / 4.0 * 1e-4);
+    let re = 860.0 * v * 0.01 / mu;
+    assert!(re > 5000.0, "{re}");
+    near(drop(4e-3).0, 0.316 * re.powf(-0.25) * 2.0 / 0.01 * 860.0 / 2.0 * v * v, 2e-2);
+}
+
+/// Value and slope of the rounded functions go through their widths without a jump.
+#[test]
+fn rounded_functions_have_continuous_slopes() {
+    for call in [
+        "Smooth.sgn(x, 0.1)",
+        "Smooth.mag(x, 0.1)",
+        "Smooth.step(x)",
+        "Smooth.pos(x, 0.1)",
+        "Smooth.ramp(x, 0.1)",
+        "Smooth.clip(x, 0.1)",
+        "Smooth.root(x, 0.1)",
+    ] {
+        let mut simulation = circuit("Real x; Real y;", &format!("x = 3*time - 1.5; y = {call};"));
+        simulation.stop_time(1.0);
+        simulation.settings().interval = 1e-4;
+        let t = run(&simulation);
+        let y = column(&t, "y");
+        let slopes: Vec<f64> =
+            (1..t.len()).filter(|&i| t.times[i] > t.times[i - 1]).map(|i| (y[i] - y[i - 1]) / 3e-4).collect();
+        let jump = slopes.windows(2).map(|w| (w[1] - w[0]).abs()).fold(0.0, f64::max);
+        assert!(jump < 0.05, "{call} jumps in its slope by {jump}");
+    }
+}
+
+#[test]
+fn closing_a_valve_raises_the_pressure_as_joukowsky_says() {
+    let mut simulation = circuit(
+        "inner Oil.Fluid oil(redeclare function density = Oil.Compression.constantModulus(beta_0 = 1.5e9));
+         Hydraulic.PressureSource source(p = 50e5);
+         Hydraulic.Line pipe(L = 50, d = 2e-2, n = 40, p_start = 50e5, m_flow_start = 0.1);
+         Hydraulic.Volume stub(V = 4e-6, p_start = 50e5);",
+        "connect(source.port, pipe.port_a);
+         connect(pipe.port_b, stub.port);",
+    );
+    let t = simulation.stop_time(0.03).run().expect("it runs").trajectory;
+    let rho = 860.0 * (49e5_f64 / 1.5e9).exp();
+    let rise = rho * (1.5e9 / rho).sqrt() * 0.1 / rho / (PI * 1e-4);
+    // The wave's front is as wide as a cell and rings; behind it the mean is the rise of the closed form.
+    let p = column(&t, "pipe.p[35]");
+    let mean = p[p.len() / 2..].iter().sum::<f64>() / (p.len() - p.len() / 2) as f64;
+    near(mean - 50e5, rise, 0.08);
+}
+
+#[test]
+fn the_motor_in_phases_is_the_motor_in_rotor_axes() {
+    let tight = |name: &str| {
+        let mut simulation = shipped(name);
+        simulation.settings().tolerance = 1e-9;
+        simulation.run().expect("it runs").trajectory
+    };
+    let (abc, dq) = (tight("Electrical.Examples.PMSMabcExample"), tight("Electrical.Examples.PMSMdqExample"));
+    let (a, b) = (column(&abc, "motor.T_e"), column(&dq, "motor.T_e"));
+    let scale = b.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+    let (i, j) = (abc.index("motor.T_e").expect("T_e"), dq.index("motor.T_e").expect("T_e"));
+    assert_eq!((a.len() > 100, b.len() > 100), (true, true));
+    for k in 0..=100 {
+        let time = f64::from(k) * 1e-3;
+        let difference = abc.value(i, time).expect("a value") - dq.value(j, time).expect("a value");
+        assert!(difference.abs() < 1e-6 * scale, "{difference} at {time}");
+    }
+}
+
+#[test]
+fn the_flux_model_of_the_induction_motor_settles_on_its_circuit() {
+    let torque = |class: &str| {
+        let mut simulation = circuit(
+            &format!("{class} motor; Mechanical.Rotational.ConstantSpeed shaft(w_fixed = 80);"),
+            "connect(shaft.flange, motor.flange); motor.f = 27.74; motor.U = 7.6*27.74/sqrt(3);",
+        );
+        simulation.settings().tolerance = 1e-9;
+        last(&simulation.stop_time(5.0).run().expect("it runs").trajectory, "motor.T_e")
+    };
+    near(torque("Electrical.Machines.InductionMotor"), torque("Electrical.Machines.InductionMotorSteady"), 1e-6);
+}
+
+#[test]
+fn piston_by_piston_the_pump_loses_what_the_averaged_law_says() {
+    let mut simulation = circuit(
+        "inner Oil.Fluid oil(redeclare function density = Oil.Compression.constantModulus(beta_0 = 1.5e9));
+         Hydraulic.PistonMachine pump(h = 1e-7, p_start = 5e5);
+         Hydraulic.Pump averaged(V = 0.8e-6, G = 0, k_p = 0, b = 0);
+         Mechanical.Rotational.ConstantSpeed shaft(w_fixed = 60);
+         Hydraulic.Tank low(p = 5e5);
+         Hydraulic.Tank high(p = 21.5e6);",
+        "connect(shaft.flange, pump.flange);
+         connect(shaft.flange, averaged.flange);
+         connect(pump.port_a, high.port);
+         connect(pump.port_b, low.port);
+         connect(pump.port_case, low.port);
+         connect(averaged.port_a, high.port);
+         connect(averaged.port_b, low.port);",
+    );
+    let turn = 2.0 * PI / 60.0;
+    let settings = simulation.settings();
+    (settings.stop_time, settings.interval) = (3.0 * turn, turn / 4000.0);
+    let t = simulation.run().expect("it runs").trajectory;
+    let mean = |name: &str| mean_from(&t, name, 2.0 * turn);
+    near(mean("pump.Q_A"), mean("averaged.Q_A"), 1e-3);
+    near(mean("pump.T_sh"), mean("averaged.T_sh"), 1e-3);
+}
+
+// --- Passivity ------------------------------------------------------------------------------------------------------
+
+#[test]
+fn machines_take_power_in_all_four_quadrants() {
+    let classes = [
+        "ServoPump.BenchPump machine",
+        "Hydraulic.Pump machine(V = 1e-5)",
+        "Hydraulic.Pump machine(V = 1e-5, compression = false)",
+        "Hydraulic.AxialPistonMachine machine",
+        "Hydraulic.GearPump machine(V = 1e-5)",
+        "Hydraulic.WilsonMachine machine(V = 1e-5)",
+        "Hydraulic.EfficiencyMapMachine machine(V = 1e-5)",
+    ];
+    let mut numbers = Numbers(1);
+    for class in classes {
+        let mut simulation = circuit(
+            &format!(
+                "inner Oil.ISOVG46 oil;
+                 {class};
+                 Mechanical.Rotational.ConstantSpeed shaft;
+                 Hydraulic.PressureSource a;
+                 Hydraulic.PressureSource b;"
+            ),
+            "connect(shaft.flange, machine.flange);
+             connect(a.port, machine.port_a);
+             connect(b.port, machine.port_b);",
+        );
+        simulation.stop_time(1e-6);
+        for _ in 0..150 {
+            let w = if numbers.next() < 0.3 { numbers.between(-1.0, 1.0) } else { numbers.between(-300.0, 300.0) };
+            let (a, b) = (10f64.powf(numbers.between(4.3, 7.5)), 10f64.powf(numbers.between(4.3, 7.5)));
+            for (name, value) in [("shaft.w_fixed", w), ("a.p", a), ("b.p", b)] {
+                simulation.set(name, value).expect("a parameter");
+            }
+            let t = simulation.run().unwrap_or_else(|e| panic!("{class}: {e}")).trajectory;
+            let loss = last(&t, "machine.lossPower");
+            assert!(loss.is_finite() && loss > -1e-6, "{class} gives {loss} W at {w} rad/s, {a} Pa and {b} Pa");
+        }
+    }
+}
+
+#[test]
+fn restrictions_take_power_in_both_directions() {
+    let classes = [
+        ("Orifice way", ""),
+        ("LaminarGap way", ""),
+        ("CheckValve way", ""),
+        ("ReliefValve way", ""),
+        ("PipeResistance way", ""),
+        ("LocalLoss way", ""),
+        ("Filter way", ""),
+        ("ThrottleCheckValve way", ""),
+        ("VariableOrifice way", "way.u = 0.3;"),
+        ("VariableOrifice way", "way.u = 0;"),
+        ("SpoolEdge way", "way.x = -0.5;"),
+        ("SpoolEdge way", "way.x = 0.5;"),
+    ];
+    let mut numbers = Numbers(2);
+    for (class, command) in classes {
+        let mut simulation = circuit(
+            &format!(
+                "inner Oil.ISOVG46 oil;
+                 Hydraulic.{class};
+                 Hydraulic.PressureSource a;
+                 Hydraulic.PressureSource b;"
+            ),
+            &format!("connect(a.port, way.port_a); connect(b.port, way.port_b); {command}"),
+        );
+        simulation.stop_time(1e-6);
+        for _ in 0..60 {
+            let (a, b) = (10f64.powf(numbers.between(3.0, 7.5)), 10f64.powf(numbers.between(3.0, 7.5)));
+            simulation.set("a.p", a).expect("a parameter").set("b.p", b).expect("a parameter");
+            let t = run(&simulation);
+            let q = -last(&t, "a.port.q");
+            let loss = (a - b) * q;
+            assert!(loss.is_finite() && loss >= -1e-9, "{class} gives {loss} W from {a} to {b} Pa");
+        }
+    }
+}
+
+#[test]
+fn frictions_take_power_in_both_directions() {
+    let classes = [
+        "Damper way",
+        "SmoothBearingFriction way(tau_c = 2, tau_s = 5)",
+        "LuGreBearingFriction way(tau_c = 2, tau_s = 5)",
+        "BearingFriction way(tau_c = 2, tau_s = 5)",
+    ];
+    for class in classes {
+        // Bristles give back what bends them: at most the square of the force over twice their stiffness.
+        let elastic = if class.starts_with("LuGre") { 25.0 / (2.0 * 40.0) } else { 1e-3 };
+        let other = if class.starts_with("Damper") { "connect(way.flange_b, housing.flange);" } else { "" };
+        let mut simulation = circuit(
+            &format!(
+                "Mechanical.Rotational.Inertia rotor(J = 0.1, w(start = 5));
+                 Mechanical.Rotational.Torque motor;
+                 Mechanical.Rotational.{class};
+                 Mechanical.Rotational.Fixed housing;
+                 Real work(start = 0, fixed = true);"
+            ),
+            &format!(
+                "motor.tau = 6*sin(3*time);
+                 connect(motor.flange, rotor.flange_a);
+                 connect(rotor.flange_b, way.flange_a);
+                 der(work) = way.flange_a.tau*rotor.w;
+                 {other}"
+            ),
+        );
+        let t = run(simulation.stop_time(10.0));
+        let mut most = 0.0f64;
+        for work in column(&t, "work") {
+            most = most.max(*work);
+            assert!(*work > most - elastic, "{class} gives back {} J", most - work);
+        }
+        assert!(most > 1.0, "{class}: {most} J");
+    }
+}
+
+// --- All examples ---------------------------------------------------------------------------------------------------
+
+fn examples(folder: &Path, root: &Path, out: &mut Vec<String>) {
+    let mut entries: Vec<PathBuf> =
+        std::fs::read_dir(folder).expect("the folder is there").flatten().map(|e| e.path()).collect();
+    entries.sort();
+    for path in entries {
+        if path.is_dir() {
+            examples(&path, root, out);
+        } else if path.to_string_lossy().ends_with("Example.mo") {
+            let rest = path.strip_prefix(root).expect("below the root").with_extension("");
+            out.push(rest.iter().map(|p| p.to_string_lossy()).collect::<Vec<_>>().join("."));
+        }
+    }
+}
+
+#[test]
+fn every_example_runs_to_its_end_with_finite_values() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("components");
+    let mut names = Vec::new();
+    examples(&root, &root, &mut names);
+    assert!(names.len() > 170, "{} examples", names.len());
+    let mut bad = Vec::new();
+    for name in names {
+        match shipped(&name).run() {
+            Ok(outcome) => {
+                let t = &outcome.trajectory;
+                let odd = t.signals.iter().find(|s| column(t, &s.name).iter().any(|x| !x.is_finite()));
+                bad.extend(odd.map(|s| format!("{name}: {} is not finite", s.name)));
+            }
+            Err(e) => bad.push(format!("{name}: {e}")),
+        }
+    }
+    assert!(bad.is_empty(), "{}", bad.join("\n"));
+}
