@@ -1,5 +1,7 @@
 //! Physics of the shipped components: balances, passivity, closed forms, published problems, order of convergence.
 
+#![allow(clippy::disallowed_methods, reason = "tests read their own files")]
+
 mod rig;
 
 use bramah::world::MemoryWorld;
