@@ -43,6 +43,23 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ),
     ("plot", &["network", "results", "units"]),
     ("experiment", &["diag", "results", "units"]),
+    (
+        "analysis",
+        &[
+            "compile",
+            "diag",
+            "expr",
+            "flat",
+            "lower",
+            "plot",
+            "results",
+            "solve",
+            "structure",
+            "study",
+            "units",
+            "world",
+        ],
+    ),
     ("study", &["compile", "diag", "expr", "flat", "results", "solve", "units", "world"]),
 ];
 

@@ -12,6 +12,7 @@ mod completions;
 mod data;
 mod explain;
 mod files;
+mod identify;
 mod inputs;
 mod interrupt;
 mod messages;
@@ -23,6 +24,7 @@ mod recorder;
 mod request;
 mod simulate;
 mod statistics;
+mod study;
 mod world;
 
 use std::process::ExitCode;
@@ -65,6 +67,7 @@ enum Command {
     Simulate(simulate::SimulateArgs),
     Plot(plot::PlotArgs),
     Compare(compare::CompareArgs),
+    Identify(identify::IdentifyArgs),
     Explain(explain::ExplainArgs),
     Completions(completions::CompletionsArgs),
 }
@@ -139,6 +142,7 @@ fn dispatch(command: Command, messages: &mut Messages) -> Result<Ending, Failure
         Command::Simulate(args) => simulate::run(&args, messages),
         Command::Plot(args) => plot::run(&args, messages),
         Command::Compare(args) => compare::run(&args, messages),
+        Command::Identify(args) => identify::run(&args, messages),
         Command::Explain(args) => explain::run(&args),
         Command::Completions(args) => completions::run(&args),
     }

@@ -1,0 +1,483 @@
+//! Parameters from recordings: what can be found at all, the fit, its uncertainty, and how it does on held recordings.
+
+mod filter;
+mod free;
+mod inverse;
+mod least_squares;
+mod output_error;
+mod report;
+pub mod runs;
+mod separate;
+mod weights;
+
+pub use free::Free;
+pub use least_squares::{Bounds, Effort, LeastSquares, Minimum, minimise};
+pub use report::{Report, fit_words, separation_words};
+pub use runs::Broken;
+pub use separate::{Blind, Separation};
+
+use crate::Model;
+use crate::diag::{Code, Diagnostic};
+use crate::study::{Bound, Recording, full_scales};
+use inverse::{Inverse, InverseModel};
+use nalgebra::{DMatrix, DVector};
+use output_error::OutputError;
+use separate::{separate, without_rest};
+use weights::Weights;
+
+/// How parameters are found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// [`Method::Inverse`] where it applies, else [`Method::Output`].
+    Auto,
+    /// Runs from the inputs alone against the signals.
+    Output,
+    /// The force that the measured motion needs against the measured force.
+    Inverse,
+}
+
+/// A model, its recordings and the parameters to find.
+#[derive(Clone, Debug)]
+pub struct Problem<'a> {
+    /// The model.
+    pub model: &'a Model,
+    /// The study tied to it.
+    pub bound: &'a Bound,
+    /// The parameters to find.
+    pub free: Vec<Free>,
+    /// Per signal the sensor's range.
+    pub full_scale: Vec<f64>,
+    /// Per signal the noise: as the study says, or as sixth differences show.
+    pub noise: Vec<f64>,
+}
+
+/// What methods add to least squares.
+trait Residuals: LeastSquares {
+    fn weights(&mut self) -> &mut Weights;
+    /// How many unknowns: the parameters, then initial states.
+    fn unknowns(&self) -> usize;
+}
+
+/// What the fit found. Vectors are in the order of [`Problem::free`].
+#[derive(Clone, Debug)]
+pub struct Fit {
+    /// [`Method::Output`] or [`Method::Inverse`].
+    pub method: Method,
+    /// Values in the parameters' units.
+    pub values: Vec<f64>,
+    /// One standard deviation of each.
+    pub deviations: Vec<f64>,
+    /// Correlations of the estimates.
+    pub correlation: DMatrix<f64>,
+    /// Parameters that ended at a bound.
+    pub at_bound: Vec<bool>,
+    /// False where the search ended before a least value was reached.
+    pub converged: bool,
+    /// Steps of the search.
+    pub iterations: usize,
+    /// Per signal (or input, for the inverse model) the errors on the train recordings.
+    pub train: Vec<SignalFit>,
+}
+
+/// How well one signal is met.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SignalFit {
+    /// The signal's name; for the inverse model the input's.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// Root mean square of the errors.
+    pub rmse: f64,
+    /// The same over the signal's own root mean square about its mean (about zero for forces).
+    pub relative: f64,
+    /// Over how many samples the errors resemble each other; 1 for white ones.
+    pub correlation: f64,
+}
+
+impl<'a> Problem<'a> {
+    /// Prepares an identification.
+    ///
+    /// # Errors
+    /// [`Code::BadStudy`] when there is nothing to find, when bounds exclude a start value, or when there are fewer
+    /// samples than unknowns.
+    pub fn new(model: &'a Model, bound: &'a Bound, train: &[Recording]) -> Result<Problem<'a>, Vec<Diagnostic>> {
+        let system = &model.system;
+        let mut values = system.layout.values();
+        system.evaluate_parameters(&mut values, &[]);
+        let free: Vec<Free> = bound
+            .parameters
+            .iter()
+            .filter_map(|p| {
+                let v = p.variable;
+                let start = values[system.layout.var(v)];
+                let min = system.min(v, &values).unwrap_or(f64::NEG_INFINITY);
+                let max = system.max(v, &values).unwrap_or(f64::INFINITY);
+                Free::new(p, start, min, max, system.nominal(v, &values))
+            })
+            .collect();
+        let mistakes = mistakes(bound, &free, train);
+        if !mistakes.is_empty() {
+            return Err(mistakes);
+        }
+        let full_scale = full_scales(bound, train);
+        let noise = (0..bound.signals.len()).map(|k| noise(bound, train, k, full_scale[k])).collect();
+        Ok(Problem { model, bound, free, full_scale, noise })
+    }
+
+    /// What is known beforehand, as residuals.
+    fn priors(&self, z: &[f64]) -> Vec<f64> {
+        self.free.iter().zip(z).filter(|(f, _)| f.prior.is_finite()).map(|(f, z)| z / f.prior).collect()
+    }
+
+    /// Their derivatives, in the rows after those of the data. There are as many rows below as initial states.
+    fn prior_rows(&self, jacobian: &mut DMatrix<f64>) {
+        let known = self.free.iter().filter(|f| f.prior.is_finite()).count();
+        let states = jacobian.ncols() - self.free.len();
+        let mut row = jacobian.nrows() - states - known;
+        for (j, free) in self.free.iter().enumerate().filter(|(_, f)| f.prior.is_finite()) {
+            jacobian[(row, j)] = 1.0 / free.prior;
+            row += 1;
+        }
+    }
+
+    /// Standard deviations of the signals to begin with.
+    fn first_deviations(&self) -> Vec<f64> {
+        self.full_scale.iter().zip(&self.noise).map(|(f, n)| n.max(1e-6 * f).max(f64::MIN_POSITIVE)).collect()
+    }
+
+    fn bounds(&self, unknowns: usize) -> Bounds {
+        let mut bounds = Bounds { low: vec![f64::NEG_INFINITY; unknowns], high: vec![f64::INFINITY; unknowns] };
+        for (j, free) in self.free.iter().enumerate() {
+            // a logarithmic scale reaches far, but not to numbers without meaning
+            let far = if free.logarithmic { 20.0 } else { f64::INFINITY };
+            bounds.low[j] = free.place(free.min).max(-far);
+            bounds.high[j] = free.place(free.max).min(far);
+        }
+        bounds
+    }
+}
+
+fn mistakes(bound: &Bound, free: &[Free], train: &[Recording]) -> Vec<Diagnostic> {
+    let mut found = Vec::new();
+    if free.is_empty() {
+        let d = Diagnostic::new(Code::BadStudy, "the study has no parameters to find");
+        found.push(d.help("list them below `[parameters]`, with `sigma`, or with `min` and `max`"));
+    }
+    for f in free.iter().filter(|f| f.start < f.min || f.start > f.max) {
+        let number = crate::results::number::text;
+        let text = format!("the bounds of `{}` exclude its value in the model, {}", f.name, number(f.start));
+        let span = bound.parameters.iter().find(|p| p.variable == f.variable).map(|p| p.span);
+        let d = Diagnostic::new(Code::BadStudy, text);
+        let d = match span {
+            Some(span) => d.at(span, format!("{} to {}", number(f.min), number(f.max))),
+            None => d,
+        };
+        found.push(d.help("change the value in the model, or the bounds"));
+    }
+    let samples: usize = train.iter().flat_map(|r| &r.signals).flatten().filter(|v| !v.is_nan()).count();
+    if samples < free.len() {
+        let text = format!("{} parameters are to be found from {samples} samples", free.len());
+        found.push(Diagnostic::new(Code::BadStudy, text));
+    }
+    found
+}
+
+/// The noise of a signal: its accuracy where the study says it, else what sixth differences show.
+fn noise(bound: &Bound, train: &[Recording], k: usize, full_scale: f64) -> f64 {
+    bound.signals[k]
+        .deviation(full_scale)
+        .unwrap_or_else(|| train.iter().map(|r| filter::noise(&r.signals[k])).fold(0.0, f64::max))
+}
+
+/// An identification under way: the method chosen, and what can be found.
+pub struct Identification<'a> {
+    problem: &'a Problem<'a>,
+    train: &'a [Recording],
+    inverse: Option<Inverse>,
+    /// What can be found at all, judged at the start values.
+    pub separation: Separation,
+    /// Variables whose measurement would tell the members of each blind group apart, best first.
+    pub advice: Vec<Vec<String>>,
+}
+
+impl<'a> Identification<'a> {
+    /// Chooses the method and judges what the data can tell.
+    ///
+    /// # Errors
+    /// [`Code::BadStudy`] when the method does not apply; [`Code::StepTooSmall`] and others when the model cannot follow
+    /// the recordings with the start values.
+    pub fn new(problem: &'a Problem<'a>, train: &'a [Recording], method: Method) -> Result<Self, Diagnostic> {
+        let inverse = if method == Method::Output { None } else { Inverse::new(problem) };
+        if inverse.is_none() && method == Method::Inverse {
+            let d = Diagnostic::new(Code::BadStudy, "the model cannot be inverted with this study");
+            return Err(d
+                .note("the inputs must be measured forces or torques (N, N.m), one for each degree of freedom")
+                .note("each state must be a signal, or the derivative of one"));
+        }
+        let mut found = Identification {
+            problem,
+            train,
+            inverse,
+            separation: Separation { rank: 0, condition: 1.0, blind: Vec::new(), deviation: Vec::new() },
+            advice: Vec::new(),
+        };
+        found.judge()?;
+        Ok(found)
+    }
+
+    /// Whether the inverse model is used.
+    pub fn method(&self) -> Method {
+        if self.inverse.is_some() { Method::Inverse } else { Method::Output }
+    }
+
+    fn judge(&mut self) -> Result<(), Diagnostic> {
+        let z = vec![0.0; self.problem.free.len()];
+        let information = match self.inverse_model()? {
+            Some(mut model) => information(&mut model, z.len()),
+            None => information(&mut self.output_error()?, z.len()),
+        };
+        let information = information.map_err(|broken| cannot_follow(broken.as_ref()))?;
+        self.separation = separate(&information);
+        self.advice = self.separation.blind.iter().map(|b| self.what_separates(b)).collect();
+        Ok(())
+    }
+
+    fn inverse_model(&self) -> Result<Option<InverseModel<'_>>, Diagnostic> {
+        let Some(inverse) = &self.inverse else { return Ok(None) };
+        let model = InverseModel::new(self.problem, inverse, self.train);
+        model.map(Some).ok_or_else(|| Diagnostic::new(Code::BadStudy, "a recording is too short for the inverse model"))
+    }
+
+    fn output_error(&self) -> Result<OutputError<'_>, Diagnostic> {
+        OutputError::new(self.problem, self.train, None).map_err(|b| cannot_follow(Some(&b)))
+    }
+
+    /// Variables that move most, against their range, when the parameters of a blind group move against each other.
+    fn what_separates(&self, blind: &Blind) -> Vec<String> {
+        let Ok(runs) = OutputError::new(self.problem, &self.train[..1], None) else { return Vec::new() };
+        let flat = &self.problem.model.flat;
+        let shown = (0..).map(crate::expr::VarId).zip(&flat.variables).filter(|(_, v)| {
+            !v.hidden && v.ty == crate::flat::Type::Real && v.variability == crate::flat::Variability::Continuous
+        });
+        let (wanted, names): (Vec<_>, Vec<_>) = shown.map(|(v, variable)| (v, &variable.name)).unzip();
+        let mut z = vec![0.0; runs.unknowns()];
+        let Ok(base) = runs.simulate(0, &z, &wanted) else { return Vec::new() };
+        z.iter_mut().zip(&blind.direction).for_each(|(z, d)| *z = 0.05 * d);
+        let Ok(moved) = runs.simulate(0, &z, &wanted) else { return Vec::new() };
+        let mut effects: Vec<(f64, &String)> =
+            base.iter().zip(&moved).zip(names).map(|((a, b), n)| (effect(a, b), n)).collect();
+        effects.retain(|(e, _)| *e > 2e-3);
+        effects.sort_by(|a, b| b.0.total_cmp(&a.0));
+        effects.into_iter().take(3).map(|(_, n)| n.clone()).collect()
+    }
+
+    /// Searches for the parameters.
+    ///
+    /// # Errors
+    /// As [`Identification::new`].
+    pub fn fit(&self) -> Result<Fit, Diagnostic> {
+        match self.inverse_model()? {
+            Some(mut model) => {
+                let minimum = search(self.problem, &mut model, &[]).ok_or_else(|| cannot_follow(None))?;
+                let train = self.force_fits(&mut model, &minimum);
+                Ok(self.estimate(&mut model, &minimum, train))
+            }
+            None => {
+                let mut model = self.output_error()?;
+                let floor: Vec<f64> = self.problem.full_scale.iter().map(|f| 1e-6 * f).collect();
+                let found = search(self.problem, &mut model, &floor);
+                let minimum = found.ok_or_else(|| cannot_follow(model.broken.as_ref()))?;
+                let train = signal_fits(self.problem, model.weights(), minimum.residual.as_slice(), self.train);
+                Ok(self.estimate(&mut model, &minimum, train))
+            }
+        }
+    }
+
+    fn force_fits(&self, model: &mut InverseModel<'_>, minimum: &Minimum) -> Vec<SignalFit> {
+        let weights = model.weights().clone();
+        let one = |(k, input): (usize, &crate::study::BoundInput)| {
+            let rmse = weights.rms(k, minimum.residual.as_slice())?;
+            let count: usize = weights.series.iter().filter(|s| s.signal == k).map(|s| s.rows.len()).sum();
+            let relative = rmse / (model.power(k) / count as f64).sqrt();
+            let (name, unit) = (input.name.clone(), input.unit.clone());
+            Some(SignalFit { name, unit, rmse, relative, correlation: weights.correlation[k] })
+        };
+        self.problem.bound.inputs.iter().enumerate().filter_map(one).collect()
+    }
+
+    fn estimate(&self, model: &mut dyn Residuals, minimum: &Minimum, train: Vec<SignalFit>) -> Fit {
+        let p = self.problem.free.len();
+        let covariance = covariance(model.weights(), minimum);
+        let free = self.problem.free.iter().zip(&minimum.z);
+        let slope: Vec<f64> = free.clone().map(|(f, &z)| f.slope(z).abs()).collect();
+        let deviation = |j: usize| covariance[(j, j)].max(0.0).sqrt();
+        let correlation = DMatrix::from_fn(p, p, |i, j| {
+            let scale = deviation(i) * deviation(j);
+            if scale > 0.0 { covariance[(i, j)] / scale } else { f64::from(u8::from(i == j)) }
+        });
+        Fit {
+            method: self.method(),
+            values: free.map(|(f, &z)| f.value(z)).collect(),
+            deviations: (0..p).map(|j| slope[j] * deviation(j)).collect(),
+            correlation,
+            at_bound: minimum.at_bound[..p].to_vec(),
+            converged: minimum.converged,
+            iterations: minimum.iterations,
+            train,
+        }
+    }
+
+    /// How the fitted model does on recordings that were not used. Initial states that no parameter decides are found
+    /// from the first 5 % of each recording, at most 0.2 s, which are then not scored.
+    ///
+    /// # Errors
+    /// When the model cannot follow them.
+    pub fn judge_held(&self, fit: &Fit, held: &[Recording]) -> Result<Vec<SignalFit>, Diagnostic> {
+        let z: Vec<f64> = self.problem.free.iter().zip(&fit.values).map(|(f, &v)| f.place(v)).collect();
+        if let Some(inverse) = &self.inverse {
+            let model = InverseModel::new(self.problem, inverse, held);
+            let mut model =
+                model.ok_or_else(|| Diagnostic::new(Code::BadStudy, "a held recording is too short to judge by"))?;
+            let residual = model.residual(&z).ok_or_else(|| cannot_follow(None))?;
+            let minimum = Minimum {
+                jacobian: DMatrix::zeros(residual.len(), z.len()),
+                residual,
+                converged: true,
+                iterations: 0,
+                at_bound: Vec::new(),
+                z,
+            };
+            return Ok(self.force_fits(&mut model, &minimum));
+        }
+        let whole = OutputError::new(self.problem, held, Some(&z)).map_err(|b| cannot_follow(Some(&b)))?;
+        let mut scored = held.to_vec();
+        let mut states = vec![0.0; whole.unknowns()];
+        if whole.frees_states() {
+            let mut first = whole.beginning(|times| beginning(times));
+            let unbounded =
+                Bounds { low: vec![f64::NEG_INFINITY; states.len()], high: vec![f64::INFINITY; states.len()] };
+            if let Some(found) = minimise(&mut first, &states, &unbounded, Effort::default()) {
+                states = found.z;
+            }
+            for recording in &mut scored {
+                let end = recording.times[0] + beginning(&recording.times);
+                let count = recording.times.partition_point(|&t| t <= end);
+                recording.signals.iter_mut().for_each(|s| s[..count].fill(f64::NAN));
+            }
+        }
+        let mut whole = OutputError::new(self.problem, &scored, Some(&z)).map_err(|b| cannot_follow(Some(&b)))?;
+        let residual = whole.residual(&states).ok_or_else(|| cannot_follow(whole.broken.as_ref()))?;
+        Ok(signal_fits(self.problem, whole.weights(), residual.as_slice(), &scored))
+    }
+}
+
+/// How much of a recording serves to find its initial state, in seconds.
+fn beginning(times: &[f64]) -> f64 {
+    (0.05 * (times[times.len() - 1] - times[0])).min(0.2)
+}
+
+/// The sum of squares of the sensitivities at the start, initial states taken out.
+fn information(model: &mut dyn Residuals, parameters: usize) -> Result<DMatrix<f64>, Option<Broken>> {
+    let z = vec![0.0; model.unknowns()];
+    let residual = model.residual(&z).ok_or(None)?;
+    let jacobian = model.jacobian(&z, &residual).ok_or(None)?;
+    let data = model.weights().series.iter().map(|s| s.rows.end).max().unwrap_or(0);
+    let seen = jacobian.rows(0, data);
+    let mut all = seen.tr_mul(&seen);
+    // an initial state is known to about its nominal value
+    (parameters..all.nrows()).for_each(|k| all[(k, k)] += 1.0);
+    Ok(without_rest(&all, parameters))
+}
+
+/// Minimises, takes the deviations of the signals from the errors, and minimises again until they stay.
+fn search(problem: &Problem<'_>, model: &mut dyn Residuals, floor: &[f64]) -> Option<Minimum> {
+    let unknowns = model.unknowns();
+    let bounds = problem.bounds(unknowns);
+    let floor = if floor.is_empty() { vec![0.0; model.weights().sigma.len()] } else { floor.to_vec() };
+    let mut z = vec![0.0; unknowns];
+    let start = Shared(model).residual(&z)?;
+    model.weights().learn(start.as_slice(), &floor);
+    let mut iterations = 0;
+    for round in 0..5 {
+        let mut minimum = minimise(&mut Shared(model), &z, &bounds, Effort::default())?;
+        iterations += minimum.iterations;
+        minimum.iterations = iterations;
+        z.clone_from(&minimum.z);
+        let change = model.weights().learn(minimum.residual.as_slice(), &floor);
+        if change < 0.02 || round == 4 {
+            return Some(minimum);
+        }
+    }
+    None
+}
+
+/// Lets a search borrow a model between two looks at its weights.
+struct Shared<'a>(&'a mut dyn Residuals);
+
+impl LeastSquares for Shared<'_> {
+    fn residual(&mut self, z: &[f64]) -> Option<DVector<f64>> {
+        self.0.residual(z)
+    }
+
+    fn jacobian(&mut self, z: &[f64], residual: &DVector<f64>) -> Option<DMatrix<f64>> {
+        self.0.jacobian(z, residual)
+    }
+}
+
+/// The covariance of the unknowns in z: the residuals' own spread between two inverses of the information.
+fn covariance(weights: &Weights, minimum: &Minimum) -> DMatrix<f64> {
+    let (jacobian, residual) = (&minimum.jacobian, &minimum.residual);
+    let n = minimum.z.len();
+    let data = weights.series.iter().map(|s| s.rows.end).max().unwrap_or(0);
+    let known = jacobian.rows(data, jacobian.nrows() - data);
+    let mut information = jacobian.tr_mul(jacobian);
+    let small = 1e-12 * information.diagonal().max().max(f64::MIN_POSITIVE);
+    (0..n).for_each(|j| information[(j, j)] += small);
+    let mut spread = weights.spread(jacobian, residual);
+    spread *= data as f64 / (data.saturating_sub(n)).max(1) as f64;
+    spread += known.tr_mul(&known);
+    match information.cholesky() {
+        Some(c) => {
+            let half = c.solve(&spread);
+            c.solve(&half.transpose())
+        }
+        None => DMatrix::from_element(n, n, f64::INFINITY),
+    }
+}
+
+fn signal_fits(problem: &Problem<'_>, weights: &Weights, residual: &[f64], recordings: &[Recording]) -> Vec<SignalFit> {
+    let one = |(k, signal): (usize, &crate::study::BoundSignal)| {
+        let rmse = weights.rms(k, residual)?;
+        let values: Vec<f64> = recordings.iter().flat_map(|r| &r.signals[k]).copied().filter(|v| !v.is_nan()).collect();
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        let spread = (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt();
+        let of_signal = weights.series.iter().filter(|s| s.signal == k);
+        let correlation = of_signal.map(|s| weights::correlation_time(&residual[s.rows.clone()])).fold(1.0, f64::max);
+        let (name, unit) = (signal.name.clone(), signal.unit.clone());
+        Some(SignalFit { name, unit, rmse, relative: rmse / spread, correlation })
+    };
+    problem.bound.signals.iter().enumerate().filter_map(one).collect()
+}
+
+/// The largest change over the range of the first.
+fn effect(base: &[f64], moved: &[f64]) -> f64 {
+    let range =
+        base.iter().copied().fold(f64::NEG_INFINITY, f64::max) - base.iter().copied().fold(f64::INFINITY, f64::min);
+    let change = base.iter().zip(moved).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let size = base.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+    if size > 0.0 && range > 0.0 { change / range.max(1e-3 * size) } else { 0.0 }
+}
+
+fn cannot_follow(broken: Option<&Broken>) -> Diagnostic {
+    let d = Diagnostic::new(Code::StepTooSmall, "the model cannot follow the recording with its start values");
+    match broken {
+        Some(b) if b.time.is_finite() => {
+            d.note(format!("at {} s: {}", crate::results::number::text(b.time), b.message))
+        }
+        Some(b) => d.note(b.message.clone()),
+        None => d,
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,126 @@
+//! The result of an identification in numbers and in words.
+
+use super::{Fit, Identification, Method, Problem, SignalFit};
+use crate::results::number::rounded;
+use serde::Serialize;
+use serde_json::{Map, json};
+use std::fmt::Write;
+
+/// `result.json`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// `output error` or `inverse model`.
+    pub method: &'static str,
+    /// The parameters found: value, one standard deviation (null where the data say nothing) and unit.
+    pub parameters: Map<String, serde_json::Value>,
+    /// Groups that the data cannot tell apart; a group of one has no influence.
+    pub inseparable: Vec<Vec<String>>,
+    /// Root mean square errors in the signals' units.
+    pub fit: Errors,
+    /// The same over the signals' own variation.
+    pub fit_relative: Errors,
+    /// Over how many samples the errors on the train recordings resemble each other.
+    pub residual_correlation: Map<String, serde_json::Value>,
+    /// Correlations of the estimates, in the order of `parameters`.
+    pub correlation: Vec<Vec<f64>>,
+    /// Whether a least value was reached.
+    pub converged: bool,
+    /// Parameters that ended at a bound.
+    pub at_bound: Vec<String>,
+    /// Steps of the search.
+    pub iterations: usize,
+}
+
+/// By role and signal.
+#[derive(Clone, Debug, Serialize)]
+pub struct Errors {
+    /// On the recordings used.
+    pub train: Map<String, serde_json::Value>,
+    /// On those kept back.
+    pub held: Map<String, serde_json::Value>,
+}
+
+impl Report {
+    /// Puts the result together.
+    pub fn new(problem: &Problem<'_>, found: &Identification<'_>, fit: &Fit, held: &[SignalFit]) -> Report {
+        let values = problem.free.iter().enumerate().map(|(j, f)| {
+            let std = Some(fit.deviations[j]).filter(|s| s.is_finite());
+            (f.name.clone(), json!({"value": fit.values[j], "std": std, "unit": f.unit}))
+        });
+        let by = |fits: &[SignalFit], of: fn(&SignalFit) -> f64| {
+            fits.iter().map(|f| (f.name.clone(), json!(of(f)))).collect()
+        };
+        let errors = |of: fn(&SignalFit) -> f64| Errors { train: by(&fit.train, of), held: by(held, of) };
+        let names = |group: &Vec<usize>| group.iter().map(|&j| problem.free[j].name.clone()).collect();
+        let ends = problem.free.iter().zip(&fit.at_bound).filter(|(_, at)| **at);
+        Report {
+            method: word(fit.method),
+            parameters: values.collect(),
+            inseparable: found.separation.blind.iter().map(|b| names(&b.group)).collect(),
+            fit: errors(|f| f.rmse),
+            fit_relative: errors(|f| f.relative),
+            residual_correlation: by(&fit.train, |f| f.correlation),
+            correlation: fit.correlation.row_iter().map(|r| r.iter().copied().collect()).collect(),
+            converged: fit.converged,
+            at_bound: ends.map(|(f, _)| f.name.clone()).collect(),
+            iterations: fit.iterations,
+        }
+    }
+}
+
+fn word(method: Method) -> &'static str {
+    if method == Method::Inverse { "inverse model" } else { "output error" }
+}
+
+/// What can be found at all, in words.
+pub fn separation_words(problem: &Problem<'_>, found: &Identification<'_>) -> String {
+    let s = &found.separation;
+    let mut text = format!(
+        "{} parameters, {} independent combinations in the data (condition {})\n",
+        problem.free.len(),
+        s.rank,
+        rounded(s.condition, 3)
+    );
+    for (blind, advice) in s.blind.iter().zip(&found.advice) {
+        let names: Vec<String> = blind.group.iter().map(|&j| format!("`{}`", problem.free[j].name)).collect();
+        let line = match &names[..] {
+            [one] => format!("the data say nothing about {one}"),
+            all => format!("the data cannot tell apart {}", all.join(", ")),
+        };
+        let help = match &advice[..] {
+            [] => "no variable of the model would tell in these recordings: another excitation is needed".to_owned(),
+            some => format!("measuring one of these would help: {}", some.join(", ")),
+        };
+        let _ = writeln!(text, "{line}; {help}");
+    }
+    text
+}
+
+/// The parameters found and how well the signals are met, in words.
+pub fn fit_words(problem: &Problem<'_>, fit: &Fit, held: &[SignalFit]) -> String {
+    let mut text = String::new();
+    if !fit.converged {
+        text.push_str("the search did not reach a least value: the numbers below are where it stopped\n");
+    }
+    for (free, _) in problem.free.iter().zip(&fit.at_bound).filter(|(_, at)| **at) {
+        let _ = writeln!(text, "`{}` ended at a bound: its deviation is that of the bounded problem", free.name);
+    }
+    let width = problem.free.iter().map(|f| f.name.len()).max().unwrap_or(0);
+    for (j, free) in problem.free.iter().enumerate() {
+        let value = rounded(fit.values[j], 6);
+        let deviation = rounded(fit.deviations[j], 2);
+        let _ = writeln!(text, "  {:width$}  {value} +- {deviation} {}", free.name, free.unit);
+    }
+    for (role, fits) in [("train", fit.train.as_slice()), ("held", held)] {
+        for f in fits {
+            let (rmse, share) = (rounded(f.rmse, 4), rounded(100.0 * f.relative, 3));
+            let coloured = if f.correlation > 2.0 {
+                format!(", errors resemble each other over {} samples", rounded(f.correlation, 2))
+            } else {
+                String::new()
+            };
+            let _ = writeln!(text, "  {role}: {} rmse {rmse} {} ({share} %){coloured}", f.name, f.unit);
+        }
+    }
+    text
+}

@@ -1,0 +1,123 @@
+//! What can be found at all: parameters without influence, and groups that the data cannot tell apart.
+
+use nalgebra::{DMatrix, DVector};
+
+/// A direction in which the unknowns can move unseen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Blind {
+    /// Indices of the parameters that take part, strongest first.
+    pub group: Vec<usize>,
+    /// The direction in z, of length 1.
+    pub direction: Vec<f64>,
+    /// One standard deviation along it, in z; infinite where nothing is seen at all.
+    pub deviation: f64,
+}
+
+/// What the data say about the parameters before the fit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Separation {
+    /// How many independent combinations the data determine.
+    pub rank: usize,
+    /// Largest over smallest singular value of the scaled sensitivities.
+    pub condition: f64,
+    /// What cannot be told apart.
+    pub blind: Vec<Blind>,
+    /// Per parameter one standard deviation in z that the data alone would give, the others being searched for too.
+    pub deviation: Vec<f64>,
+}
+
+/// A squared sine between a column and the others below which differences of runs cannot tell them apart.
+const ALIKE: f64 = 1e-7;
+/// Parameters take part in a direction from this share of the strongest on.
+const SHARE: f64 = 0.1;
+
+/// Judges `information`, the sum of squares of the sensitivities by z, initial states already taken out.
+pub fn separate(information: &DMatrix<f64>) -> Separation {
+    let p = information.nrows();
+    let size: Vec<f64> = (0..p).map(|j| information[(j, j)].max(0.0).sqrt()).collect();
+    // less than a deviation of 1 in z: less than its whole value
+    let seen: Vec<usize> = (0..p).filter(|&j| size[j] > 1.0).collect();
+    let mut blind: Vec<Blind> = (0..p)
+        .filter(|j| !seen.contains(j))
+        .map(|j| Blind { group: vec![j], direction: unit(p, j), deviation: 1.0 / size[j] })
+        .collect();
+    let alike = DMatrix::from_fn(seen.len(), seen.len(), |a, b| {
+        information[(seen[a], seen[b])] / (size[seen[a]] * size[seen[b]])
+    });
+    let eigen = alike.symmetric_eigen();
+    let largest = eigen.eigenvalues.iter().copied().fold(0.0, f64::max);
+    let smallest = eigen.eigenvalues.iter().copied().fold(f64::INFINITY, f64::min);
+    let mut variance = vec![0.0; p];
+    for (k, &value) in eigen.eigenvalues.iter().enumerate() {
+        let mut direction = DVector::zeros(p);
+        seen.iter().enumerate().for_each(|(a, &j)| direction[j] = eigen.eigenvectors[(a, k)] / size[j]);
+        let length = direction.norm();
+        let hidden = value < ALIKE * largest;
+        let deviation = if hidden { f64::INFINITY } else { length / value.sqrt() };
+        for j in 0..p {
+            variance[j] += if direction[j] == 0.0 { 0.0 } else { direction[j].powi(2) / value.max(0.0) };
+        }
+        if deviation > 1.0 {
+            let direction: Vec<f64> = direction.iter().map(|d| d / length).collect();
+            blind.push(Blind { group: group(&direction), direction, deviation });
+        }
+    }
+    (0..p).filter(|j| !seen.contains(j)).for_each(|j| variance[j] = size[j].powi(-2));
+    Separation {
+        rank: p - blind.len(),
+        condition: if seen.len() < p || smallest <= 0.0 { f64::INFINITY } else { (largest / smallest).sqrt() },
+        blind,
+        deviation: variance.into_iter().map(f64::sqrt).collect(),
+    }
+}
+
+fn unit(p: usize, j: usize) -> Vec<f64> {
+    (0..p).map(|i| f64::from(u8::from(i == j))).collect()
+}
+
+fn group(direction: &[f64]) -> Vec<usize> {
+    let most = direction.iter().fold(0.0f64, |m, d| m.max(d.abs()));
+    let mut group: Vec<usize> = (0..direction.len()).filter(|&j| direction[j].abs() >= SHARE * most).collect();
+    group.sort_by(|&a, &b| direction[b].abs().total_cmp(&direction[a].abs()));
+    group
+}
+
+/// Takes unknowns after the first `keep` out of the information: what remains when they are found too.
+pub fn without_rest(information: &DMatrix<f64>, keep: usize) -> DMatrix<f64> {
+    let rest = information.nrows() - keep;
+    let own = information.view((0, 0), (keep, keep)).into_owned();
+    if rest == 0 {
+        return own;
+    }
+    let cross = information.view((0, keep), (keep, rest)).into_owned();
+    match information.view((keep, keep), (rest, rest)).into_owned().cholesky() {
+        Some(inner) => own - &cross * inner.solve(&cross.transpose()),
+        None => own,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn groups_that_act_alike_and_parameters_without_influence() {
+        // the first two act as their sum, the third alone, the fourth not at all
+        let jacobian = DMatrix::from_fn(50, 4, |t, j| {
+            let t = t as f64;
+            [1e3 * (0.1 * t).sin(), 1e3 * (0.1 * t).sin(), 10.0 * t, 0.0][j]
+        });
+        let found = separate(&jacobian.tr_mul(&jacobian));
+        assert_eq!(found.rank, 2);
+        let groups: Vec<Vec<usize>> = found.blind.iter().map(|b| b.group.clone()).collect();
+        assert!(groups[0] == [3] && (groups[1] == [0, 1] || groups[1] == [1, 0]), "{groups:?}");
+        assert!(found.deviation[2] < 1e-2 && found.deviation[3].is_infinite());
+    }
+
+    #[test]
+    fn unknowns_that_are_found_too_cost_information() {
+        let jacobian = DMatrix::from_row_slice(2, 2, &[1.0, 1.0, 1.0, 0.0]);
+        let left = without_rest(&jacobian.tr_mul(&jacobian), 1);
+        assert!((left[(0, 0)] - 1.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,161 @@
+use super::*;
+use crate::diag::Sources;
+use crate::study::{Role, Study};
+use crate::world::MemoryWorld;
+use std::path::Path;
+
+/// Evenly spread numbers between -1 and 1, from a congruential generator.
+struct Dice(u64);
+
+impl Dice {
+    fn roll(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+}
+
+const LAG: &str = "model Lag
+  parameter Real T(unit = \"s\", min = 0) = 1; parameter Real k = 1; parameter Real g = 1; parameter Real idle = 1;
+  input Real u; Real x(start = 0, fixed = true); Real middle;
+equation
+  middle = g*u; T*der(x) = k*middle - x;
+end Lag;";
+
+/// T = 0.5, k g = 2, from x = 0.7: exact, with held inputs and noise of this amplitude.
+fn lag_recording(seed: u64, amplitude: f64) -> String {
+    let mut dice = Dice(seed);
+    let mut text = "time,u,x\n".to_owned();
+    let (mut x, mut u) = (0.7f64, 0.0);
+    for k in 0..300 {
+        if k % 20 == 0 {
+            u = dice.roll().round() + 0.5;
+        }
+        text.push_str(&format!("{},{u},{}\n", f64::from(k) * 0.02, x + amplitude * dice.roll()));
+        x = 2.0 * u + (x - 2.0 * u) * (-0.02f64 / 0.5).exp();
+    }
+    text
+}
+
+fn study(parameters: &str) -> String {
+    format!(
+        "version = 1\nmodel = \"m.mo\"\n[inputs]\nu = {{}}\n[signals]\nx = {{}}\n[[recordings]]\nfile = \"a.csv\"\n\
+         [[recordings]]\nfile = \"b.csv\"\nrole = \"held\"\n[parameters]\n{parameters}"
+    )
+}
+
+fn world(model: &str, study: &str, train: String, held: String) -> MemoryWorld {
+    let mut world = MemoryWorld::single("m.mo", model);
+    world.add("study.toml", study);
+    world.add("a.csv", train);
+    world.add("b.csv", held);
+    world
+}
+
+/// Runs everything and hands the report to `see`.
+fn identified<T>(world: &MemoryWorld, method: Method, see: impl FnOnce(&Report, &str) -> T) -> T {
+    let mut sources = Sources::default();
+    let study = Study::read(world, Path::new("study.toml"), &mut sources).value.expect("a study");
+    let outcome = crate::compile(world, &study.request(), &crate::lower::Options { native: false });
+    let model = outcome.value.unwrap_or_else(|| panic!("{:?}", outcome.diagnostics));
+    let bound = study.bind(&model.flat).value.expect("fits");
+    let train = bound.load(world, None, Role::Train, &mut sources).value.expect("readable");
+    let problem = Problem::new(&model, &bound, &train).expect("can be asked");
+    let found = Identification::new(&problem, &train, method).expect("runs");
+    let fit = found.fit().expect("runs");
+    let held = bound.load(world, None, Role::Held, &mut sources).value.expect("readable");
+    let held = found.judge_held(&fit, &held).expect("runs");
+    let words = separation_words(&problem, &found) + &fit_words(&problem, &fit, &held);
+    see(&Report::new(&problem, &found, &fit, &held), &words)
+}
+
+fn number(report: &Report, name: &str, what: &str) -> f64 {
+    report.parameters[name][what].as_f64().expect("a number")
+}
+
+#[test]
+fn parameters_and_the_unknown_initial_state_are_found() {
+    let text = study("T = { min = 0.01 }\nk = { sigma = \"80 %\" }\n");
+    let world = world(LAG, &text, lag_recording(1, 0.02), lag_recording(2, 0.02));
+    identified(&world, Method::Auto, |report, _| {
+        assert_eq!((report.method, report.converged), ("output error", true));
+        for (name, truth) in [("T", 0.5), ("k", 2.0)] {
+            let (value, std) = (number(report, name, "value"), number(report, name, "std"));
+            assert!((value - truth).abs() < 3.0 * std && std < 0.01 * truth, "{name}: {value} +- {std}");
+        }
+        let held = report.fit.held["x"].as_f64().unwrap();
+        assert!((held - 0.02 / 3f64.sqrt()).abs() < 2e-3, "{held}");
+        assert!(report.inseparable.is_empty() && report.at_bound.is_empty());
+    });
+}
+
+#[test]
+fn what_cannot_be_told_apart_is_said_with_the_sensor_that_would() {
+    let text = study("T = { min = 0.01 }\nk = { min = 0.1 }\ng = { min = 0.1 }\nidle = { min = 0.1 }\n");
+    let world = world(LAG, &text, lag_recording(1, 0.02), lag_recording(2, 0.02));
+    identified(&world, Method::Output, |report, words| {
+        assert_eq!(report.inseparable.len(), 2);
+        assert_eq!(report.inseparable[0], ["idle"]);
+        assert!(report.inseparable[1].contains(&"k".to_owned()) && report.inseparable[1].contains(&"g".to_owned()));
+        assert!(words.contains("measuring one of these would help: middle"), "{words}");
+    });
+}
+
+#[test]
+fn a_bound_that_holds_is_named() {
+    let text = study("T = { min = 0.8 }\nk = { min = 0.1 }\n");
+    let world = world(LAG, &text, lag_recording(1, 0.02), lag_recording(2, 0.02));
+    identified(&world, Method::Output, |report, words| {
+        assert_eq!(report.at_bound, ["T"]);
+        assert!(words.contains("`T` ended at a bound"));
+    });
+}
+
+#[test]
+fn the_inverse_model_finds_mass_and_friction() {
+    let model = "model Slider
+      parameter Real M(unit = \"kg\", min = 0) = 1; parameter Real d(unit = \"N.s/m\", min = 0) = 1;
+      input Real u(unit = \"N\"); Real x(unit = \"m\", start = 0, fixed = true); Real v(unit = \"m/s\");
+    equation
+      der(x) = v; M*der(v) = u - d*v;
+    end Slider;";
+    // x = sin(3 t) + sin(7 t)/3 with M = 4, d = 3
+    let recording = |amplitude: f64, seed: u64| {
+        let mut dice = Dice(seed);
+        let mut text = "time,u,x\n".to_owned();
+        for k in 0..4000 {
+            let t = f64::from(k) * 0.002;
+            let x = (3.0 * t).sin() + (7.0 * t).sin() / 3.0;
+            let v = 3.0 * (3.0 * t).cos() + 7.0 / 3.0 * (7.0 * t).cos();
+            let a = -9.0 * (3.0 * t).sin() - 49.0 / 3.0 * (7.0 * t).sin();
+            text.push_str(&format!("{t},{},{}\n", 4.0 * a + 3.0 * v + amplitude * dice.roll(), x + 1e-5 * dice.roll()));
+        }
+        text
+    };
+    let world = world(model, &study("M = { min = 0.1 }\nd = { min = 0.0 }\n"), recording(1.0, 3), recording(0.0, 4));
+    identified(&world, Method::Auto, |report, _| {
+        assert_eq!(report.method, "inverse model");
+        for (name, truth) in [("M", 4.0), ("d", 3.0)] {
+            let (value, std) = (number(report, name, "value"), number(report, name, "std"));
+            assert!((value - truth).abs() < 0.01 * truth && std < 0.05 * truth, "{name}: {value} +- {std}");
+        }
+    });
+}
+
+#[test]
+fn questions_without_sense() {
+    let said = |text: &str| {
+        let world = world(LAG, text, lag_recording(1, 0.02), lag_recording(2, 0.02));
+        let mut sources = Sources::default();
+        let study = Study::read(&world, Path::new("study.toml"), &mut sources).value.expect("a study");
+        let model = crate::compile(&world, &study.request(), &crate::lower::Options { native: false }).value.unwrap();
+        let bound = study.bind(&model.flat).value.expect("fits");
+        let train = bound.load(&world, None, Role::Train, &mut sources).value.expect("readable");
+        match Problem::new(&model, &bound, &train) {
+            Err(d) => d[0].message.clone(),
+            Ok(p) => Identification::new(&p, &train, Method::Inverse).err().expect("no inverse").message,
+        }
+    };
+    assert_eq!(said(&study("T = \"exact\"\n")), "the study has no parameters to find");
+    assert_eq!(said(&study("T = { min = 2 }\n")), "the bounds of `T` exclude its value in the model, 1");
+    assert_eq!(said(&study("T = { min = 0.1 }\n")), "the model cannot be inverted with this study");
+}

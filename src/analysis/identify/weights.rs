@@ -1,0 +1,134 @@
+//! Weights of residuals: one standard deviation a signal, widened where neighbouring residuals resemble each other.
+
+use nalgebra::{DMatrix, DVector};
+use std::ops::Range;
+
+/// The residuals of one signal along one recording.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Series {
+    /// Index of the recording.
+    pub recording: usize,
+    /// Index of the signal.
+    pub signal: usize,
+    /// Rows of the residual vector, in the order of time.
+    pub rows: Range<usize>,
+}
+
+/// How the rows of a residual are weighed.
+#[derive(Clone, Debug)]
+pub struct Weights {
+    /// The rows that come from data; others follow them.
+    pub series: Vec<Series>,
+    /// Per signal what its errors are divided by: its standard deviation times the root of its correlation time.
+    pub sigma: Vec<f64>,
+    /// Per signal the standard deviation of its errors.
+    pub deviation: Vec<f64>,
+    /// Per signal over how many samples its errors resemble each other.
+    pub correlation: Vec<f64>,
+}
+
+impl Weights {
+    /// With first guesses of the standard deviations.
+    pub fn new(series: Vec<Series>, sigma: Vec<f64>) -> Weights {
+        Weights { series, correlation: vec![1.0; sigma.len()], deviation: sigma.clone(), sigma }
+    }
+
+    /// Divides errors by their standard deviations.
+    pub fn scale(&self, errors: &mut [f64]) {
+        for s in &self.series {
+            errors[s.rows.clone()].iter_mut().for_each(|e| *e /= self.sigma[s.signal]);
+        }
+    }
+
+    /// The root mean square of a signal's errors, in its unit; `None` where there are none.
+    pub fn rms(&self, signal: usize, residual: &[f64]) -> Option<f64> {
+        let rows = self.series.iter().filter(|s| s.signal == signal);
+        let (mut sum, mut count) = (0.0, 0usize);
+        for s in rows {
+            sum += residual[s.rows.clone()].iter().map(|r| r * r).sum::<f64>();
+            count += s.rows.len();
+        }
+        (count > 0).then(|| self.sigma[signal] * (sum / count as f64).sqrt())
+    }
+
+    /// Takes the standard deviations from a residual; never below `floor`, in the signals' units. Returns the largest
+    /// relative change.
+    pub fn learn(&mut self, residual: &[f64], floor: &[f64]) -> f64 {
+        let mut change = 0.0f64;
+        for k in 0..self.sigma.len() {
+            let Some(rms) = self.rms(k, residual) else { continue };
+            let times =
+                self.series.iter().filter(|s| s.signal == k).map(|s| correlation_time(&residual[s.rows.clone()]));
+            self.correlation[k] = times.fold(1.0, f64::max);
+            self.deviation[k] = rms.max(floor[k]).max(f64::MIN_POSITIVE);
+            let sigma = self.deviation[k] * self.correlation[k].sqrt();
+            change = change.max((sigma / self.sigma[k]).ln().abs());
+            self.sigma[k] = sigma;
+        }
+        change
+    }
+
+    /// The sum of the outer products of scores, with neighbours in time: what the residuals really say about the spread
+    /// of the estimate. Source: W. K. Newey, K. D. West, Econometrica 55 (1987) 703.
+    pub fn spread(&self, jacobian: &DMatrix<f64>, residual: &DVector<f64>) -> DMatrix<f64> {
+        let p = jacobian.ncols();
+        let mut spread = DMatrix::zeros(p, p);
+        for s in &self.series {
+            let scores =
+                DMatrix::from_fn(s.rows.len(), p, |t, j| jacobian[(s.rows.start + t, j)] * residual[s.rows.start + t]);
+            let lags = ((4.0 * self.correlation[s.signal]).ceil() as usize).min(s.rows.len() / 4);
+            spread += scores.tr_mul(&scores);
+            for lag in 1..=lags {
+                let weight = 1.0 - lag as f64 / (lags + 1) as f64;
+                let n = scores.nrows() - lag;
+                let cross = scores.rows(0, n).tr_mul(&scores.rows(lag, n));
+                spread += weight * (&cross + cross.transpose());
+            }
+        }
+        spread
+    }
+}
+
+/// Over how many samples errors resemble each other: 1 plus twice the sum of the autocorrelation up to its first
+/// negative value.
+pub fn correlation_time(values: &[f64]) -> f64 {
+    let n = values.len();
+    let power: f64 = values.iter().map(|v| v * v).sum();
+    if power <= 0.0 {
+        return 1.0;
+    }
+    let mut time = 1.0;
+    for lag in 1..n / 2 {
+        let product: f64 = values.iter().zip(&values[lag..]).map(|(a, b)| a * b).sum();
+        if product <= 0.0 {
+            break;
+        }
+        time += 2.0 * product / power;
+    }
+    time
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn standard_deviations_are_learned() {
+        let series = vec![Series { recording: 0, signal: 0, rows: 0..4 }];
+        let mut weights = Weights::new(series, vec![2.0]);
+        let mut errors = [2.0, -2.0, 2.0, -2.0];
+        weights.scale(&mut errors);
+        assert_eq!(errors, [1.0, -1.0, 1.0, -1.0]);
+        assert_eq!(weights.rms(0, &errors), Some(2.0));
+        assert!(weights.learn(&errors, &[0.0]) < 1e-12);
+        weights.learn(&errors, &[5.0]);
+        assert_eq!(weights.sigma, [5.0]);
+    }
+
+    #[test]
+    fn correlation_times() {
+        assert_eq!(correlation_time(&[1.0, -1.0, 1.0, -1.0]), 1.0);
+        let slow: Vec<f64> = (0..400).map(|k| if k / 10 % 2 == 0 { 1.0 } else { -1.0 }).collect();
+        assert!(correlation_time(&slow) > 5.0);
+    }
+}

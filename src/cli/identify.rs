@@ -1,0 +1,83 @@
+//! `bramah identify`
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use super::messages::Messages;
+use super::recorder::write_text;
+use super::study::{Opened, open};
+use super::{Ending, Failure};
+use crate::analysis::identify::{Identification, Method, Problem, Report, fit_words, separation_words};
+use crate::study::Role;
+
+/// Find parameters from recordings of a bench
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Before the fit stands what the data can tell at all: parameters without influence, and groups that cannot be told apart.
+Estimates carry one standard deviation, corrected for errors that resemble their neighbours. Recordings of role `held`
+are read last and judge the result.
+
+Examples:
+  bramah identify identify.toml --data bench/ --output result.json
+  bramah identify identify.toml --method output     runs against signals, not the inverse model
+
+Exit status: 0 found; 1 the model is wrong, cannot follow the recordings, or the search did not converge;
+2 a study, file or column that cannot be used.")]
+pub(super) struct IdentifyArgs {
+    /// The study
+    #[arg(value_name = "STUDY.toml")]
+    study: PathBuf,
+    /// The folder of the recordings [default: that of the study]
+    #[arg(long, value_name = "DIR")]
+    data: Option<PathBuf>,
+    /// The result as JSON, `-` for stdout
+    #[arg(short, long, visible_alias = "output-file", default_value = "-", value_name = "FILE")]
+    output: String,
+    /// `inverse`: the force that the measured motion needs; `output`: runs from the inputs alone
+    #[arg(long, value_enum, default_value_t = MethodArg::Auto)]
+    method: MethodArg,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum MethodArg {
+    /// The inverse model where forces or torques are measured, else runs
+    Auto,
+    /// Runs from the inputs alone against the signals
+    Output,
+    /// Measured motion in, force out
+    Inverse,
+}
+
+impl MethodArg {
+    fn method(self) -> Method {
+        match self {
+            MethodArg::Auto => Method::Auto,
+            MethodArg::Output => Method::Output,
+            MethodArg::Inverse => Method::Inverse,
+        }
+    }
+}
+
+pub(super) fn run(args: &IdentifyArgs, messages: &mut Messages) -> Result<Ending, Failure> {
+    let mut opened = open(&args.study, args.data.as_deref(), messages)?;
+    let train = opened.load(Role::Train, messages)?;
+    let model = opened.model.clone();
+    let bound = opened.bound.clone();
+    let problem = Problem::new(&model, &bound, &train).map_err(|d| opened.failure(d, messages))?;
+    let fail = |d, opened: &Opened, messages: &mut Messages| opened.failure(vec![d], messages);
+    let found = Identification::new(&problem, &train, args.method.method()).map_err(|d| fail(d, &opened, messages))?;
+    messages.remark(separation_words(&problem, &found).trim_end());
+    let fit = found.fit().map_err(|d| fail(d, &opened, messages))?;
+    let held = if bound.has(Role::Held) { opened.load(Role::Held, messages)? } else { Vec::new() };
+    let held = if held.is_empty() {
+        Vec::new()
+    } else {
+        found.judge_held(&fit, &held).map_err(|d| fail(d, &opened, messages))?
+    };
+    messages.remark(fit_words(&problem, &fit, &held).trim_end());
+    let report = Report::new(&problem, &found, &fit, &held);
+    let text = serde_json::to_string_pretty(&report).expect("numbers and texts always serialize");
+    write_text(&args.output, &format!("{text}\n"))?;
+    Ok(if fit.converged { Ending::Fine } else { Ending::Wrong })
+}
