@@ -3,6 +3,7 @@
 #![allow(clippy::disallowed_methods, reason = "tests read their own files")]
 #![allow(clippy::print_stdout, reason = "a test without its data says so")]
 
+use bramah::analysis::identify::{Identification, Method, Problem, Report};
 use bramah::diag::Sources;
 use bramah::diag::render::{Format, render};
 use bramah::study::{Bound, Recording, Role, Study};
@@ -145,4 +146,36 @@ fn the_axis_of_the_gap_bench_reproduces_its_nominal_plant() {
             assert!(error < 1e-4 * size, "{file}: {} by {}", signal.name, error / size);
         }
     }
+}
+
+/// What `bramah identify` finds with a study: values by parameter, and errors by signal on the held recordings.
+fn identified(file: &str, folder: &str) -> Option<Report> {
+    let (bound, simulation) = tied(&study(file), None);
+    let train = recordings(&bound, folder, Role::Train)?;
+    let problem = Problem::new(simulation.model(), &bound, &train).expect("a sound question");
+    let found = Identification::new(&problem, &train, Method::Auto).expect("runs");
+    let fit = found.fit().expect("runs");
+    let held = found.judge_held(&fit, &recordings(&bound, folder, Role::Held)?).expect("runs");
+    Some(Report::new(&problem, &found, &fit, &held))
+}
+
+/// The published values, within what the publication and ours differ in filtering.
+#[test]
+fn the_axis_is_identified_by_its_inverse_model() {
+    let Some(report) = identified("Emps/identify.toml", "data/emps") else { return };
+    for (name, published, share) in [("M", 95.1, 0.01), ("F_v", 203.5, 0.04), ("F_c", 20.4, 0.04), ("F_0", -3.16, 0.03)]
+    {
+        let (value, std) = (report.parameters[name]["value"].as_f64(), report.parameters[name]["std"].as_f64());
+        let (value, std) = value.zip(std).expect("numbers");
+        assert!((value - published).abs() < share * published.abs(), "{name}: {value}");
+        assert!((value - published).abs() < 2.0 * std, "{name}: {value} +- {std}");
+    }
+    assert!(report.converged && report.fit_relative.train["F"].as_f64().expect("a number") < 0.041);
+}
+
+/// 0.34 V is the reference fit.
+#[test]
+fn the_tanks_are_identified() {
+    let Some(report) = identified("CascadedTanks/identify.toml", "data/cascaded_tanks") else { return };
+    assert!(report.converged && report.fit.held["y"].as_f64().expect("a number") < 0.33, "{:?}", report.fit);
 }

@@ -133,10 +133,10 @@ impl<'a> Problem<'a> {
     fn prior_rows(&self, jacobian: &mut DMatrix<f64>) {
         let known = self.free.iter().filter(|f| f.prior.is_finite()).count();
         let states = jacobian.ncols() - self.free.len();
-        let mut row = jacobian.nrows() - states - known;
-        for (j, free) in self.free.iter().enumerate().filter(|(_, f)| f.prior.is_finite()) {
-            jacobian[(row, j)] = 1.0 / free.prior;
-            row += 1;
+        let first = jacobian.nrows() - states - known;
+        let with_prior = self.free.iter().enumerate().filter(|(_, f)| f.prior.is_finite());
+        for (row, (j, free)) in with_prior.enumerate() {
+            jacobian[(first + row, j)] = 1.0 / free.prior;
         }
     }
 
@@ -353,7 +353,7 @@ impl<'a> Identification<'a> {
         let mut scored = held.to_vec();
         let mut states = vec![0.0; whole.unknowns()];
         if whole.frees_states() {
-            let mut first = whole.beginning(|times| beginning(times));
+            let mut first = whole.beginning(beginning);
             let unbounded =
                 Bounds { low: vec![f64::NEG_INFINITY; states.len()], high: vec![f64::INFINITY; states.len()] };
             if let Some(found) = minimise(&mut first, &states, &unbounded, Effort::default()) {
