@@ -125,7 +125,7 @@ fn the_axis_follows_force_and_position() {
 
 #[test]
 fn the_drives_follow_the_held_record_with_the_rectifying_pick_up() {
-    for (class, wanted) in [("CoupledDrives.Nominal", 2.5), ("CoupledDrives.Complete", 0.7)] {
+    for (class, wanted) in [("CoupledDrives.Nominal", 2.5), ("CoupledDrives.Complete", 0.5)] {
         let (bound, mut simulation) = tied(&study("CoupledDrives/gap.toml"), Some(class));
         let Some(held) = recordings(&bound, "data/ced_coupled_drives", Role::Held) else { return };
         let (error, _) = errors(&mut simulation, &bound, &held[0])[0];
