@@ -20,6 +20,7 @@ mod tangent;
 pub mod visit;
 
 use rustc_hash::FxHashMap;
+use std::hash::{Hash, Hasher};
 
 /// A flat variable: index into `FlatModel::variables` and, later, `Dae::variables`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -110,7 +111,7 @@ pub enum Rel {
 }
 
 /// One node. Build nodes through the methods of [`Exprs`], which simplify and share.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Node {
     /// A number, by its bits.
     Num(u64),
@@ -144,6 +145,33 @@ pub enum Node {
     Homotopy(ExprId, ExprId),
     /// One output of a user function, with scalarised arguments.
     Call(FunctionId, u32, Args),
+}
+
+/// Two words a node instead of one write per field: the pool is asked for every node of every equation. The bytes of
+/// numbers are swapped, for small whole numbers differ in their highest bits only, which the hash would not spread.
+impl Hash for Node {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        let (kind, a, b) = match *self {
+            Node::Num(bits) => return state.write_u64(bits.swap_bytes()),
+            Node::Time => (1, 0, 0),
+            Node::Var(v) => (2, v.0, 0),
+            Node::Der(v) => (3, v.0, 0),
+            Node::Pre(v) => (4, v.0, 0),
+            Node::Unary(op, a) => (0x100 | op as u32, a.0, 0),
+            Node::Binary(op, a, b) => (0x200 | op as u32, a.0, b.0),
+            Node::Rel(op, a, b) => (0x300 | op as u32, a.0, b.0),
+            Node::EventRel(op, a, b) => (0x400 | op as u32, a.0, b.0),
+            Node::EventFloor(a) => (5, a.0, 0),
+            Node::If(c, a, b) => (c.0 ^ 0x8000_0000, a.0, b.0),
+            Node::Sample(a, b) => (6, a.0, b.0),
+            Node::Initial => (7, 0, 0),
+            Node::Terminal => (8, 0, 0),
+            Node::Homotopy(a, b) => (9, a.0, b.0),
+            Node::Call(f, output, args) => (f.0 ^ 0x4000_0000, output, args.start),
+        };
+        state.write_u64(u64::from(kind));
+        state.write_u64(u64::from(a) << 32 | u64::from(b));
+    }
 }
 
 /// A pool of expressions. Node 0 is the number 0 and node 1 the number 1.

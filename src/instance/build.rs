@@ -458,7 +458,7 @@ impl<'a> Instance<'a, '_> {
             let own = &index[declared..];
             elements.push(self.build_one(plan, (&name, own), found, template, args, part)?);
         }
-        Some(self.add_node(Node::Array { dims: dims.to_vec(), elements }))
+        Some(self.add_node(Node::Array { dims: dims.to_vec(), elements: elements.into() }))
     }
 
     fn build_one(
@@ -734,7 +734,7 @@ impl<'a> Instance<'a, '_> {
             Node::Var(i) => self.number_variable(*i, order),
             Node::Object(scope) => self.number_scope(*scope, order),
             Node::Array { elements, .. } => {
-                for e in elements.clone() {
+                for &e in elements.clone().iter() {
                     self.number_node(e, order);
                 }
             }

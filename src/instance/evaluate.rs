@@ -795,6 +795,15 @@ pub enum Pick {
 
 /// Picks elements by known places.
 pub(super) fn pick(dims: &[usize], elements: &[Val], picks: &[Pick]) -> Val {
+    let (kept, places) = places(dims, picks);
+    if kept.is_empty() {
+        return elements[places[0]].clone();
+    }
+    Val::array(kept, places.into_iter().map(|i| elements[i].clone()).collect())
+}
+
+/// The row-major places of what is picked, and the sizes that stay.
+pub(super) fn places(dims: &[usize], picks: &[Pick]) -> (Vec<usize>, Vec<usize>) {
     let mut places = vec![0usize];
     let mut kept = Vec::new();
     for (p, &d) in picks.iter().zip(dims) {
@@ -808,10 +817,7 @@ pub(super) fn pick(dims: &[usize], elements: &[Val], picks: &[Pick]) -> Val {
         };
         places = places.iter().flat_map(|&base| choices.iter().map(move |&c| base * d + c)).collect();
     }
-    if kept.is_empty() {
-        return elements[places[0]].clone();
-    }
-    Val::array(kept, places.into_iter().map(|i| elements[i].clone()).collect())
+    (kept, places)
 }
 
 /// A scalar or vector as a matrix, for `[a, b; c, d]`: vectors are columns.

@@ -115,7 +115,7 @@ pub enum Node {
         /// Sizes.
         dims: Vec<usize>,
         /// Elements.
-        elements: Vec<NodeId>,
+        elements: Rc<[NodeId]>,
     },
 }
 

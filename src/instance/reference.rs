@@ -19,8 +19,8 @@ pub struct Selection {
     pub dims: Vec<usize>,
     /// How many of the sizes, counted from the last, belong to the component named last.
     pub own: usize,
-    /// The components, row-major.
-    pub nodes: Vec<NodeId>,
+    /// The components, row-major; shared, for a reference to one element of a long array passes through the whole.
+    pub nodes: Rc<[NodeId]>,
 }
 
 impl<'a> Instance<'a, '_> {
@@ -148,7 +148,7 @@ impl<'a> Instance<'a, '_> {
             Node::Array { dims, elements } => {
                 Selection { dims: dims.clone(), own: dims.len(), nodes: elements.clone() }
             }
-            _ => Selection { dims: Vec::new(), own: 0, nodes: vec![node] },
+            _ => Selection { dims: Vec::new(), own: 0, nodes: Rc::from([node]) },
         }
     }
 
@@ -212,11 +212,9 @@ impl<'a> Instance<'a, '_> {
             }
         }
         picks.extend(at.dims[picks.len()..].iter().map(|&n| Pick::Many((0..n).collect())));
-        let indices: Vec<Val> = (0..at.nodes.len()).map(|i| self.integer(i as f64)).collect();
-        let chosen = super::evaluate::pick(&at.dims, &indices, &picks);
-        let number = |v: &Val| v.as_number(&self.exprs).map_or(0, |x| x as usize);
-        let nodes = chosen.elements().iter().map(|v| at.nodes[number(v)]).collect();
-        Some(Ok(Selection { dims: chosen.dims().to_vec(), own: 0, nodes }))
+        let (dims, places) = super::evaluate::places(&at.dims, &picks);
+        let nodes = places.into_iter().map(|i| at.nodes[i]).collect();
+        Some(Ok(Selection { dims, own: 0, nodes }))
     }
 
     /// One step down: a component or class inside the selected components.
@@ -224,7 +222,7 @@ impl<'a> Instance<'a, '_> {
         let name = p.name.name;
         let mut nodes = Vec::new();
         let mut inner: Option<Vec<usize>> = None;
-        for &node in &at.nodes {
+        for &node in &*at.nodes {
             let Node::Object(scope) = *self.node(node) else {
                 let whole = self.node_name(node);
                 self.report(
@@ -274,12 +272,12 @@ impl<'a> Instance<'a, '_> {
                 return Descent::Failed;
             }
             inner = Some(chosen.dims);
-            nodes.extend(chosen.nodes);
+            nodes.extend_from_slice(&chosen.nodes);
         }
         let inner = inner.unwrap_or_default();
         let own = inner.len();
         let dims = at.dims.iter().copied().chain(inner).collect();
-        Descent::Nodes(Selection { dims, own, nodes })
+        Descent::Nodes(Selection { dims, own, nodes: nodes.into() })
     }
 
     fn protected_element(&mut self, scope: ScopeId, name: Symbol, span: Span) {

@@ -160,7 +160,7 @@ impl Collector {
             );
             return;
         }
-        for (&m, &n) in x.selection.nodes.iter().zip(&y.selection.nodes) {
+        for (&m, &n) in x.selection.nodes.iter().zip(y.selection.nodes.iter()) {
             let place = Place { span, scope: view.scope, a: a.span, b: b.span };
             self.join(instance, (m, x.outside), (n, y.outside), &place);
             self.network.connections.push(Connection { a: m, b: n, span, scope: view.scope });
@@ -171,7 +171,7 @@ impl Collector {
         match (instance.node(a.0).clone(), instance.node(b.0).clone()) {
             (Node::Var(x), Node::Var(y)) => self.join_variables(instance, (x, a.1), (y, b.1), at),
             (Node::Array { dims: da, elements: x }, Node::Array { dims: db, elements: y }) if da == db => {
-                for (&x, &y) in x.iter().zip(&y) {
+                for (&x, &y) in x.iter().zip(y.iter()) {
                     self.join(instance, (x, a.1), (y, b.1), at);
                 }
             }

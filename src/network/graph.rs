@@ -35,13 +35,14 @@ impl Network {
     pub fn graph(&self, instance: &Instance<'_, '_>) -> Graph {
         let mut graph = Graph::default();
         let mut known: BTreeMap<String, NodeIndex> = BTreeMap::new();
+        let classes = component_classes(instance);
         for c in self.connections.iter().filter(|c| c.scope == instance.root) {
             let (a, b) = (instance.node_name(c.a), instance.node_name(c.b));
             let connector = connector_class(instance, c.a);
             let (ca, pa) = split(&a);
             let (cb, pb) = split(&b);
-            let na = node_of(&mut graph, &mut known, instance, ca, pa);
-            let nb = node_of(&mut graph, &mut known, instance, cb, pb);
+            let na = node_of(&mut graph, &mut known, &classes, ca, pa);
+            let nb = node_of(&mut graph, &mut known, &classes, cb, pb);
             graph.add_edge(na, nb, Wire { from: pa.into(), to: pb.into(), connector });
         }
         graph
@@ -55,12 +56,12 @@ fn split(name: &str) -> (&str, &str) {
 fn node_of(
     graph: &mut Graph,
     known: &mut BTreeMap<String, NodeIndex>,
-    instance: &Instance<'_, '_>,
+    classes: &BTreeMap<&str, String>,
     component: &str,
     port: &str,
 ) -> NodeIndex {
     let index = *known.entry(component.to_string()).or_insert_with(|| {
-        let class = class_of(instance, component);
+        let class = classes.get(component).cloned().unwrap_or_default();
         graph.add_node(ComponentBox { name: component.into(), class, ports: Vec::new() })
     });
     let ports = &mut graph[index].ports;
@@ -70,9 +71,10 @@ fn node_of(
     index
 }
 
-fn class_of(instance: &Instance<'_, '_>, component: &str) -> String {
-    let found = instance.scopes.iter().find(|s| s.component && s.name == component);
-    found.map_or(String::new(), |s| instance.library.full_name(s.template.class))
+/// The class of each component of the top level, by the component's name.
+fn component_classes<'i>(instance: &'i Instance<'_, '_>) -> BTreeMap<&'i str, String> {
+    let top = instance.scopes.iter().filter(|s| s.component && !s.name.contains('.'));
+    top.map(|s| (s.name.as_str(), instance.library.full_name(s.template.class))).collect()
 }
 
 fn connector_class(instance: &Instance<'_, '_>, node: NodeId) -> String {
