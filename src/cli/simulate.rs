@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::path::Path;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use clap::Args;
 
@@ -121,6 +121,10 @@ struct Rows(Recorder);
 impl Sink for Rows {
     fn row(&mut self, time: f64, values: &[f64]) -> ControlFlow<()> {
         if self.0.row(time, values) { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    }
+
+    fn writing(&self) -> Duration {
+        self.0.writing()
     }
 }
 

@@ -18,7 +18,7 @@ use crate::expr::Node;
 use crate::lower::{Layout, Pattern, Program, System};
 use crate::structure::{ActionKind, StateChoice};
 use std::ops::ControlFlow;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 /// The clock, for the statistics' seconds alone: nothing else depends on it.
 #[allow(clippy::disallowed_methods, reason = "solve_s and initialize_s are measured where they pass")]
@@ -119,7 +119,6 @@ pub struct Driver<'a, 'c> {
     roots: Vec<i32>,
     statistics: Statistics,
     diagnostics: Vec<Diagnostic>,
-    writing: Duration,
 }
 
 /// Runs a system from its initial values, or from a saved state.
@@ -172,7 +171,6 @@ pub fn run<'a>(
         roots: Vec::new(),
         statistics: Statistics::default(),
         diagnostics: Vec::new(),
-        writing: Duration::ZERO,
         clocks: Clocks::default(),
         ida: None,
         system,
@@ -197,7 +195,7 @@ impl<'a> Driver<'a, '_> {
         };
         self.statistics.initialize_s = clock.elapsed().as_secs_f64();
         let clock = now();
-        let writing = self.writing;
+        let before = self.sink.writing();
         let (end, values) = match end.and_then(|()| self.integrator(model.clone())) {
             Err(stop) => (Err(stop), model.values),
             Ok(()) => {
@@ -206,7 +204,7 @@ impl<'a> Driver<'a, '_> {
                 (end, values)
             }
         };
-        self.statistics.solve_s = clock.elapsed().saturating_sub(self.writing - writing).as_secs_f64();
+        self.statistics.solve_s = clock.elapsed().saturating_sub(self.sink.writing() - before).as_secs_f64();
         self.finish(end, &values)
     }
 
@@ -350,10 +348,7 @@ impl<'a> Driver<'a, '_> {
         if self.row.iter().any(|v| !v.is_finite()) {
             return Err(self.non_finite_row(model));
         }
-        let clock = now();
-        let flow = self.sink.row(self.t, &self.row);
-        self.writing += clock.elapsed();
-        match flow {
+        match self.sink.row(self.t, &self.row) {
             ControlFlow::Continue(()) => Ok(()),
             ControlFlow::Break(()) => Err(self.interrupted()),
         }

@@ -6,11 +6,18 @@ use crate::flat::Type;
 use crate::results::{Kind, Signal, Trajectory};
 use crate::structure::Dae;
 use std::ops::ControlFlow;
+use std::time::Duration;
 
 /// Takes the rows of a run in the order of time. Rows of equal time are an event: before and after it.
 pub trait Sink {
     /// A row; the values are in the order of `Settings::wanted`. `Break` ends the run as interrupted.
     fn row(&mut self, time: f64, values: &[f64]) -> ControlFlow<()>;
+
+    /// How long it has been writing to a slow place, for statistics: only the sink knows when it does, and a clock
+    /// around every row would cost as much as the row.
+    fn writing(&self) -> Duration {
+        Duration::ZERO
+    }
 }
 
 impl Sink for Trajectory {

@@ -17,7 +17,7 @@ const SMALL_KINK: f64 = 0.3;
 /// The same over the part of a step that was made beyond a root with the old equations.
 const SMALL_TAIL: f64 = 0.1;
 /// The error of the first step, in tolerances.
-const FIRST_ERROR: f64 = 0.3;
+const FIRST_ERROR: f64 = 0.1;
 
 /// Buffers for the unknowns around an event.
 #[derive(Debug, Default)]
