@@ -16,8 +16,10 @@ const SMALL_JUMP: f64 = 1.0;
 const SMALL_KINK: f64 = 0.3;
 /// The same over the part of a step that was made beyond a root with the old equations.
 const SMALL_TAIL: f64 = 0.1;
-/// The error of the first step, in tolerances.
-const FIRST_ERROR: f64 = 0.1;
+/// The error of the first step after an event, in tolerances.
+const FIRST_ERROR: f64 = 0.3;
+/// The same at the start, where no step tells yet how much of it is to come.
+const START_ERROR: f64 = 0.1;
 
 /// Buffers for the unknowns around an event.
 #[derive(Debug, Default)]
@@ -151,7 +153,8 @@ impl Restart {
         start: bool,
         root: bool,
     ) -> bool {
-        let mut h = self.first_step(ida, t, room, longest);
+        let error = if start { START_ERROR } else { FIRST_ERROR };
+        let mut h = self.first_step(ida, t, room.min(longest), room, error);
         if root {
             h = self.see_return(ida, t, h);
         }
@@ -188,13 +191,13 @@ impl Restart {
         ida.equations().crossings(t + h, &y, &self.yp, g);
     }
 
-    /// The step whose error would be about the tolerance with order one.
-    fn first_step(&mut self, ida: &mut Ida<Model<'_>>, t: f64, room: f64, longest: f64) -> f64 {
+    /// The step with this error, in tolerances, with order one; at most `longest`.
+    fn first_step(&mut self, ida: &mut Ida<Model<'_>>, t: f64, longest: f64, room: f64, error: f64) -> f64 {
         let speed = self.norm(|i| self.yp[i]);
         let usual = if self.usual_step > 0.0 { self.usual_step } else { 1e-3 * room };
         // moves the unknowns by about one tolerance
         let probe = (1.0 / speed).min(0.1 * usual).min(0.01 * room).max(1e-10 * t.abs());
-        let most = (10.0 * usual).min(room).min(longest);
+        let most = (10.0 * usual).min(longest);
         if self.slots.is_empty() || probe.is_nan() || probe <= 0.0 {
             return most;
         }
@@ -202,7 +205,7 @@ impl Restart {
         let known = ida.euler_correction(t, probe, &self.y, &self.yp, self.explicit, &mut correction);
         let h = if known {
             let bend = self.norm(|i| correction[i]) / (probe * probe);
-            (2.0 * FIRST_ERROR / bend).sqrt().min(most)
+            (2.0 * error / bend).sqrt().min(most)
         } else {
             (0.5 / speed).min(most)
         };
