@@ -2,9 +2,9 @@
 
 use crate::diag::{Checked, Code, Diagnostic, Sources};
 use crate::flat::{self, FlatModel};
-use crate::instance::{self, ModelRequest, Override};
+use crate::instance::{self, Instance, ModelRequest, Override};
 use crate::lower::{self, System};
-use crate::network::{self, Graph};
+use crate::network::{self, Graph, Network};
 use crate::resolve::{ClassId, Library, Trees, nested_classes};
 use crate::shipped::Shipped;
 use crate::structure::{self, Dae, StateChoice};
@@ -25,6 +25,8 @@ pub struct Request {
     pub overrides: Vec<Override>,
     /// Folders that hold further packages, in order of precedence.
     pub libraries: Vec<PathBuf>,
+    /// Further files and packages whose classes `source` may name.
+    pub beside: Vec<PathBuf>,
 }
 
 /// What became of a [`Request`]: texts for messages, messages, and the value if there were no errors.
@@ -113,6 +115,15 @@ fn explained(flat: &FlatModel, found: Vec<Diagnostic>) -> Vec<Diagnostic> {
 
 /// The pipeline up to the flat model.
 pub fn flatten(world: &dyn World, request: &Request) -> Outcome<Flattened> {
+    inspect(world, request, |instance, network, flat| Flattened { flat, graph: network.graph(instance) })
+}
+
+/// The pipeline up to the flat model, with a look at the component tree and the connections it was made from.
+pub fn inspect<T>(
+    world: &dyn World,
+    request: &Request,
+    look: impl FnOnce(&mut Instance<'_, '_>, &Network, FlatModel) -> T,
+) -> Outcome<T> {
     let trees = Trees::new();
     let shipped = Shipped;
     let mut roots: Vec<(&dyn World, PathBuf)> = request.libraries.iter().map(|l| (world, l.clone())).collect();
@@ -123,7 +134,7 @@ pub fn flatten(world: &dyn World, request: &Request) -> Outcome<Flattened> {
         .map_err(|d| diagnostics.push(*d))
         .ok()
         .filter(|_| !library.diagnostics.iter().any(Diagnostic::is_error))
-        .and_then(|class| flatten_class(&mut library, class, request, &mut diagnostics));
+        .and_then(|class| flatten_class(&mut library, class, request, &mut diagnostics, look));
     let mut all = std::mem::take(&mut library.diagnostics);
     if all.iter().any(Diagnostic::is_error) {
         // A class may be missing because its text could not be read.
@@ -135,12 +146,13 @@ pub fn flatten(world: &dyn World, request: &Request) -> Outcome<Flattened> {
     Outcome { sources: std::mem::take(&mut library.sources), diagnostics: all, value: value.filter(|_| !failed) }
 }
 
-fn flatten_class(
+fn flatten_class<T>(
     library: &mut Library<'_>,
     class: ClassId,
     request: &Request,
     diagnostics: &mut Vec<Diagnostic>,
-) -> Option<Flattened> {
+    look: impl FnOnce(&mut Instance<'_, '_>, &Network, FlatModel) -> T,
+) -> Option<T> {
     let wanted = ModelRequest { class, overrides: request.overrides.clone() };
     let mut instance = instance::instantiate(library, &wanted);
     let network = network::network(&mut instance);
@@ -148,9 +160,8 @@ fn flatten_class(
         diagnostics.append(&mut instance.diagnostics);
         return None;
     }
-    let graph = network.graph(&instance);
     let flat = flat::flatten(&mut instance, &network).sink(diagnostics)?;
-    Some(Flattened { flat, graph })
+    Some(look(&mut instance, &network, flat))
 }
 
 /// The class that the request means.
@@ -165,6 +176,9 @@ fn find_model<'a>(
     if !exists && is_dotted(&text) {
         let full = request.model.as_deref().filter(|m| m.contains('.') || *m == text).unwrap_or(&text);
         return library.find(full).ok_or_else(|| Box::new(no_such_shipped(&text)));
+    }
+    for path in &request.beside {
+        library.add_path(world, path)?;
     }
     let given = library.add_path(world, source)?;
     note_shadowed(library);

@@ -68,7 +68,7 @@ pub mod lower;
 
 mod compile;
 
-pub use compile::{Flattened, Model, Outcome, Request, analyze, compile, flatten, flatten_text, sort};
+pub use compile::{Flattened, Model, Outcome, Request, analyze, compile, flatten, flatten_text, inspect, sort};
 
 pub mod results;
 
@@ -85,5 +85,7 @@ pub mod plot;
 pub mod experiment;
 
 pub mod study;
+
+pub mod gap;
 
 pub mod cli;

@@ -52,3 +52,27 @@ impl World for MemoryWorld {
         (!entries.is_empty()).then(|| entries.into_iter().collect())
     }
 }
+
+/// A world with some files laid over it.
+pub struct Overlay<'a> {
+    /// What lies below.
+    pub base: &'a dyn World,
+    /// Files that are seen first.
+    pub files: MemoryWorld,
+}
+
+impl World for Overlay<'_> {
+    fn read(&self, path: &Path) -> Result<String, String> {
+        self.files.read(path).or_else(|_| self.base.read(path))
+    }
+
+    fn list(&self, path: &Path) -> Option<Vec<(String, bool)>> {
+        match (self.files.list(path), self.base.list(path)) {
+            (Some(above), Some(below)) => {
+                let all: std::collections::BTreeMap<_, _> = below.into_iter().chain(above).collect();
+                Some(all.into_iter().collect())
+            }
+            (above, below) => above.or(below),
+        }
+    }
+}

@@ -73,6 +73,7 @@ fn every_model_and_example_is_silent() {
                 model: None,
                 overrides: vec![],
                 libraries: vec![],
+                beside: vec![],
             };
             tried += 1;
             let said = remarks(&request);

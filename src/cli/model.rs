@@ -38,6 +38,7 @@ fn request(experiment: &Experiment) -> Result<Request, Failure> {
         model: experiment.model.clone(),
         overrides: overrides(experiment),
         libraries: library_folders(experiment)?,
+        beside: Vec::new(),
     })
 }
 

@@ -1,0 +1,3 @@
+within Effects;
+package Interfaces "How effects attach to a network"
+end Interfaces;

@@ -1,0 +1,18 @@
+within;
+package Effects "Physics that a model may lack: each model attaches to a network by the interface that it extends"
+  import Modelica.Units.SI;
+  annotation(Documentation(info = "<html>
+<p>An effect holds no ports. It gets potentials as inputs and gives a flow (or gets and gives a signal), so that it fits any connector of
+the same units. Which variable is what is said by the interface:</p>
+<pre>__bramah(attach = \"Shunt|Bridge|Drain|Series|Sensor|Command\", potential = {...}, through = \"...\", sense = {...}, temperature = \"...\")</pre>
+<p>A Shunt draws <code>through</code> from a node; a Bridge lets it pass from the first to the second port of a component; a Drain from a node to
+one of constant potential; a Series element cuts a connection, gets the flow and gives the fall of the potential. <code>sense</code> names
+potentials of further ports of the same component, <code>temperature</code> an input in kelvin.</p>
+<p>An effect adds</p>
+<pre>__bramah(family = \"...\", id = \"E27\", coefficients = {\"F_c\"}, shapes(v_s = {0.002, 0.02}), base = {\"d\"}, relative = {\"b\"})</pre>
+<p>Coefficients have the off value 0 at which the effect vanishes exactly, <code>nominal</code> is their typical size on a usual bench and
+<code>min = 0</code> stands where the sign counts. Shapes enter nonlinearly and are tried on the grid given. A parameter in <code>base</code> takes the value
+of the parameter of equal unit of the component to which the effect is attached. Coefficients and shapes in <code>relative</code> count in full
+scales of the signal. Laws are smooth, with the width given. An effect with states of its own has them as variables with a
+derivative.</p></html>"));
+end Effects;

@@ -1,0 +1,338 @@
+//! Writes the nominal model with effects attached, as Modelica.
+//!
+//! The text is a model `Augmented` around an instance `plant` of the nominal class: inputs pass through the effects of
+//! commands before they reach the plant, each signal of the study is a variable of its name behind its sensor effects,
+//! and inside the plant every node that an effect touches gets one tap of the node's own connector class.
+
+use super::circuit::{Circuit, ModelInput};
+use super::effects::{Effect, own_classes};
+use super::hypotheses::{Attachment, Hypothesis, Signal, Site};
+use crate::compile::{Model, Outcome, Request};
+use crate::flat::Type;
+use crate::instance::Override;
+use crate::lower;
+use crate::units::Unit;
+use crate::world::{MemoryWorld, Overlay, World};
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+/// The instance of the nominal model inside the augmented one: `pump.w` becomes `plant.pump.w`.
+pub const PLANT: &str = "plant";
+
+/// A hypothesis with a name and values.
+#[derive(Clone, Debug)]
+pub struct Attached<'a> {
+    /// Its name in the augmented model, a Modelica identifier of its own.
+    pub name: String,
+    /// What is attached. Hypotheses of family `parameter` add nothing: their parameter is there already.
+    pub hypothesis: &'a Hypothesis,
+    /// Values of coefficients and shapes; coefficients not named are off, shapes take the first of their grid.
+    pub values: Vec<(String, f64)>,
+}
+
+/// The augmented model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Augmented {
+    /// The text of the model `Augmented`.
+    pub text: String,
+    /// For each attached hypothesis the name of each of its coefficients and shapes (in this order) as a parameter of
+    /// the model; for a drift that of the drifting parameter.
+    pub parameters: Vec<Vec<String>>,
+    /// The variable of each signal of the study, sensor effects included.
+    pub signals: Vec<String>,
+}
+
+/// Writes the nominal model with effects attached.
+pub fn augment(circuit: &Circuit, attached: &[Attached<'_>], signals: &[Signal]) -> Augmented {
+    Writer { circuit, plant: Body::default(), around: Body::default(), taps: BTreeMap::new(), classes: Vec::new() }
+        .write(attached, signals)
+}
+
+/// Compiles an augmented model: classes of the nominal one come from where `nominal` finds them, `folder` holds
+/// effects of the user's own.
+pub fn compile(
+    world: &dyn World,
+    nominal: &Request,
+    folder: Option<&Path>,
+    augmented: &Augmented,
+    options: &lower::Options,
+) -> Outcome<Model> {
+    let source = PathBuf::from("(gap)/Augmented.mo");
+    let overlay = Overlay { base: world, files: MemoryWorld::single(&source, augmented.text.clone()) };
+    let inner = |o: &Override| Override { name: format!("{PLANT}.{}", o.name), value: o.value.clone() };
+    let mut request = Request {
+        source,
+        model: Some("Augmented".into()),
+        overrides: nominal.overrides.iter().map(inner).collect(),
+        libraries: nominal.libraries.clone(),
+        beside: nominal.beside.clone(),
+    };
+    if world.list(&nominal.source).is_some() || world.read(&nominal.source).is_ok() {
+        request.beside.push(nominal.source.clone());
+    }
+    own_classes(world, folder, &mut request);
+    crate::compile::compile(&overlay, &request, options)
+}
+
+/// Declarations and equations of one class.
+#[derive(Default)]
+struct Body {
+    declarations: String,
+    equations: String,
+}
+
+struct Writer<'a> {
+    circuit: &'a Circuit,
+    plant: Body,
+    around: Body,
+    /// What is drawn from the nodes that have a tap.
+    taps: BTreeMap<usize, Vec<String>>,
+    /// Connector classes that have a tap class, each with a port as example.
+    classes: Vec<(&'a str, usize)>,
+}
+
+impl<'a> Writer<'a> {
+    fn write(mut self, attached: &[Attached<'_>], signals: &[Signal]) -> Augmented {
+        let parameters = attached.iter().map(|a| self.parameters(a)).collect();
+        for a in attached {
+            for (i, at) in a.hypothesis.attachments.iter().enumerate() {
+                if let (Some(effect), Site::Node(_) | Site::Across(..)) = (&at.effect, &at.site) {
+                    self.physical(a, i, at, effect);
+                }
+            }
+        }
+        self.inputs(attached);
+        let signals = self.signals(attached, signals);
+        self.draw();
+        Augmented { text: self.text(), parameters, signals }
+    }
+
+    /// Declares the coefficients and shapes of a hypothesis, and gives their full names.
+    fn parameters(&mut self, a: &Attached<'_>) -> Vec<String> {
+        let h = a.hypothesis;
+        if let Site::Parameter(name) = &h.attachments[0].site {
+            return vec![format!("{PLANT}.{name}")];
+        }
+        let inside = matches!(h.attachments[0].site, Site::Node(_) | Site::Across(..) | Site::Into(_));
+        let body = if inside { &mut self.plant } else { &mut self.around };
+        let given = |name: &str| a.values.iter().find(|(n, _)| n == name).map(|(_, v)| *v);
+        let coefficients = h.coefficients.iter().map(|c| (&c.name, &c.unit, c.off));
+        let shapes = h.shapes.iter().map(|s| (&s.name, &s.unit, s.grid[0]));
+        let mut names = Vec::new();
+        for (name, unit, usual) in coefficients.chain(shapes) {
+            let value = given(name).unwrap_or(usual);
+            let full = format!("{}_{name}", a.name);
+            let _ = writeln!(body.declarations, "    parameter Real {full}{} = {value:e};", unit_of(unit));
+            names.push(if inside { format!("{PLANT}.{full}") } else { full });
+        }
+        names
+    }
+
+    /// An instance of an effect, its coefficients and shapes bound to those of the hypothesis.
+    fn declaration(a: &Attached<'_>, i: usize, effect: &Effect, base: &[(String, String)]) -> (String, String) {
+        let instance = format!("{}_{}", a.name, i + 1);
+        let own = effect.coefficients.iter().map(|c| &c.name).chain(effect.shapes.iter().map(|s| &s.name));
+        let bound = own.map(|n| format!("{n} = {}_{n}", a.name));
+        let bound: Vec<String> = bound.chain(base.iter().map(|(n, from)| format!("{n} = {from}"))).collect();
+        let text = format!("    .{} {instance}({});\n", effect.class, bound.join(", "));
+        (instance, text)
+    }
+
+    fn physical(&mut self, a: &Attached<'_>, i: usize, at: &Attachment, effect: &Effect) {
+        let (instance, declaration) = Self::declaration(a, i, effect, &at.base);
+        self.plant.declarations.push_str(&declaration);
+        let ports: &[usize] = match &at.site {
+            Site::Node(p) => &[*p],
+            Site::Across(x, y) => &[*x, *y],
+            _ => &[],
+        };
+        let Some(through) = &effect.interface.through else { return };
+        let signs = ["", "-"];
+        for ((port, potential), sign) in ports.iter().zip(&effect.interface.potential).zip(signs) {
+            let tap = self.tap(*port);
+            self.read(&instance, &potential.name, &tap, *port);
+            let factor = factor(&self.circuit.ports[*port].through.unit);
+            let share = format!("{sign}{instance}.{}{}", through.name, scaled("/", factor));
+            self.taps.get_mut(&self.circuit.ports[*port].node).expect("just made").push(share);
+        }
+        for (port, potential) in at.sense.iter().zip(&effect.interface.sense) {
+            let tap = self.tap(*port);
+            self.read(&instance, &potential.name, &tap, *port);
+        }
+        if let (Some((input, offset)), Some(name)) = (&at.temperature, &effect.interface.temperature) {
+            let _ = writeln!(self.plant.equations, "    {instance}.{name} = {input} + {offset:e};");
+        }
+    }
+
+    /// Gives an effect the potential of a port, in SI units.
+    fn read(&mut self, instance: &str, potential: &str, tap: &str, port: usize) {
+        let q = &self.circuit.ports[port].potential;
+        let offset = Unit::parse(&q.unit).map_or(0.0, |u| u.offset);
+        let plus = if offset == 0.0 { String::new() } else { format!(" + {offset:e}") };
+        let value = format!("{tap}.port.{}{}{plus}", q.name, scaled("*", factor(&q.unit)));
+        let _ = writeln!(self.plant.equations, "    {instance}.{potential} = {value};");
+    }
+
+    /// The tap at the node of a port, made when first asked for.
+    fn tap(&mut self, port: usize) -> String {
+        let circuit = self.circuit;
+        let node = circuit.ports[port].node;
+        let name = format!("gap_tap_{}", node + 1);
+        if !self.taps.contains_key(&node) {
+            let first = nearest(circuit, node);
+            let class = self.tap_class(first);
+            let _ = writeln!(self.plant.declarations, "    GapTap_{} {name};", class + 1);
+            let _ = writeln!(self.plant.equations, "    connect({name}.port, {});", circuit.ports[first].name);
+            self.taps.insert(node, Vec::new());
+        }
+        name
+    }
+
+    fn tap_class(&mut self, port: usize) -> usize {
+        let class = self.circuit.ports[port].class.as_str();
+        self.classes.iter().position(|(c, _)| *c == class).unwrap_or_else(|| {
+            self.classes.push((class, port));
+            self.classes.len() - 1
+        })
+    }
+
+    /// The sum of all that is drawn from each node.
+    fn draw(&mut self) {
+        for (node, drawn) in &self.taps {
+            let sum = match &drawn[..] {
+                [] => "0".to_string(),
+                [first, rest @ ..] => rest.iter().fold(first.clone(), |sum, t| match t.strip_prefix('-') {
+                    Some(t) => format!("{sum} - {t}"),
+                    None => format!("{sum} + {t}"),
+                }),
+            };
+            let _ = writeln!(self.plant.equations, "    gap_tap_{}.drawn = {sum};", node + 1);
+        }
+    }
+
+    /// The inputs of the plant, each behind the effects on its command.
+    fn inputs(&mut self, attached: &[Attached<'_>]) {
+        let mut arrays: Vec<&str> = Vec::new();
+        for input in &self.circuit.inputs {
+            let base = input.name.split('[').next().unwrap_or(&input.name);
+            if !arrays.contains(&base) {
+                arrays.push(base);
+                self.around.declarations.push_str(&input_declaration(self.circuit, base, input));
+            }
+            let site = Site::Command(input.name.clone());
+            let last = self.chain(attached, &site, input.name.clone());
+            let _ = writeln!(self.around.equations, "  {PLANT}.{} = {last};", input.name);
+        }
+    }
+
+    /// The signals of the study, each behind the effects of its sensor.
+    fn signals(&mut self, attached: &[Attached<'_>], signals: &[Signal]) -> Vec<String> {
+        let mut names = Vec::new();
+        for (i, s) in signals.iter().enumerate() {
+            let name = self.signal_name(&s.name);
+            let unit = self.circuit.units.get(&s.variable).map_or(String::new(), |u| unit_of(u));
+            let _ = writeln!(self.plant.declarations, "    Real gap_true_{}{unit};", i + 1);
+            let _ = writeln!(self.plant.equations, "    gap_true_{} = {};", i + 1, s.variable);
+            let last = self.chain(attached, &Site::Sensor(s.name.clone()), format!("{PLANT}.gap_true_{}", i + 1));
+            let _ = writeln!(self.around.declarations, "  output Real {name}{unit};");
+            let _ = writeln!(self.around.equations, "  {name} = {last};");
+            names.push(name);
+        }
+        names
+    }
+
+    fn signal_name(&self, name: &str) -> String {
+        let simple = name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+            && name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
+        let taken = name == PLANT || self.circuit.inputs.iter().any(|i| i.name == name);
+        match (simple, taken) {
+            (true, false) => name.to_string(),
+            (true, true) => format!("signal_{name}"),
+            _ => format!("'{}'", name.replace(['\'', '\\'], "_")),
+        }
+    }
+
+    /// Puts all signal effects of a site in a row behind `from`; gives the end of the row.
+    fn chain(&mut self, attached: &[Attached<'_>], site: &Site, from: String) -> String {
+        let mut last = from;
+        for a in attached {
+            for (i, at) in a.hypothesis.attachments.iter().enumerate().filter(|(_, at)| at.site == *site) {
+                let Some(effect) = &at.effect else { continue };
+                let (instance, declaration) = Self::declaration(a, i, effect, &at.base);
+                self.around.declarations.push_str(&declaration);
+                let _ = writeln!(self.around.equations, "  {instance}.u = {last};");
+                last = format!("{instance}.y");
+            }
+        }
+        last
+    }
+
+    fn text(&self) -> String {
+        let mut text = String::from("model Augmented\n");
+        for (i, (class, port)) in self.classes.iter().enumerate() {
+            let through = &self.circuit.ports[*port].through.name;
+            let _ = write!(
+                text,
+                "  model GapTap_{n} \"Draws from a node\"\n    .{class} port;\n    Real drawn;\n  equation\n    port.{through} = drawn;\n  end GapTap_{n};\n",
+                n = i + 1
+            );
+        }
+        let _ = writeln!(text, "  model Plant\n    extends .{};", self.circuit.class);
+        let _ = write!(text, "{}  equation\n{}  end Plant;\n", self.plant.declarations, self.plant.equations);
+        let _ = writeln!(text, "  Plant {PLANT};");
+        let _ = write!(text, "{}equation\n{}end Augmented;\n", self.around.declarations, self.around.equations);
+        text
+    }
+}
+
+/// The port of a node that lies least deep in the hierarchy.
+fn nearest(circuit: &Circuit, node: usize) -> usize {
+    let depth = |p: &usize| circuit.ports[*p].name.matches('.').count();
+    circuit.nodes[node].ports.iter().copied().min_by_key(depth).expect("a node has ports")
+}
+
+fn unit_of(unit: &str) -> String {
+    if unit.is_empty() { String::new() } else { format!("(unit = \"{unit}\")") }
+}
+
+fn factor(unit: &str) -> f64 {
+    Unit::parse(unit).map_or(1.0, |u| u.factor())
+}
+
+fn scaled(operator: &str, factor: f64) -> String {
+    if factor == 1.0 { String::new() } else { format!("{operator}{factor:e}") }
+}
+
+/// An input with its type, unit and start; an array as a whole.
+fn input_declaration(circuit: &Circuit, base: &str, input: &ModelInput) -> String {
+    let ty = match input.ty {
+        Type::Integer => "Integer",
+        Type::Boolean => "Boolean",
+        _ => "Real",
+    };
+    let mut sizes: Vec<usize> = Vec::new();
+    for other in circuit.inputs.iter().filter(|i| i.name.split('[').next() == Some(base)) {
+        let Some(indices) = other.name.strip_prefix(base).and_then(|r| r.strip_prefix('[')) else { continue };
+        let indices = indices.trim_end_matches(']').split(',').filter_map(|i| i.trim().parse::<usize>().ok());
+        for (k, n) in indices.enumerate() {
+            if k < sizes.len() { sizes[k] = sizes[k].max(n) } else { sizes.push(n) }
+        }
+    }
+    let each = if sizes.is_empty() { "" } else { "each " };
+    let mut attributes = Vec::new();
+    if !input.unit.is_empty() {
+        attributes.push(format!("{each}unit = \"{}\"", input.unit));
+    }
+    if let Some(start) = input.start {
+        let value = if input.ty == Type::Boolean { (start != 0.0).to_string() } else { start.to_string() };
+        attributes.push(format!("{each}start = {value}"));
+    }
+    if let Some(nominal) = input.nominal.filter(|_| input.ty == Type::Real) {
+        attributes.push(format!("{each}nominal = {nominal:e}"));
+    }
+    let list = if attributes.is_empty() { String::new() } else { format!("({})", attributes.join(", ")) };
+    let sizes: Vec<String> = sizes.iter().map(usize::to_string).collect();
+    let sizes = if sizes.is_empty() { String::new() } else { format!("[{}]", sizes.join(", ")) };
+    format!("  input {ty} {base}{sizes}{list};\n")
+}

@@ -1,0 +1,384 @@
+//! What the diagnosis sees of a nominal model: components, ports with their units, nodes, inputs and parameters.
+
+use crate::compile::{Outcome, Request, inspect};
+use crate::expr::{ExprId, Exprs, Node as Term, VarId};
+use crate::flat::{FlatModel, Type, Variability};
+use crate::instance::{ElementState, Instance, Node, ScopeId};
+use crate::network::Network;
+use crate::syntax::ast::ClassKind;
+use crate::units::Unit;
+use crate::world::World;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A variable of a port.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Quantity {
+    /// Its name inside the connector.
+    pub name: String,
+    /// Its unit as written.
+    pub unit: String,
+}
+
+/// A physical port: one potential, one flow.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Port {
+    /// Full name, as in `pump.port_a`.
+    pub name: String,
+    /// Full name of its connector class.
+    pub class: String,
+    /// The component that owns it: index into [`Circuit::components`].
+    pub component: usize,
+    /// The variable that is equal at joined ports.
+    pub potential: Quantity,
+    /// The variable that sums up to zero.
+    pub through: Quantity,
+    /// The node it belongs to: index into [`Circuit::nodes`].
+    pub node: usize,
+}
+
+/// Joined ports.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct NodeSet {
+    /// Its ports in declaration order.
+    pub ports: Vec<usize>,
+    /// Its potential depends on parameters only: a reservoir, a frame, a ground.
+    pub fixed: bool,
+    /// The model already contains the time derivative of its potential.
+    pub has_rate: bool,
+    /// The model already contains the second time derivative of its potential.
+    pub has_acceleration: bool,
+}
+
+/// A component instance; entry 0 is the model itself.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Component {
+    /// Full name.
+    pub name: String,
+    /// Full name of its class.
+    pub class: String,
+    /// Its ports in declaration order.
+    pub ports: Vec<usize>,
+    /// Its Real parameters with their units.
+    pub parameters: Vec<Quantity>,
+    /// Those of them that multiply one variable in one law, as conductances and dampings do.
+    pub factors: Vec<Quantity>,
+}
+
+/// An input of the model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModelInput {
+    /// Its name, with indices.
+    pub name: String,
+    /// Its type.
+    pub ty: Type,
+    /// Its unit as written, empty if none.
+    pub unit: String,
+    /// Its start value, or the value it keeps when nothing is given.
+    pub start: Option<f64>,
+    /// Its `nominal`.
+    pub nominal: Option<f64>,
+}
+
+/// The places of a model.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Circuit {
+    /// Full name of the class.
+    pub class: String,
+    /// Components, parents before children.
+    pub components: Vec<Component>,
+    /// Physical ports in declaration order.
+    pub ports: Vec<Port>,
+    /// Connection sets, in the order of their first port.
+    pub nodes: Vec<NodeSet>,
+    /// Single connections between two ports, as pairs of port numbers, with the component in which they stand.
+    pub connections: Vec<(usize, usize, usize)>,
+    /// Inputs of the model.
+    pub inputs: Vec<ModelInput>,
+    /// All Real variables and parameters by name, with their units.
+    pub units: BTreeMap<String, String>,
+}
+
+/// Reads the places of a model.
+pub fn circuit(world: &dyn World, request: &Request) -> Outcome<Circuit> {
+    inspect(world, request, |instance, network, flat| Reader::default().read(instance, network, &flat))
+}
+
+#[derive(Default)]
+struct Reader {
+    circuit: Circuit,
+    component_of: BTreeMap<u32, usize>,
+    port_of: BTreeMap<u32, usize>,
+}
+
+impl Reader {
+    fn read(mut self, instance: &mut Instance<'_, '_>, network: &Network, flat: &FlatModel) -> Circuit {
+        self.circuit.class.clone_from(&flat.class);
+        self.components(instance);
+        self.nodes(instance, network);
+        let rates = Rates::of(flat);
+        for node in &mut self.circuit.nodes {
+            let name = |&p: &usize| {
+                let port = &self.circuit.ports[p];
+                format!("{}.{}", port.name, port.potential.name)
+            };
+            let potentials: Vec<String> = node.ports.iter().map(name).collect();
+            rates.of_node(&potentials, node);
+        }
+        self.factors(flat);
+        self.circuit.inputs = inputs(flat);
+        let real = flat.variables.iter().filter(|v| v.ty == Type::Real);
+        self.circuit.units = real.map(|v| (v.name.clone(), v.unit.as_deref().unwrap_or("").to_string())).collect();
+        self.circuit
+    }
+
+    fn components(&mut self, instance: &mut Instance<'_, '_>) {
+        for scope in crate::network::component_scopes(instance) {
+            let template = instance.scope(scope).template.clone();
+            let name = instance.scope(scope).name.clone();
+            let class = instance.library.full_name(template.class);
+            match template.kind {
+                ClassKind::Connector { .. } => self.port(instance, scope, name, class),
+                ClassKind::Model | ClassKind::Block | ClassKind::Class => {
+                    self.component_of.insert(scope.0, self.circuit.components.len());
+                    let parameters = parameters(instance, scope);
+                    self.circuit.components.push(Component { name, class, ports: Vec::new(), parameters, factors: Vec::new() });
+                }
+                _ => {}
+            }
+        }
+    }
+
+    fn port(&mut self, instance: &mut Instance<'_, '_>, scope: ScopeId, name: String, class: String) {
+        let Some(component) = instance.scope(scope).owner.and_then(|o| self.component_of.get(&o.0)).copied() else {
+            return;
+        };
+        let variables = own_variables(instance, scope);
+        let real = |i: &u32| {
+            let v = &instance.variables[*i as usize];
+            v.ty == Type::Real && v.causality.is_none() && v.variability == Variability::Continuous
+        };
+        let (flows, potentials): (Vec<u32>, Vec<u32>) =
+            variables.into_iter().filter(real).partition(|i| instance.variables[*i as usize].flow);
+        let ([through], [potential]) = (&flows[..], &potentials[..]) else { return };
+        let port = Port {
+            component,
+            potential: quantity(instance, *potential),
+            through: quantity(instance, *through),
+            node: 0,
+            name,
+            class,
+        };
+        let number = self.circuit.ports.len();
+        self.circuit.components[component].ports.push(number);
+        self.port_of.insert(scope.0, number);
+        self.circuit.ports.push(port);
+    }
+
+    /// Marks the parameters that are the factor of a single variable.
+    fn factors(&mut self, flat: &FlatModel) {
+        let linear = linear_factors(flat);
+        for c in &mut self.circuit.components {
+            let full = |q: &&Quantity| linear.contains(format!("{}.{}", c.name, q.name).as_str());
+            c.factors = c.parameters.iter().filter(|q| !q.unit.is_empty()).filter(full).cloned().collect();
+        }
+    }
+
+    fn nodes(&mut self, instance: &Instance<'_, '_>, network: &Network) {
+        let mut root: Vec<usize> = (0..self.circuit.ports.len()).collect();
+        let find = |root: &[usize], mut i: usize| {
+            while root[i] != i {
+                i = root[i];
+            }
+            i
+        };
+        for c in &network.connections {
+            let port = |n| match instance.node(n) {
+                Node::Object(s) => self.port_of.get(&s.0).copied(),
+                _ => None,
+            };
+            let (Some(a), Some(b)) = (port(c.a), port(c.b)) else { continue };
+            let within = self.component_of.get(&c.scope.0).copied().unwrap_or(0);
+            self.circuit.connections.push((a, b, within));
+            let (a, b) = (find(&root, a), find(&root, b));
+            root[a.max(b)] = a.min(b);
+        }
+        let mut number: BTreeMap<usize, usize> = BTreeMap::new();
+        for i in 0..root.len() {
+            let first = find(&root, i);
+            let node = *number.entry(first).or_insert_with(|| {
+                self.circuit.nodes.push(NodeSet::default());
+                self.circuit.nodes.len() - 1
+            });
+            self.circuit.nodes[node].ports.push(i);
+            self.circuit.ports[i].node = node;
+        }
+    }
+}
+
+fn own_variables(instance: &Instance<'_, '_>, scope: ScopeId) -> Vec<u32> {
+    let elements = instance.scope(scope).elements.iter();
+    let nodes = elements.filter_map(|e| if let ElementState::Node(n) = e { Some(*n) } else { None });
+    nodes.filter_map(|n| if let Node::Var(i) = instance.node(n) { Some(*i) } else { None }).collect()
+}
+
+fn quantity(instance: &mut Instance<'_, '_>, variable: u32) -> Quantity {
+    let full = &instance.variables[variable as usize].name;
+    let name = full.rsplit('.').next().unwrap_or(full).to_string();
+    Quantity { name, unit: instance.text_attribute(variable, "unit").unwrap_or_default() }
+}
+
+fn parameters(instance: &mut Instance<'_, '_>, scope: ScopeId) -> Vec<Quantity> {
+    let mut all = own_variables(instance, scope);
+    all.retain(|i| {
+        let v = &instance.variables[*i as usize];
+        v.ty == Type::Real && !v.hidden && v.variability == Variability::Parameter
+    });
+    all.into_iter().map(|i| quantity(instance, i)).collect()
+}
+
+fn inputs(flat: &FlatModel) -> Vec<ModelInput> {
+    let number = |e: Option<ExprId>| e.and_then(|e| flat.exprs.as_num(e));
+    let inputs = flat.variables.iter().filter(|v| v.input);
+    inputs
+        .map(|v| ModelInput {
+            name: v.name.clone(),
+            ty: v.ty,
+            unit: v.unit.as_deref().unwrap_or("").to_string(),
+            start: number(v.binding).or(number(v.start)),
+            nominal: number(v.nominal),
+        })
+        .collect()
+}
+
+/// Which variables are equal, which have a derivative in the model, and which are given by parameters alone.
+struct Rates<'a> {
+    flat: &'a FlatModel,
+    root: Vec<u32>,
+    differentiated: BTreeSet<u32>,
+    accelerated: BTreeSet<u32>,
+    fixed: BTreeSet<u32>,
+    index: BTreeMap<&'a str, u32>,
+}
+
+impl<'a> Rates<'a> {
+    fn of(flat: &'a FlatModel) -> Self {
+        let count = u32::try_from(flat.variables.len()).expect("fewer than 2^32 variables");
+        let index = (0u32..).zip(&flat.variables).map(|(i, v)| (v.name.as_str(), i)).collect();
+        let root = (0..count).collect();
+        let (differentiated, accelerated, fixed) = (BTreeSet::new(), BTreeSet::new(), BTreeSet::new());
+        let mut rates = Rates { flat, root, differentiated, accelerated, fixed, index };
+        rates.unite();
+        for e in &flat.equations {
+            for side in [e.lhs, e.rhs] {
+                for v in flat.exprs.derivatives(side) {
+                    let root = rates.find(v.0);
+                    rates.differentiated.insert(root);
+                }
+            }
+            for (one, other) in [(e.lhs, e.rhs), (e.rhs, e.lhs)] {
+                if let (Some(v), true) = (rates.variable(one), rates.constant(other)) {
+                    let root = rates.find(v);
+                    rates.fixed.insert(root);
+                }
+            }
+        }
+        rates.accelerations();
+        rates
+    }
+
+    fn unite(&mut self) {
+        for e in &self.flat.equations {
+            let (Some(a), Some(b)) = (self.variable(e.lhs), self.variable(e.rhs)) else { continue };
+            let (a, b) = (self.find(a), self.find(b));
+            self.root[a.max(b) as usize] = a.min(b);
+        }
+    }
+
+    /// A variable whose derivative is a variable that is itself differentiated.
+    fn accelerations(&mut self) {
+        for e in &self.flat.equations {
+            for (one, other) in [(e.lhs, e.rhs), (e.rhs, e.lhs)] {
+                if let (Some(rate), Term::Der(x)) = (self.variable(one), self.flat.exprs.node(other))
+                    && self.differentiated.contains(&self.find(rate))
+                {
+                    let root = self.find(x.0);
+                    self.accelerated.insert(root);
+                }
+            }
+        }
+    }
+
+    /// A variable that may change in time.
+    fn variable(&self, e: ExprId) -> Option<u32> {
+        match self.flat.exprs.node(e) {
+            Term::Var(VarId(v)) if self.flat.variables[v as usize].variability == Variability::Continuous => Some(v),
+            _ => None,
+        }
+    }
+
+    fn constant(&self, e: ExprId) -> bool {
+        let leaves = self.flat.exprs.dependencies(&[e]);
+        let steady = |v: &VarId| self.flat.variables[v.index()].variability <= Variability::Parameter;
+        leaves.ders.is_empty() && leaves.pres.is_empty() && !leaves.time && leaves.vars.iter().all(steady)
+    }
+
+    fn find(&self, mut i: u32) -> u32 {
+        while self.root[i as usize] != i {
+            i = self.root[i as usize];
+        }
+        i
+    }
+
+    /// Whether the potential of a node is fixed, and which of its derivatives are in the model.
+    fn of_node(&self, potentials: &[String], node: &mut NodeSet) {
+        for name in potentials {
+            let Some(&i) = self.index.get(name.as_str()) else { continue };
+            let root = self.find(i);
+            node.fixed |= self.fixed.contains(&root);
+            node.has_rate |= self.differentiated.contains(&root);
+            node.has_acceleration |= self.accelerated.contains(&root);
+        }
+    }
+}
+
+/// Names of parameters that occur in one equation, as the factor of one variable: `q = G*dp`.
+fn linear_factors(flat: &FlatModel) -> BTreeSet<&str> {
+    let mut exprs = flat.exprs.clone();
+    let mut met: BTreeMap<u32, bool> = BTreeMap::new();
+    for e in &flat.equations {
+        let leaves = flat.exprs.dependencies(&[e.lhs, e.rhs]);
+        let parameter = |v: &&VarId| flat.variables[v.index()].variability == Variability::Parameter;
+        for &p in leaves.vars.iter().filter(parameter) {
+            let linear = multiplies_one(flat, &mut exprs, e.lhs, p) || multiplies_one(flat, &mut exprs, e.rhs, p);
+            met.entry(p.0).and_modify(|l| *l &= linear).or_insert(linear);
+        }
+    }
+    let linear = met.into_iter().filter(|(_, linear)| *linear);
+    linear.map(|(v, _)| flat.variables[v as usize].name.as_str()).collect()
+}
+
+/// Whether the derivative of a side by a parameter is one variable, or its negative, or a difference.
+fn multiplies_one(flat: &FlatModel, exprs: &mut Exprs, side: ExprId, parameter: VarId) -> bool {
+    let leaf = exprs.var(parameter);
+    if !exprs.contains(side, leaf) {
+        return false;
+    }
+    let slope = exprs.differentiate(side, leaf);
+    let leaves = exprs.dependencies(&[slope]);
+    let moving = |v: &&VarId| flat.variables[v.index()].variability == Variability::Continuous;
+    let moving: Vec<VarId> = leaves.vars.iter().filter(moving).copied().collect();
+    let differentials: Vec<ExprId> = moving.iter().map(|&v| exprs.var(v)).collect();
+    let unit = |e: ExprId, exprs: &mut Exprs| {
+        let d = exprs.differentiate(slope, e);
+        exprs.as_num(d).is_some_and(|x| x.abs() == 1.0)
+    };
+    matches!(differentials.len(), 1 | 2) && leaves.ders.is_empty() && differentials.into_iter().all(|e| unit(e, exprs))
+}
+
+/// Whether two units measure the same, angle included; scales may differ.
+pub fn same_kind(a: &str, b: &str) -> bool {
+    match (Unit::parse(a), Unit::parse(b)) {
+        (Ok(x), Ok(y)) => x.dimension == y.dimension && x.angle == y.angle && a.is_empty() == b.is_empty(),
+        _ => false,
+    }
+}
