@@ -1,10 +1,14 @@
 //! Effects at the places of real circuits: what is found, and that everything compiles in one model.
 
-#![allow(clippy::disallowed_methods, reason = "tests read their own files")]
+#![allow(
+    clippy::disallowed_methods,
+    clippy::print_stdout,
+    reason = "tests read their own files and say what they skip"
+)]
 
 use bramah::diag::render::{Format, render};
 use bramah::gap::augment::{Attached, augment, compile};
-use bramah::gap::circuit::circuit;
+use bramah::gap::circuit::{Circuit, circuit};
 use bramah::gap::effects::{Attach, catalogue};
 use bramah::gap::hypotheses::{Hypothesis, Signal, hypotheses};
 use bramah::lower;
@@ -44,12 +48,32 @@ fn check(world: &dyn World, request: &Request, signals: &[Signal]) -> String {
         }
     }
     let text = augment(&places, &attached, signals);
-    let started = std::time::Instant::now();
     let model = value(compile(world, request, None, &text, &lower::Options::default()));
     let plain = value(bramah::compile(world, request, &lower::Options::default()));
-    assert_eq!(model.dae.states.len(), plain.dae.states.len());
-    println!("{} instances, {} variables, {:?}", attached.len(), model.flat.variables.len(), started.elapsed());
+    let states = |m: &bramah::Model, prefix: &str| -> Vec<String> {
+        let names = m.dae.states.iter().map(|v| m.dae.variables[v.index()].name.clone());
+        let mut names: Vec<String> = names.map(|n| n.strip_prefix(prefix).unwrap_or(&n).to_string()).collect();
+        names.sort();
+        names
+    };
+    assert_eq!(states(&model, "plant.").len(), states(&plain, "").len());
+    alone(world, request, signals, &places, &all);
     listed(&all)
+}
+
+/// Effects that change the order of the system compile one by one, with typical sizes.
+fn alone(world: &dyn World, request: &Request, signals: &[Signal], places: &Circuit, all: &[Hypothesis]) {
+    let mut bad = Vec::new();
+    for h in all.iter().filter(|h| h.changes_order) {
+        let values = h.coefficients.iter().map(|c| (c.name.clone(), c.nominal)).collect();
+        let text = augment(places, &[Attached { name: "h".into(), hypothesis: h, values }], signals);
+        let outcome = compile(world, request, None, &text, &lower::Options::default());
+        if outcome.value.is_none() {
+            let said = render(&outcome.sources, &outcome.diagnostics, Format::Short, 160, false);
+            bad.push(format!("{} at {}\n{said}", h.effect, h.places()[0].place));
+        }
+    }
+    assert!(bad.is_empty(), "{}", bad.join("\n"));
 }
 
 #[test]

@@ -12,6 +12,7 @@ mod completions;
 mod data;
 mod explain;
 mod files;
+mod gap;
 mod identify;
 mod inputs;
 mod interrupt;
@@ -68,6 +69,7 @@ enum Command {
     Plot(plot::PlotArgs),
     Compare(compare::CompareArgs),
     Identify(identify::IdentifyArgs),
+    Gap(gap::GapArgs),
     Explain(explain::ExplainArgs),
     Completions(completions::CompletionsArgs),
 }
@@ -143,6 +145,7 @@ fn dispatch(command: Command, messages: &mut Messages) -> Result<Ending, Failure
         Command::Plot(args) => plot::run(&args, messages),
         Command::Compare(args) => compare::run(&args, messages),
         Command::Identify(args) => identify::run(&args, messages),
+        Command::Gap(args) => gap::run(&args, messages),
         Command::Explain(args) => explain::run(&args),
         Command::Completions(args) => completions::run(&args),
     }

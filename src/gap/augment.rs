@@ -13,7 +13,7 @@ use crate::instance::Override;
 use crate::lower;
 use crate::units::Unit;
 use crate::world::{MemoryWorld, Overlay, World};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -45,8 +45,15 @@ pub struct Augmented {
 
 /// Writes the nominal model with effects attached.
 pub fn augment(circuit: &Circuit, attached: &[Attached<'_>], signals: &[Signal]) -> Augmented {
-    Writer { circuit, plant: Body::default(), around: Body::default(), taps: BTreeMap::new(), classes: Vec::new() }
-        .write(attached, signals)
+    Writer {
+        circuit,
+        plant: Body::default(),
+        around: Body::default(),
+        taps: BTreeMap::new(),
+        cut: BTreeSet::new(),
+        classes: Vec::new(),
+    }
+    .write(attached, signals)
 }
 
 /// Compiles an augmented model: classes of the nominal one come from where `nominal` finds them, `folder` holds
@@ -88,6 +95,8 @@ struct Writer<'a> {
     around: Body,
     /// What is drawn from the nodes that have a tap.
     taps: BTreeMap<usize, Vec<String>>,
+    /// Ports taken out of their nodes by Series elements.
+    cut: BTreeSet<usize>,
     /// Connector classes that have a tap class, each with a port as example.
     classes: Vec<(&'a str, usize)>,
 }
@@ -95,10 +104,15 @@ struct Writer<'a> {
 impl<'a> Writer<'a> {
     fn write(mut self, attached: &[Attached<'_>], signals: &[Signal]) -> Augmented {
         let parameters = attached.iter().map(|a| self.parameters(a)).collect();
+        let places = attached.iter().flat_map(|a| &a.hypothesis.attachments);
+        self.cut = places.filter_map(|at| if let Site::Into(p) = at.site { Some(p) } else { None }).collect();
+        self.rejoin();
         for a in attached {
             for (i, at) in a.hypothesis.attachments.iter().enumerate() {
-                if let (Some(effect), Site::Node(_) | Site::Across(..)) = (&at.effect, &at.site) {
-                    self.physical(a, i, at, effect);
+                match (&at.effect, &at.site) {
+                    (Some(effect), Site::Node(_) | Site::Across(..)) => self.physical(a, i, at, effect),
+                    (Some(effect), Site::Into(port)) => self.series(a, i, at, effect, *port),
+                    _ => {}
                 }
             }
         }
@@ -165,6 +179,53 @@ impl<'a> Writer<'a> {
         }
     }
 
+    /// Puts an effect between a port that was cut off and the rest of its node.
+    fn series(&mut self, a: &Attached<'_>, i: usize, at: &Attachment, effect: &Effect, port: usize) {
+        let (Some(through), Some(drop)) = (&effect.interface.through, &effect.interface.drop) else { return };
+        let (instance, declaration) = Self::declaration(a, i, effect, &at.base);
+        let p = &self.circuit.ports[port];
+        let node = self.tap(port);
+        let class = self.tap_class(port) + 1;
+        let far = format!("{instance}_far");
+        let _ =
+            write!(self.plant.declarations, "{declaration}    GapTap_{class} {far};\n    Real {instance}_through;\n");
+        let (potential, f) = (&p.potential, factor(&p.potential.unit));
+        let share = scaled("/", factor(&p.through.unit));
+        let fall = scaled("/", f);
+        let _ = write!(
+            self.plant.equations,
+            "    connect({far}.port, {});\n    {instance}.{} = {instance}_through;\n    {far}.drawn = -{instance}_through{share};\n    \
+             {node}.port.{v} - {far}.port.{v} = {instance}.{}{fall};\n",
+            p.name,
+            through.name,
+            drop.name,
+            v = potential.name,
+        );
+        if let (Some((input, offset)), Some(name)) = (&at.temperature, &effect.interface.temperature) {
+            let _ = writeln!(self.plant.equations, "    {instance}.{name} = {input} + {offset:e};");
+        }
+        self.taps.get_mut(&p.node).expect("just made").push(format!("{instance}_through{share}"));
+    }
+
+    /// Joins what remains of a node when ports are taken out of it.
+    fn rejoin(&mut self) {
+        let cut_nodes: BTreeSet<usize> = self.cut.iter().map(|&p| self.circuit.ports[p].node).collect();
+        for node in cut_nodes {
+            let rest = self.circuit.nodes[node].ports.iter().copied().filter(|p| !self.cut.contains(p));
+            let touched = |p: &usize| self.broken().any(|(a, b)| a == *p || b == *p);
+            let rest: Vec<&str> = rest.filter(touched).map(|p| self.circuit.ports[p].name.as_str()).collect();
+            for pair in rest.windows(2) {
+                let _ = writeln!(self.plant.equations, "    connect({}, {});", pair[0], pair[1]);
+            }
+        }
+    }
+
+    /// Connections that a cut removes.
+    fn broken(&self) -> impl Iterator<Item = (usize, usize)> {
+        let touches = |(a, b, _): &&(usize, usize, usize)| self.cut.contains(a) || self.cut.contains(b);
+        self.circuit.connections.iter().filter(touches).map(|&(a, b, _)| (a, b))
+    }
+
     /// Gives an effect the potential of a port, in SI units.
     fn read(&mut self, instance: &str, potential: &str, tap: &str, port: usize) {
         let q = &self.circuit.ports[port].potential;
@@ -180,7 +241,7 @@ impl<'a> Writer<'a> {
         let node = circuit.ports[port].node;
         let name = format!("gap_tap_{}", node + 1);
         if !self.taps.contains_key(&node) {
-            let first = nearest(circuit, node);
+            let first = nearest(circuit, node, &self.cut);
             let class = self.tap_class(first);
             let _ = writeln!(self.plant.declarations, "    GapTap_{} {name};", class + 1);
             let _ = writeln!(self.plant.equations, "    connect({name}.port, {});", circuit.ports[first].name);
@@ -278,7 +339,11 @@ impl<'a> Writer<'a> {
                 n = i + 1
             );
         }
-        let _ = writeln!(text, "  model Plant\n    extends .{};", self.circuit.class);
+        let name = |p: usize| &self.circuit.ports[p].name;
+        let broken: Vec<String> =
+            self.broken().map(|(a, b)| format!("break connect({}, {})", name(a), name(b))).collect();
+        let broken = if broken.is_empty() { String::new() } else { format!("({})", broken.join(", ")) };
+        let _ = writeln!(text, "  model Plant\n    extends .{}{broken};", self.circuit.class);
         let _ = write!(text, "{}  equation\n{}  end Plant;\n", self.plant.declarations, self.plant.equations);
         let _ = writeln!(text, "  Plant {PLANT};");
         let _ = write!(text, "{}equation\n{}end Augmented;\n", self.around.declarations, self.around.equations);
@@ -287,8 +352,8 @@ impl<'a> Writer<'a> {
 }
 
 /// The port of a node that lies least deep in the hierarchy.
-fn nearest(circuit: &Circuit, node: usize) -> usize {
-    let depth = |p: &usize| circuit.ports[*p].name.matches('.').count();
+fn nearest(circuit: &Circuit, node: usize, cut: &BTreeSet<usize>) -> usize {
+    let depth = |p: &usize| (cut.contains(p), circuit.ports[*p].name.matches('.').count());
     circuit.nodes[node].ports.iter().copied().min_by_key(depth).expect("a node has ports")
 }
 

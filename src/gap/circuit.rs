@@ -1,6 +1,7 @@
 //! What the diagnosis sees of a nominal model: components, ports with their units, nodes, inputs and parameters.
 
 use crate::compile::{Outcome, Request, inspect};
+use crate::expr::eval::Evaluation;
 use crate::expr::{ExprId, Exprs, Node as Term, VarId};
 use crate::flat::{FlatModel, Type, Variability};
 use crate::instance::{ElementState, Instance, Node, ScopeId};
@@ -47,6 +48,9 @@ pub struct NodeSet {
     pub has_rate: bool,
     /// The model already contains the second time derivative of its potential.
     pub has_acceleration: bool,
+    /// The first of the nodes that are rigidly one with it (both flanges of a mass): what is drawn from one might as
+    /// well be drawn from the other.
+    pub rigid: usize,
 }
 
 /// A component instance; entry 0 is the model itself.
@@ -124,6 +128,7 @@ impl Reader {
             let potentials: Vec<String> = node.ports.iter().map(name).collect();
             rates.of_node(&potentials, node);
         }
+        self.rigid(&rates);
         self.factors(flat);
         self.circuit.inputs = inputs(flat);
         let real = flat.variables.iter().filter(|v| v.ty == Type::Real);
@@ -141,7 +146,13 @@ impl Reader {
                 ClassKind::Model | ClassKind::Block | ClassKind::Class => {
                     self.component_of.insert(scope.0, self.circuit.components.len());
                     let parameters = parameters(instance, scope);
-                    self.circuit.components.push(Component { name, class, ports: Vec::new(), parameters, factors: Vec::new() });
+                    self.circuit.components.push(Component {
+                        name,
+                        class,
+                        ports: Vec::new(),
+                        parameters,
+                        factors: Vec::new(),
+                    });
                 }
                 _ => {}
             }
@@ -172,6 +183,27 @@ impl Reader {
         self.circuit.components[component].ports.push(number);
         self.port_of.insert(scope.0, number);
         self.circuit.ports.push(port);
+    }
+
+    /// Finds nodes that are one: a component keeps their potentials equal and only adds up what flows in.
+    fn rigid(&mut self, rates: &Rates<'_>) {
+        let Circuit { components, ports, nodes, .. } = &mut self.circuit;
+        (0..nodes.len()).for_each(|i| nodes[i].rigid = i);
+        let law = |p: &Port| rates.only_law(&format!("{}.{}", p.name, p.through.name), &components[p.component].name);
+        for c in components.iter() {
+            for (i, &a) in c.ports.iter().enumerate() {
+                for &b in &c.ports[i + 1..] {
+                    let (x, y) = (&ports[a], &ports[b]);
+                    let potential = |p: &Port| rates.root_of(&format!("{}.{}", p.name, p.potential.name));
+                    let equal = potential(x).is_some() && potential(x) == potential(y);
+                    if equal && law(x).is_some() && law(x) == law(y) {
+                        let (from, to) = (nodes[x.node].rigid, nodes[y.node].rigid);
+                        let first = from.min(to);
+                        nodes.iter_mut().filter(|n| n.rigid == from || n.rigid == to).for_each(|n| n.rigid = first);
+                    }
+                }
+            }
+        }
     }
 
     /// Marks the parameters that are the factor of a single variable.
@@ -329,6 +361,21 @@ impl<'a> Rates<'a> {
         i
     }
 
+    /// What stands for all variables equal to this one.
+    fn root_of(&self, name: &str) -> Option<u32> {
+        self.index.get(name).map(|&i| self.find(i))
+    }
+
+    /// The equation of a component in which a flow occurs, if it is only one.
+    fn only_law(&self, through: &str, component: &str) -> Option<usize> {
+        let variable = VarId(*self.index.get(through)?);
+        let instance = self.flat.instances.iter().position(|i| i.name == component)?;
+        let mut all = (0..).zip(&self.flat.equations).filter(|(_, e)| e.origin.instance as usize == instance);
+        let holds = |e: &crate::flat::Equation| self.flat.exprs.dependencies(&[e.lhs, e.rhs]).vars.contains(&variable);
+        let first = all.by_ref().find(|(_, e)| holds(e))?.0;
+        all.all(|(_, e)| !holds(e)).then_some(first)
+    }
+
     /// Whether the potential of a node is fixed, and which of its derivatives are in the model.
     fn of_node(&self, potentials: &[String], node: &mut NodeSet) {
         for name in potentials {
@@ -344,12 +391,13 @@ impl<'a> Rates<'a> {
 /// Names of parameters that occur in one equation, as the factor of one variable: `q = G*dp`.
 fn linear_factors(flat: &FlatModel) -> BTreeSet<&str> {
     let mut exprs = flat.exprs.clone();
+    let known = known(flat);
     let mut met: BTreeMap<u32, bool> = BTreeMap::new();
     for e in &flat.equations {
         let leaves = flat.exprs.dependencies(&[e.lhs, e.rhs]);
         let parameter = |v: &&VarId| flat.variables[v.index()].variability == Variability::Parameter;
         for &p in leaves.vars.iter().filter(parameter) {
-            let linear = multiplies_one(flat, &mut exprs, e.lhs, p) || multiplies_one(flat, &mut exprs, e.rhs, p);
+            let linear = [e.lhs, e.rhs].into_iter().any(|side| multiplies_one(&known, &mut exprs, side, p));
             met.entry(p.0).and_modify(|l| *l &= linear).or_insert(linear);
         }
     }
@@ -357,22 +405,101 @@ fn linear_factors(flat: &FlatModel) -> BTreeSet<&str> {
     linear.map(|(v, _)| flat.variables[v as usize].name.as_str()).collect()
 }
 
-/// Whether the derivative of a side by a parameter is one variable, or its negative, or a difference.
-fn multiplies_one(flat: &FlatModel, exprs: &mut Exprs, side: ExprId, parameter: VarId) -> bool {
+/// Whether the derivative of a side by a parameter is one variable, or its negative, or a difference of two: seen by
+/// evaluating it, since it may hide behind choices that parameters make.
+fn multiplies_one(known: &BTreeMap<VarId, f64>, exprs: &mut Exprs, side: ExprId, parameter: VarId) -> bool {
     let leaf = exprs.var(parameter);
     if !exprs.contains(side, leaf) {
         return false;
     }
     let slope = exprs.differentiate(side, leaf);
     let leaves = exprs.dependencies(&[slope]);
-    let moving = |v: &&VarId| flat.variables[v.index()].variability == Variability::Continuous;
+    let moving = |v: &&VarId| !known.contains_key(v);
     let moving: Vec<VarId> = leaves.vars.iter().filter(moving).copied().collect();
-    let differentials: Vec<ExprId> = moving.iter().map(|&v| exprs.var(v)).collect();
-    let unit = |e: ExprId, exprs: &mut Exprs| {
-        let d = exprs.differentiate(slope, e);
-        exprs.as_num(d).is_some_and(|x| x.abs() == 1.0)
+    if !leaves.ders.is_empty() || moving.is_empty() || moving.len() > 8 {
+        return false;
+    }
+    let at = |shift: f64, bumped: Option<VarId>| {
+        let mut values = |v: VarId| {
+            let place = moving.iter().position(|m| *m == v).map_or(0.0, |i| (i + 1) as f64);
+            shift * (1.0 + 0.37 * place) + if bumped == Some(v) { 1.0 } else { 0.0 }
+        };
+        value_at(known, exprs, slope, &mut values)
     };
-    matches!(differentials.len(), 1 | 2) && leaves.ders.is_empty() && differentials.into_iter().all(|e| unit(e, exprs))
+    let slopes = moving.iter().map(|&v| [0.3, 1.7].map(|x| at(x, Some(v)) - at(x, None)));
+    let mut count = 0;
+    for [a, b] in slopes {
+        if (a - b).abs() > 1e-9 || !(a.abs() < 1e-9 || (a.abs() - 1.0).abs() < 1e-9) {
+            return false;
+        }
+        count += usize::from(a != 0.0);
+    }
+    matches!(count, 1 | 2)
+}
+
+/// Values of parameters, and of variables that an equation gives by them alone in the branches they choose.
+fn known(flat: &FlatModel) -> BTreeMap<VarId, f64> {
+    let mut open: Vec<(VarId, ExprId)> = Vec::new();
+    for (i, v) in (0u32..).zip(&flat.variables) {
+        if v.variability <= Variability::Parameter {
+            open.push((VarId(i), v.binding.or(v.start).unwrap_or(Exprs::ZERO)));
+        }
+    }
+    for e in &flat.equations {
+        for (one, other) in [(e.lhs, e.rhs), (e.rhs, e.lhs)] {
+            if let Term::Var(v) = flat.exprs.node(one) {
+                open.push((v, other));
+            }
+        }
+    }
+    let mut known = BTreeMap::new();
+    loop {
+        let before = known.len();
+        open.retain(|(v, e)| {
+            let value = if known.contains_key(v) { None } else { steady_value(&known, &flat.exprs, *e) };
+            if let Some(value) = value {
+                known.insert(*v, value);
+            }
+            value.is_none() && !known.contains_key(v)
+        });
+        if known.len() == before {
+            return known;
+        }
+    }
+}
+
+/// The value of an expression if what is known is enough for it.
+fn steady_value(known: &BTreeMap<VarId, f64>, exprs: &Exprs, e: ExprId) -> Option<f64> {
+    let mut enough = true;
+    let value = Evaluation::default().value(exprs, e, &mut |leaf| match leaf {
+        Term::Var(v) if known.contains_key(&v) => known[&v],
+        _ => {
+            enough = false;
+            0.0
+        }
+    });
+    enough.then_some(value)
+}
+
+/// The value of an expression with what is known at its value, and other variables as given.
+fn value_at(known: &BTreeMap<VarId, f64>, exprs: &Exprs, e: ExprId, moving: &mut dyn FnMut(VarId) -> f64) -> f64 {
+    Evaluation::default().value(exprs, e, &mut |leaf| match leaf {
+        Term::Var(v) => known.get(&v).copied().unwrap_or_else(|| moving(v)),
+        _ => 0.0,
+    })
+}
+
+impl Circuit {
+    /// The number that all nodes rigidly one with that of a port share.
+    pub fn rigid(&self, port: usize) -> usize {
+        self.nodes[self.ports[port].node].rigid
+    }
+
+    /// All ports of the nodes that are one with that of a port, in declaration order.
+    pub fn same_place(&self, port: usize) -> Vec<usize> {
+        let rigid = self.rigid(port);
+        (0..self.ports.len()).filter(|&p| self.rigid(p) == rigid).collect()
+    }
 }
 
 /// Whether two units measure the same, angle included; scales may differ.

@@ -21,6 +21,8 @@ pub enum Attach {
     Bridge,
     /// From a node to one of fixed potential.
     Drain,
+    /// From any node to any other of its kind.
+    Transfer,
     /// Into a connection.
     Series,
     /// Between a variable and its recording.
@@ -38,8 +40,10 @@ pub struct Interface {
     pub attach: Attach,
     /// Potentials that it reads, of the ports it is attached to.
     pub potential: Vec<Quantity>,
-    /// The through variable that it gives; none for signals.
+    /// The through variable that it gives (a Series element gets it); none for signals.
     pub through: Option<Quantity>,
+    /// The difference of potentials that a Series element gives.
+    pub drop: Option<Quantity>,
     /// Potentials of further ports of the same component.
     pub sense: Vec<Quantity>,
     /// A temperature that it reads, in kelvin.
@@ -101,6 +105,8 @@ pub struct Effect {
     pub group: Option<String>,
     /// A Bridge between nodes of which neither is fixed (another effect of the family covers the fixed ones).
     pub free_ends: bool,
+    /// A Bridge that is tried in both directions.
+    pub directed: bool,
     /// Not tried where an effect of this kind fits.
     pub without: Option<Attach>,
     /// It has states of its own, so that the order of the system changes with it.
@@ -305,6 +311,7 @@ fn effect(found: &Found, interface: &Found, read: &Attributes<'_>, number: usize
         base: texts(own, "base").iter().map(|n| read.quantity(number, n)).collect::<Result<_, _>>()?,
         group: text(own, "group"),
         free_ends: text(own, "ends").as_deref() == Some("free"),
+        directed: text(own, "directed").is_some(),
         without: text(own, "without").and_then(|t| attach(&t)),
         interface,
         has_states: false,
@@ -318,8 +325,13 @@ fn effect(found: &Found, interface: &Found, read: &Attributes<'_>, number: usize
 /// Finds out which derivatives an effect uses.
 fn rates(effect: &mut Effect, read: &Attributes<'_>, number: usize) {
     let prefix = format!("e{number}.");
-    let potentials: BTreeSet<String> =
-        effect.interface.potential.iter().chain(&effect.interface.sense).map(|q| format!("{prefix}{}", q.name)).collect();
+    let potentials: BTreeSet<String> = effect
+        .interface
+        .potential
+        .iter()
+        .chain(&effect.interface.sense)
+        .map(|q| format!("{prefix}{}", q.name))
+        .collect();
     for name in read.differentiated.range(prefix.clone()..).take_while(|n| n.starts_with(&prefix)) {
         if potentials.contains(name) {
             effect.needs_rate = true;
@@ -344,6 +356,7 @@ fn interface_of(
         attach,
         potential: all("potential")?,
         through: text(base, "through").map(|n| read.quantity(number, &n)).transpose()?,
+        drop: text(base, "drop").map(|n| read.quantity(number, &n)).transpose()?,
         sense: all("sense")?,
         temperature: text(own, "temperature").or_else(|| text(base, "temperature")),
     })
@@ -354,6 +367,7 @@ fn attach(name: &str) -> Option<Attach> {
         "Shunt" => Attach::Shunt,
         "Bridge" => Attach::Bridge,
         "Drain" => Attach::Drain,
+        "Transfer" => Attach::Transfer,
         "Series" => Attach::Series,
         "Sensor" => Attach::Sensor,
         "Command" => Attach::Command,
@@ -406,7 +420,8 @@ fn shapes(
             Some(ExprKind::Array(items)) => items.iter().map(literal).collect(),
             _ => None,
         };
-        let grid = grid.filter(|g| !g.is_empty()).ok_or_else(|| format!("the grid of `{name}` is no list of numbers"))?;
+        let grid =
+            grid.filter(|g| !g.is_empty()).ok_or_else(|| format!("the grid of `{name}` is no list of numbers"))?;
         let unit = read.quantity(number, &name)?.unit;
         Ok(Shape { unit, grid, relative: relative.contains(&name), name })
     };

@@ -3,6 +3,7 @@
 use super::circuit::{Circuit, Port, Quantity, same_kind};
 use super::effects::{Attach, Coefficient, Effect, Shape};
 use crate::flat::Type;
+use crate::study::EffectChoice;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -61,7 +62,8 @@ impl Kind {
 
     /// By the unit of a through variable.
     fn of(unit: &str) -> Kind {
-        let known = [("N", Kind::Force), ("N.m", Kind::Torque), ("m3/s", Kind::Flow), ("A", Kind::Current), ("W", Kind::Heat)];
+        let known =
+            [("N", Kind::Force), ("N.m", Kind::Torque), ("m3/s", Kind::Flow), ("A", Kind::Current), ("W", Kind::Heat)];
         known.into_iter().find(|(u, _)| same_kind(u, unit)).map_or(Kind::Signal, |(_, k)| k)
     }
 }
@@ -184,6 +186,17 @@ pub fn hypotheses(circuit: &Circuit, effects: &[Arc<Effect>], signals: &[Signal]
     all
 }
 
+/// Leaves only what the study allows. Effects are named by class or family, places as the verdict names them.
+pub fn narrow(all: &mut Vec<Hypothesis>, choice: &EffectChoice) {
+    let named = |list: &[String], h: &Hypothesis| list.iter().any(|n| *n == h.effect || *n == h.family);
+    let allowed = |p: &Place| choice.places.iter().any(|n| p.node.contains(n) || *n == p.place);
+    all.retain(|h| {
+        let included = choice.include.is_empty() || named(&choice.include, h);
+        let placed = choice.places.is_empty() || h.attachments.iter().all(|a| allowed(&a.place));
+        included && placed && !named(&choice.exclude, h)
+    });
+}
+
 /// An attachment before identical ones are merged, with its component and what is alike in other instances.
 struct Candidate {
     component: usize,
@@ -198,13 +211,17 @@ fn candidates(circuit: &Circuit, effect: &Arc<Effect>, all: &[Arc<Effect>], sign
     match effect.interface.attach {
         Attach::Sensor => signals.iter().map(|s| signal(effect, Site::Sensor(s.name.clone()), &s.name)).collect(),
         Attach::Command => {
-            let real = circuit.inputs.iter().filter(|i| i.ty == Type::Real);
+            // A recorded temperature is no command.
+            let real = circuit.inputs.iter().filter(|i| i.ty == Type::Real && !same_kind(&i.unit, "K"));
             real.map(|i| signal(effect, Site::Command(i.name.clone()), &i.name)).collect()
         }
         Attach::Drift => Vec::new(),
         _ => {
             let components = 0..circuit.components.len();
-            components.flat_map(|c| at_component(circuit, effect, c)).flat_map(|c| completed(circuit, effect, c)).collect()
+            components
+                .flat_map(|c| at_component(circuit, effect, c))
+                .flat_map(|c| completed(circuit, effect, c))
+                .collect()
         }
     }
 }
@@ -236,7 +253,19 @@ fn at_component(circuit: &Circuit, effect: &Arc<Effect>, component: usize) -> Ve
             let one = |p: usize| low.iter().map(move |&l| (Site::Across(p, l), vec![p])).collect::<Vec<_>>();
             fitting.iter().copied().filter(|p| free(p)).flat_map(one).collect()
         }
-        Attach::Series => fitting.iter().copied().filter(|&p| joined(circuit, p)).map(|p| (Site::Into(p), vec![p])).collect(),
+        Attach::Transfer => {
+            let others = circuit.nodes.iter().filter(|n| !n.fixed).map(|n| n.ports[0]);
+            let others: Vec<usize> = others.filter(|&p| fits(effect, &circuit.ports[p])).collect();
+            let other = |p: usize, o: &usize| circuit.rigid(*o) != circuit.rigid(p);
+            let one = |p: usize| {
+                let to = others.iter().copied().filter(|o| other(p, o));
+                to.map(|o| (Site::Across(p, o), vec![p])).collect::<Vec<_>>()
+            };
+            fitting.iter().copied().filter(|p| free(p)).flat_map(one).collect()
+        }
+        Attach::Series => {
+            fitting.iter().copied().filter(|&p| joined(circuit, p)).map(|p| (Site::Into(p), vec![p])).collect()
+        }
         _ => Vec::new(),
     };
     sites.into_iter().filter_map(|(site, used)| candidate(circuit, effect, component, site, &used)).collect()
@@ -245,11 +274,15 @@ fn at_component(circuit: &Circuit, effect: &Arc<Effect>, component: usize) -> Ve
 fn fits(effect: &Effect, port: &Port) -> bool {
     let i = &effect.interface;
     let through = i.through.as_ref().is_some_and(|t| same_kind(&t.unit, &port.through.unit));
-    through && i.potential.first().is_some_and(|p| same_kind(&p.unit, &port.potential.unit))
+    let potential = i.potential.first().or(i.drop.as_ref());
+    through && potential.is_some_and(|p| same_kind(&p.unit, &port.potential.unit))
 }
 
+/// Whether a port is tied to others by connections of the model's own top level, which can be cut.
 fn joined(circuit: &Circuit, port: usize) -> bool {
-    circuit.nodes[circuit.ports[port].node].ports.len() > 1
+    let mut touching = circuit.connections.iter().filter(|(a, b, _)| *a == port || *b == port).peekable();
+    let plain = !circuit.ports[port].name.contains('[');
+    plain && touching.peek().is_some() && touching.all(|(.., within)| *within == 0)
 }
 
 /// Pairs of ports of a component at different nodes.
@@ -257,10 +290,13 @@ fn pairs(circuit: &Circuit, effect: &Effect, ports: &[usize]) -> Vec<(Site, Vec<
     let mut sites = Vec::new();
     for (i, &a) in ports.iter().enumerate() {
         for &b in &ports[i + 1..] {
-            let (x, y) = (circuit.ports[a].node, circuit.ports[b].node);
+            let (x, y) = (circuit.rigid(a), circuit.rigid(b));
             let fixed = [x, y].into_iter().filter(|n| circuit.nodes[*n].fixed).count();
             if x != y && fixed < if effect.free_ends { 1 } else { 2 } {
                 sites.push((Site::Across(a, b), vec![a, b]));
+                if effect.directed {
+                    sites.push((Site::Across(b, a), vec![b, a]));
+                }
             }
         }
     }
@@ -283,7 +319,7 @@ fn candidate(
     let sense = sensed(circuit, effect, component, used)?;
     let local = |p: &usize| circuit.ports[*p].name.rsplit('.').next().unwrap_or("").to_string();
     let alike = used.iter().map(local).collect::<Vec<_>>().join("|");
-    let place = place_of(circuit, &site);
+    let place = place_of(circuit, effect, &site);
     let attachment =
         Attachment { effect: Some(effect.clone()), site, sense, base: Vec::new(), temperature: None, place };
     Some(Candidate { component, alike, attachment })
@@ -295,7 +331,8 @@ fn sensed(circuit: &Circuit, effect: &Effect, component: usize, used: &[usize]) 
     let mut sense = Vec::new();
     for q in &effect.interface.sense {
         let ports = circuit.components[component].ports.iter();
-        let mut fitting = ports.filter(|p| !taken.contains(p) && same_kind(&circuit.ports[**p].potential.unit, &q.unit));
+        let mut fitting =
+            ports.filter(|p| !taken.contains(p) && same_kind(&circuit.ports[**p].potential.unit, &q.unit));
         let port = *fitting.next()?;
         taken.push(port);
         sense.push(port);
@@ -339,44 +376,53 @@ fn warmed(circuit: &Circuit, c: Candidate) -> Vec<Candidate> {
 }
 
 /// The place as the verdict names it.
-fn place_of(circuit: &Circuit, site: &Site) -> Place {
-    let port = |p: usize| &circuit.ports[p];
-    let node = |p: usize| &circuit.nodes[port(p).node];
-    let names = |p: usize| node(p).ports.iter().map(|&i| port(i).name.clone()).collect::<Vec<_>>();
+fn place_of(circuit: &Circuit, effect: &Effect, site: &Site) -> Place {
+    let name = |p: usize| circuit.ports[p].name.clone();
+    let node = |p: usize| {
+        let names: Vec<String> = circuit.same_place(p).into_iter().map(name).collect();
+        (names[0].clone(), names, p)
+    };
     let (place, ports, first) = match site {
-        Site::Node(p) => (port(node(*p).ports[0]).name.clone(), names(*p), *p),
-        Site::Across(a, b) if node(*b).fixed && port(*a).component != port(*b).component => {
-            (port(node(*a).ports[0]).name.clone(), names(*a), *a)
-        }
+        Site::Node(p) => node(*p),
+        Site::Across(a, _) if effect.interface.attach == Attach::Drain => node(*a),
         Site::Across(a, b) => {
-            let place = format!("{}|{}", port(*a).name, port(*b).name);
+            let place = format!("{}|{}", name(*a), name(*b));
             (place.clone(), vec![place], *a)
         }
         Site::Into(p) => {
-            let rest = node(*p).ports.iter().copied().find(|i| i != p).unwrap_or(*p);
-            let place = format!("{}->{}", port(rest).name, port(*p).name);
+            let ports = &circuit.nodes[circuit.ports[*p].node].ports;
+            let rest = ports.iter().copied().find(|i| i != p).unwrap_or(*p);
+            let place = format!("{}->{}", name(rest), name(*p));
             (place.clone(), vec![place], *p)
         }
         Site::Sensor(n) | Site::Command(n) | Site::Parameter(n) => {
             return Place { place: n.clone(), node: vec![n.clone()], kind: Kind::Signal };
         }
     };
-    Place { place, node: ports, kind: Kind::of(&port(first).through.unit) }
+    Place { place, node: ports, kind: Kind::of(&circuit.ports[first].through.unit) }
 }
 
 /// What makes two attachments of one effect the same.
 type Identity = (Site, Vec<usize>, Vec<(String, String)>, Option<String>);
 
 fn identity(circuit: &Circuit, a: &Attachment) -> Identity {
-    let node = |p: &usize| circuit.ports[*p].node;
+    let node = |p: &usize| circuit.rigid(*p);
     let site = match &a.site {
         Site::Node(p) => Site::Node(node(p)),
+        Site::Across(x, y) if directed(a) => Site::Across(node(x), node(y)),
         Site::Across(x, y) => Site::Across(node(x).min(node(y)), node(x).max(node(y))),
-        Site::Into(p) if circuit.nodes[node(p)].ports.len() == 2 => Site::Into(circuit.nodes[node(p)].ports[0]),
+        Site::Into(p) => {
+            let ports = &circuit.nodes[circuit.ports[*p].node].ports;
+            Site::Into(if ports.len() == 2 { ports[0] } else { *p })
+        }
         other => other.clone(),
     };
     let sense = a.sense.iter().map(node).collect();
     (site, sense, a.base.clone(), a.temperature.as_ref().map(|t| t.0.clone()))
+}
+
+fn directed(a: &Attachment) -> bool {
+    a.effect.as_ref().is_some_and(|e| e.directed || matches!(e.interface.attach, Attach::Transfer))
 }
 
 /// One attachment for all that are the same; parallel bridges are listed in its place.
@@ -463,7 +509,10 @@ fn changes_order(circuit: &Circuit, a: &Attachment) -> bool {
     match a.site {
         Site::Node(p) => ports.push(p),
         Site::Across(x, y) => ports.extend([x, y]),
-        Site::Into(_) => return effect.has_states || effect.needs_rate,
+        Site::Into(p) => {
+            let node = &circuit.nodes[circuit.ports[p].node];
+            return effect.has_states || node.has_rate || node.fixed;
+        }
         _ => {}
     }
     let lacks = |p: &usize| {

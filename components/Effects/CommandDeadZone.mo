@@ -1,0 +1,9 @@
+within Effects;
+model CommandDeadZone "Small commands do not act"
+  extends Interfaces.Command;
+  parameter Real k(unit = "1", min = 0, max = 1, nominal = 1) = 0 "Share, 1 for the whole effect";
+  parameter Real d(min = 1e-12) = 0.05 "Half the width, in the unit of the input";
+equation
+  y = u - k*d*tanh(u/d);
+  annotation(__bramah(family = "dead_zone", id = "E11", coefficients = {"k"}, shapes(d = {0.01, 0.03, 0.1, 0.3}), relative = {"d"}));
+end CommandDeadZone;

@@ -1,0 +1,11 @@
+within Effects;
+model TranslationalDahl "Friction with a hysteresis before it slides (Dahl)"
+  extends Interfaces.TranslationalShunt;
+  parameter SI.Force F_c(min = 0, nominal = 100) = 0 "Friction when it slides";
+  parameter SI.Length b(min = 1e-12) = 1e-4 "Way until it slides";
+  Real x(unit = "1", start = 0, fixed = true) "Share of the friction reached";
+equation
+  b*der(x) = v - Smooth.mag(v, 0.003)*x;
+  f = F_c*x;
+  annotation(__bramah(family = "hysteresis", id = "E27", coefficients = {"F_c"}, shapes(b = {3e-5, 3e-4, 3e-3})));
+end TranslationalDahl;
