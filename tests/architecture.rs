@@ -61,6 +61,28 @@ const MAY_USE: &[(&str, &[&str])] = &[
         ],
     ),
     ("study", &["compile", "diag", "expr", "flat", "results", "solve", "units", "world"]),
+    (
+        "gap",
+        &[
+            "analysis",
+            "compile",
+            "diag",
+            "expr",
+            "flat",
+            "instance",
+            "lower",
+            "network",
+            "plot",
+            "results",
+            "shipped",
+            "solve",
+            "structure",
+            "study",
+            "syntax",
+            "units",
+            "world",
+        ],
+    ),
 ];
 
 /// The one file besides `cli` that reads a clock, for the statistics of a run.
