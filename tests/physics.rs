@@ -202,6 +202,22 @@ fn the_pipe_is_laminar_below_and_turbulent_above() {
     near(drop(4e-3).0, 0.316 * re.powf(-0.25) * 2.0 / 0.01 * 860.0 / 2.0 * v * v, 2e-2);
 }
 
+/// The motor under flux vector control with the right rotor resistance is the reduced one; a wrong resistance leaves
+/// the speed off by its share of the slip.
+#[test]
+fn a_wrong_rotor_resistance_leaves_the_speed_off() {
+    let mut simulation = circuit(
+        "Electrical.Drives.FluxVectorDrive drive(w_start = 80);
+         Mechanical.Rotational.Inertia rotor(J = 1, w(start = 80));
+         Mechanical.Rotational.ConstantTorque load(tau_constant = -100);",
+        "drive.w_ref = 80; connect(drive.flange, rotor.flange_a); connect(rotor.flange_b, load.flange);",
+    );
+    let t = run(simulation.stop_time(20.0));
+    near(last(&t, "rotor.w"), 80.0, 1e-5);
+    let t = run(simulation.set("drive.R_hat", 1.3).expect("a parameter"));
+    near(last(&t, "rotor.w"), 80.0 + 0.3 * last(&t, "drive.w_sl") / 2.0, 1e-5);
+}
+
 /// Value and slope of the rounded functions go through their widths without a jump.
 #[test]
 fn rounded_functions_have_continuous_slopes() {
@@ -223,6 +239,22 @@ fn rounded_functions_have_continuous_slopes() {
             (1..t.len()).filter(|&i| t.times[i] > t.times[i - 1]).map(|i| (y[i] - y[i - 1]) / 3e-4).collect();
         let jump = slopes.windows(2).map(|w| (w[1] - w[0]).abs()).fold(0.0, f64::max);
         assert!(jump < 0.05, "{call} jumps in its slope by {jump}");
+    }
+}
+
+/// Nitrogen at 20 degC and 30 MPa: compressibility 1.13 by tables of properties, 1.0 at 1 MPa.
+#[test]
+fn the_gas_of_high_pressure_is_less_compressible_than_an_ideal_one() {
+    for (pressure, z, relative) in [(30e6, 1.13, 0.04), (1e6, 0.998, 0.004)] {
+        let mut simulation = circuit(
+            &format!(
+                "inner Oil.ISOVG46 oil;
+                 Hydraulic.AccumulatorRealGas gas(p_pre = {pressure}, fill = 0.999);
+                 Hydraulic.Plug plug;"
+            ),
+            "connect(gas.port, plug.port);",
+        );
+        near(last(&run(simulation.stop_time(1.0)), "gas.Z"), z, relative);
     }
 }
 
@@ -315,6 +347,7 @@ fn machines_take_power_in_all_four_quadrants() {
         "Hydraulic.GearPump machine(V = 1e-5)",
         "Hydraulic.WilsonMachine machine(V = 1e-5)",
         "Hydraulic.EfficiencyMapMachine machine(V = 1e-5)",
+        "Hydraulic.PolynomialMachine machine(V = 1e-5)",
     ];
     let mut numbers = Numbers(1);
     for class in classes {

@@ -11,6 +11,8 @@ model Cylinder "Double-acting cylinder: two chambers, seal friction, leakage, en
   parameter SI.Volume V_02(min = 1e-9, nominal = 1e-4, displayUnit = "ml") = 1e-4 "Volume of chamber 2 at s = stroke, fully extended";
   parameter SI.Mass m(min = 1e-6, max = 1e6, nominal = 10) = 10 "Mass of piston and rod";
   parameter Real C_i(unit = "m3/(s.Pa)", min = 0, max = 1e-9, nominal = 1e-13) = 1e-13 "Conductance of the piston leakage at mu_C";
+  parameter Boolean rodLeakage = false "true: with leakage past the rod seal to the outside" annotation(Evaluate = true);
+  parameter Real C_e(unit = "m3/(s.Pa)", min = 0, max = 1e-9, nominal = 1e-13) = 1e-14 "Conductance of the rod leakage at mu_C";
   parameter SI.DynamicViscosity mu_C(min = 1e-4, max = 10, nominal = 0.03) = 0.04 "Viscosity of C_i";
   parameter Boolean followViscosity = true "false: C_i is taken as it is" annotation(Evaluate = true);
   parameter SI.Pressure p_ambient(nominal = 1e5) = 101325 "Pressure on the rod outside";
@@ -21,6 +23,8 @@ model Cylinder "Double-acting cylinder: two chambers, seal friction, leakage, en
   Chamber chamber_1(A = A_1, side = 1, V_0 = V_01, s_0 = 0, p_ambient = p_ambient, p_start = p_1_start) "Chamber 1";
   Chamber chamber_2(A = A_2, side = -1, V_0 = V_02, s_0 = stroke, p_ambient = p_ambient, p_start = p_2_start) "Chamber 2";
   LaminarGap leak(G = C_i, mu_G = mu_C, followViscosity = followViscosity) "Leakage past the piston";
+  LaminarGap rodLeak(G = C_e, mu_G = mu_C, followViscosity = followViscosity) if rodLeakage "Leakage past the rod";
+  Tank outside(p = p_ambient) if rodLeakage "What drips off";
   Mechanical.Translational.Mass piston(m = m, s(start = s_start), v(start = v_start)) "Piston and rod";
   Mechanical.Translational.EndStops stops(s_min = 0, s_max = stroke) "End stops";
   replaceable SealFriction.Stribeck seal constrainedby SealFriction.Law "Friction of the seals";
@@ -34,6 +38,8 @@ equation
   connect(port_2, chamber_2.port);
   connect(port_1, leak.port_a);
   connect(leak.port_b, port_2);
+  connect(port_2, rodLeak.port_a);
+  connect(rodLeak.port_b, outside.port);
   connect(chamber_1.flange, piston.flange_a);
   connect(chamber_2.flange, piston.flange_a);
   connect(seal.flange, piston.flange_a);

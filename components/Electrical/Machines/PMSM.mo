@@ -14,19 +14,26 @@ model PMSM "Permanent magnet synchronous motor in rotor axes (dq, amplitude inva
   parameter SI.AngularVelocity w_nom(min = 1) = 314.159 "Nominal speed";
   parameter SI.Torque T_cog(min = 0, nominal = 0.01) = 0 "Amplitude of the cogging torque";
   parameter Integer h_c(min = 1) = 144 "Order of the cogging torque: least common multiple of poles and slots";
-  parameter SI.Temperature T(min = 200, max = 500) = 293.15 "Temperature of windings and magnets";
+  parameter SI.Temperature T(min = 200, max = 500) = 293.15 "Temperature of windings and magnets, without heatPort";
+  parameter Boolean useHeatPort = false "true: temperature and losses go through heatPort" annotation(Evaluate = true);
+  Interfaces.HeatPort heatPort(T = T_w, Q_flow = -(P_cu + P_fe/w_nom^2*w^2)) if useHeatPort "Windings and magnets";
   parameter SI.Temperature T_ref = 293.15 "Temperature of R_s and psi_f";
   parameter SI.LinearTemperatureCoefficient alpha_R = 0.0039 "Temperature coefficient of the resistance";
   parameter SI.LinearTemperatureCoefficient alpha_psi = -0.0012 "Temperature coefficient of the flux";
   SI.AngularVelocity w(nominal = 100) "Speed";
   SI.Torque T_e "Electromagnetic torque";
   SI.Power P_cu "Copper loss";
-protected
-  parameter SI.Resistance R = R_s*(1 + alpha_R*(T - T_ref)) "Resistance";
-  parameter SI.MagneticFlux psi = psi_f*(1 + alpha_psi*(T - T_ref)) "Flux linkage";
+  SI.Temperature T_w(nominal = 300) "Temperature of windings and magnets";
+  SI.Resistance R "Resistance of a phase";
+  SI.MagneticFlux psi "Flux linkage of the magnets";
 equation
   assert(p >= 1, "The number of pole pairs p must be at least 1");
   assert(psi_f > 0 and L_d > 0 and L_q > 0, "Flux linkage and inductances must be positive");
+  if not useHeatPort then
+    T_w = T;
+  end if;
+  R = R_s*(1 + alpha_R*(T_w - T_ref));
+  psi = psi_f*(1 + alpha_psi*(T_w - T_ref));
   w = der(flange.phi);
   L_d*der(i_d) = u_d - R*i_d + p*w*L_q*i_q;
   L_q*der(i_q) = u_q - R*i_q - p*w*(L_d*i_d + psi);

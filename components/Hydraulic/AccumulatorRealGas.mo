@@ -1,0 +1,58 @@
+within Hydraulic;
+model AccumulatorRealGas "Bladder accumulator, real gas (Redlich and Kwong) with a thermal time constant"
+  Interfaces.HydraulicPort port "Port";
+  outer Oil.Fluid oil "Oil of the circuit";
+  parameter SI.Volume V_0(min = 1e-6, max = 1, nominal = 1e-3, displayUnit = "l") = 1e-3 "Volume of the gas at the precharge";
+  parameter SI.Pressure p_pre(min = 1e4, max = 1e8, nominal = 1e6) = 1e7 "Precharge, absolute, at T_wall";
+  parameter Real fill(unit = "1", min = 0.05, max = 1) = 0.8 "Volume of the gas at the start over V_0";
+  parameter SI.Temperature T_wall(min = 220, max = 420) = 293.15 "Temperature of the wall";
+  parameter SI.Time tau(min = 0.01, max = 1e5, nominal = 10) = 10 "Thermal time constant of the gas, 5 to 30 s";
+  parameter SI.SpecificHeatCapacity R(min = 50, max = 5000) = 296.8 "Gas constant, nitrogen";
+  parameter SI.SpecificHeatCapacity c_v(min = 100, max = 20000) = 743 "Heat capacity of the gas at constant volume, nitrogen";
+  parameter SI.Temperature T_c(min = 1, max = 1000) = 126.2 "Critical temperature, nitrogen";
+  parameter SI.Pressure p_c(min = 1e4, max = 1e8, nominal = 1e6) = 3.396e6 "Critical pressure, nitrogen";
+  parameter Real V_min(unit = "1", min = 0.001, max = 0.5) = 0.02 "Oil left when empty, over V_0";
+  parameter Real w_stop(unit = "1", min = 1e-4, max = 0.1) = 0.01 "Volume beyond V_0, over V_0, at which the pressure of the oil reaches zero";
+  SI.Pressure p(nominal = 1e7) "Pressure of the oil";
+  SI.Pressure p_gas(nominal = 1e7) "Pressure of the gas";
+  SI.Temperature T(start = T_wall, fixed = true, nominal = 300, stateSelect = StateSelect.prefer) "Temperature of the gas";
+  SI.Volume V_gas(start = fill*V_0, fixed = true, nominal = 1e-3, stateSelect = StateSelect.prefer) "Volume of the gas";
+  SI.Volume V_oil(nominal = 1e-3) "Volume of the oil";
+  SI.Mass m_gas(nominal = 0.1) "Mass of the gas";
+  SI.Mass mass(nominal = 1) "Mass of the oil";
+  Real Z(unit = "1") "Compressibility of the gas: p v/(R T)";
+protected
+  parameter Real a(unit = "Pa.m6/kg2") = 0.42748*R^2*T_c^2/p_c "Attraction at the critical temperature";
+  parameter Real b(unit = "m3/kg") = 0.08664*R*T_c/p_c "Volume of the molecules";
+  Real v_pre(unit = "m3/kg", start = R*T_wall/p_pre, nominal = 1e-2) "Specific volume at the precharge";
+  Real v(unit = "m3/kg", nominal = 1e-2) "Specific volume";
+  Real p_T(unit = "Pa/K", nominal = 1e4) "Derivative of the gas pressure by temperature";
+  Real p_v(unit = "Pa.kg/m3", nominal = 1e9) "Derivative of the gas pressure by specific volume";
+  Real p_dot(unit = "Pa/s", nominal = 1e6) "Rate of the oil pressure";
+  SI.Density rho(nominal = 1000) "Density of the oil";
+  SI.BulkModulus beta(nominal = 1e9) "Tangent bulk modulus of the oil";
+initial equation
+  p_pre = R*T_wall/(v_pre - b) - a*sqrt(T_c/T_wall)/(v_pre*(v_pre + b));
+equation
+  assert(V_0 > 0 and p_pre > 0, "V_0 and the precharge p_pre must be positive");
+  assert(v > 1.05*b, "The gas is compressed beyond the law of Redlich and Kwong");
+  der(v_pre) = 0;
+  m_gas = V_0/v_pre;
+  v = V_gas/m_gas;
+  p_gas = R*T/(v - b) - a*sqrt(T_c/T)/(v*(v + b));
+  Z = p_gas*v/(R*T);
+  p_T = R/(v - b) + a*sqrt(T_c/T)/(2*T*v*(v + b));
+  p_v = -R*T/(v - b)^2 + a*sqrt(T_c/T)*(2*v + b)/(v^2*(v + b)^2);
+  der(T) = (T_wall - T)/tau - T/(m_gas*c_v)*p_T*der(V_gas);
+  p_dot = p_T*der(T) + p_v*der(V_gas)/m_gas - 2*p_pre/(w_stop*V_0)*min(max((V_gas/V_0 - 1)/w_stop, 0), 1)*der(V_gas);
+  p = p_gas - p_pre*Smooth.ramp(V_gas/V_0 - 1, w_stop)/w_stop*2;
+  p = port.p;
+  V_oil = V_0*(1 + V_min) - V_gas;
+  (rho, beta) = oil.density(p);
+  port.q = V_oil/beta*p_dot - der(V_gas);
+  mass = rho*V_oil;
+  annotation(Documentation(info = "<html>
+<p><code>p = R T/(v - b) - a sqrt(T_c/T)/(v (v + b))</code>; balance of energy with Newton's cooling, <code>dT/dt = (T_wall - T)/tau - T/(m c_v) (dp/dT)_v dV/dt</code>. The mass of the gas follows from the precharge. Above some 10 MPa nitrogen takes more volume than an ideal gas: at 30 MPa and 20 degC <code>Z</code> is 1.1 to 1.2.
+When empty, the bladder rests on its valve within <code>w_stop V_0</code>.</p>
+<p>Valid up to twice the critical density of the gas. For lower pressures <code>Accumulator</code> is simpler. Source: O. Redlich, J. N. S. Kwong, Chem. Rev. 44 (1949) 233; balance of energy: D. R. Otis and A. Pourmovahed, J. Dyn. Syst. Meas. Control 107 (1985) 116.</p></html>"));
+end AccumulatorRealGas;
