@@ -107,6 +107,27 @@ fn every_file_is_listed_and_holds_the_class_of_its_name() {
     }
 }
 
+/// Every component says what it computes: its header holds equations, limits and source where there are any.
+#[test]
+fn every_component_has_a_header() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("components");
+    let mut files = Vec::new();
+    mo_files(&root, &mut files);
+    let apart = ["Modelica", "Interfaces", "Effects", "Bases", "Examples"];
+    let mut bare = Vec::new();
+    for file in files {
+        let inside = file.strip_prefix(&root).expect("below the root");
+        let package = file.ends_with("package.mo");
+        if package || inside.iter().any(|part| apart.iter().any(|a| part == *a)) {
+            continue;
+        }
+        if !Disk.read(&file).expect("a text").contains("Documentation(") {
+            bare.push(inside.display().to_string());
+        }
+    }
+    assert!(bare.is_empty(), "without a header: {}", bare.join(", "));
+}
+
 /// What a reader of the library may expect of every component: a description and, of its parameters, units or bounds.
 #[test]
 fn classes_are_described() {

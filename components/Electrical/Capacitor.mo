@@ -6,4 +6,5 @@ model Capacitor "Capacitor"
 equation
   assert(C > 0, "The capacitance C must be positive");
   C*der(v) = i;
+  annotation(Documentation(info = "<html><p><code>C dv/dt = i</code>.</p></html>"));
 end Capacitor;

@@ -4,4 +4,5 @@ model ConstantVoltage "Constant voltage"
   parameter SI.Voltage V = 1 "Voltage";
 equation
   v = V;
+  annotation(Documentation(info = "<html><p>Gives any current at the voltage.</p></html>"));
 end ConstantVoltage;

@@ -7,4 +7,5 @@ equation
   p.v = n.v;
   p.i = i;
   n.i = -i;
+  annotation(Documentation(info = "<html><p>Without voltage drop.</p></html>"));
 end CurrentSensor;

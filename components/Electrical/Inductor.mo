@@ -6,4 +6,5 @@ model Inductor "Inductor"
 equation
   assert(L > 0, "The inductance L must be positive");
   L*der(i) = v;
+  annotation(Documentation(info = "<html><p><code>L di/dt = v</code>.</p></html>"));
 end Inductor;

@@ -15,4 +15,5 @@ equation
   end if;
   v = R*(1 + alpha*(T - T_ref))*i;
   lossPower = v*i;
+  annotation(Documentation(info = "<html><p><code>v = R i</code>, with a temperature coefficient where the heat port is used.</p></html>"));
 end Resistor;

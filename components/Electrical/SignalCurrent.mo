@@ -6,4 +6,5 @@ model SignalCurrent "Current given by a signal, from p to n"
 equation
   p.i = i;
   n.i = -i;
+  annotation(Documentation(info = "<html><p>Gives any voltage that the current of the signal needs.</p></html>"));
 end SignalCurrent;

@@ -8,4 +8,5 @@ equation
   p.v - n.v = v;
   p.i = i;
   n.i = -i;
+  annotation(Documentation(info = "<html><p>Gives any current at the voltage of the signal.</p></html>"));
 end SignalVoltage;

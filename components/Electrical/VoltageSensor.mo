@@ -7,4 +7,5 @@ equation
   p.i = 0;
   n.i = 0;
   v = p.v - n.v;
+  annotation(Documentation(info = "<html><p>Without current.</p></html>"));
 end VoltageSensor;

@@ -9,4 +9,5 @@ equation
   assert(clogging < 1, "A filter blocked entirely lets nothing pass: clogging must be below 1");
   assert(dp_nom > 0 and q_nom > 0, "The nominal point must be positive");
   q = q_nom/dp_nom*mu_nom/oil.mu*(1 - clogging)*dp;
+  annotation(Documentation(info = "<html><p>Laminar, <code>q = q_nom dp/dp_nom</code> at the nominal viscosity, less the share that is blocked.</p></html>"));
 end Filter;

@@ -7,4 +7,5 @@ equation
   port_a.p = port_b.p;
   port_a.q + port_b.q = 0;
   q = port_a.q;
+  annotation(Documentation(info = "<html><p>Volume flow from a to b at the pressure of the line, without pressure drop.</p></html>"));
 end FlowSensor;

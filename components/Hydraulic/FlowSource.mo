@@ -12,4 +12,5 @@ equation
     q_used = q;
   end if;
   port.q = -q_used;
+  annotation(Documentation(info = "<html><p>Gives any pressure that the flow needs; join it to a volume or a restriction. A positive flow leaves the port.</p></html>"));
 end FlowSource;

@@ -9,4 +9,5 @@ equation
   assert(G >= 0 and k_p >= 0 and b >= 0, "Losses must not be negative");
   Q_leak = thin*G*dp;
   T_loss = k_p*D*Smooth.mag(dp, 1e4)*Smooth.sgn(w, w_s) + b*w;
+  annotation(Documentation(info = "<html><p>Leakage <code>G dp</code> over tooth tips and side plates, scaled by the viscosity, friction by pressure and speed; the dead volume is small. Delivery, compression and starvation as in <code>Bases.Machine</code>. Ripple is left out. Source: J. Ivantysyn and M. Ivantysynova, Hydrostatic Pumps and Motors, 2001.</p></html>"));
 end GearPump;

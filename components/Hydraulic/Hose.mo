@@ -14,4 +14,5 @@ equation
   connect(half_a.port_b, volume.port);
   connect(volume.port, half_b.port_a);
   connect(half_b.port_b, port_b);
+  annotation(Documentation(info = "<html><p>Two halves of a resistance with a compliant volume between; the inertia of the oil is left out. For waves take <code>Line</code> with <code>beta_wall</code>.</p></html>"));
 end Hose;

@@ -11,4 +11,5 @@ model PistonAccumulator "Piston accumulator: gas with thermal time constant, sea
 equation
   connect(port, friction.port_a);
   connect(friction.port_b, gas.port);
+  annotation(Documentation(info = "<html><p>The gas of <code>Accumulator</code> behind a piston whose seals hold a pressure difference.</p></html>"));
 end PistonAccumulator;

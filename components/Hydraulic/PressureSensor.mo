@@ -5,4 +5,5 @@ model PressureSensor "Absolute pressure of a node"
 equation
   p = port.p;
   port.q = 0;
+  annotation(Documentation(info = "<html><p>Absolute pressure of the node, without flow.</p></html>"));
 end PressureSensor;

@@ -12,4 +12,5 @@ equation
     p_used = p;
   end if;
   port.p = p_used;
+  annotation(Documentation(info = "<html><p>Takes and gives any flow at the pressure given.</p></html>"));
 end PressureSource;

@@ -12,4 +12,5 @@ equation
   assert(R_ov > 0 and tau > 0, "R_ov and tau must be positive");
   tau*der(p_set) = k_u*max(u - u_0, 0) - p_set;
   q = Smooth.pos(dp - p_set, w)/R_ov*Smooth.step(dp/w);
+  annotation(Documentation(info = "<html><p><code>p = k_u (u - u_0) + R_ov q</code>, the setting behind a lag; a check in the direction of flow keeps it passive. Hysteresis of the magnet is left out.</p></html>"));
 end ProportionalRelief;

@@ -7,4 +7,5 @@ equation
   dp = port_a.p - port_b.p;
   port_a.q = 0;
   port_b.q = 0;
+  annotation(Documentation(info = "<html><p><code>p = p_a - p_b</code>, without flow.</p></html>"));
 end RelativePressureSensor;

@@ -29,4 +29,5 @@ equation
   connect(piston.flange_b, flange);
   seal.p_1 = chamber.p - p_ambient;
   seal.p_2 = 0;
+  annotation(Documentation(info = "<html><p><code>m dv/dt = A (p - p_a) - F_0 - c s - f_seal</code>, end stops at both ends; friction replaceable as in <code>Cylinder</code>.</p></html>"));
 end SingleActingCylinder;

@@ -34,4 +34,5 @@ equation
   connect(edge_AT.port_b, port_T);
   connect(port_B, edge_BT.port_a);
   connect(edge_BT.port_b, port_T);
+  annotation(Documentation(info = "<html><p>Four edges, <code>SpoolEdge</code>, on one spool whose motion is replaceable (<code>Spool.SecondOrder</code> with limited rate is the default). The nominal flow is that of one edge at <code>dp_nom</code>. Flow forces act on the spool in <code>Valve43FlowForce</code>. Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, chapter 5.</p></html>"));
 end Valve43;

@@ -8,4 +8,5 @@ equation
     assert(table[i, 1] > table[i - 1, 1], "The abscissae of the table must increase");
   end for;
   y = Functions.akima(table, u);
+  annotation(Documentation(info = "<html><p>A smooth curve through the points of the table, with local slopes that do not overshoot at corners. The abscissae must grow. Source: H. Akima, J. ACM 17 (1970) 589.</p></html>"));
 end AkimaTable;

@@ -5,4 +5,5 @@ block And "Logical and"
   Interfaces.BooleanOutput y "Output";
 equation
   y = u1 and u2;
+  annotation(Documentation(info = "<html><p>True where both inputs are.</p></html>"));
 end And;

@@ -5,4 +5,5 @@ block BooleanStep "Becomes true, or false, at a time"
   Interfaces.BooleanOutput y "Output";
 equation
   y = if time >= startTime then not startValue else startValue;
+  annotation(Documentation(info = "<html><p>False before, true from the start time on.</p></html>"));
 end BooleanStep;

@@ -6,4 +6,5 @@ block BooleanToReal "Real values of a Boolean signal"
   Interfaces.RealOutput y "Output";
 equation
   y = if u then realTrue else realFalse;
+  annotation(Documentation(info = "<html><p>One of two values, by a condition.</p></html>"));
 end BooleanToReal;

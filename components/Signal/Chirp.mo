@@ -12,4 +12,5 @@ protected
 equation
   t = time - startTime;
   y = offset + (if time < startTime then 0 else amplitude*sin(2*Modelica.Constants.pi*(f_1 + (f_2 - f_1)*t/(2*duration))*t));
+  annotation(Documentation(info = "<html><p>A sine whose frequency grows linearly from <code>f_1</code> to <code>f_2</code> over <code>duration</code>, and on beyond.</p></html>"));
 end Chirp;

@@ -4,4 +4,5 @@ block Constant "Constant signal"
   parameter Real k = 1 "Value";
 equation
   y = k;
+  annotation(Documentation(info = "<html><p>The same value always.</p></html>"));
 end Constant;

@@ -9,4 +9,5 @@ equation
   assert(T > 0, "The time constant T must be positive");
   der(x) = (u - x)/T;
   y = k/T*(u - x);
+  annotation(Documentation(info = "<html><p><code>k s/(T s + 1)</code>: the derivative up to the frequency <code>1/T</code>.</p></html>"));
 end Derivative;

@@ -9,4 +9,5 @@ initial equation
 equation
   assert(T > 0, "The time constant T must be positive");
   T*der(y) = k*u - y;
+  annotation(Documentation(info = "<html><p><code>T dy/dt + y = k u</code>.</p></html>"));
 end FirstOrder;

@@ -4,4 +4,5 @@ block Gain "Product with a constant"
   parameter Real k = 1 "Gain";
 equation
   y = k*u;
+  annotation(Documentation(info = "<html><p><code>y = k u</code>.</p></html>"));
 end Gain;

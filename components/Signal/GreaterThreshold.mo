@@ -5,4 +5,5 @@ block GreaterThreshold "True above a threshold"
   Interfaces.BooleanOutput y "Output";
 equation
   y = u > threshold;
+  annotation(Documentation(info = "<html><p>True above the threshold; passing it is an event.</p></html>"));
 end GreaterThreshold;

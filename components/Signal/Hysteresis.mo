@@ -8,4 +8,5 @@ block Hysteresis "Switch with hysteresis"
 equation
   assert(uHigh > uLow, "uHigh must lie above uLow");
   y = not pre(y) and u > uHigh or pre(y) and u >= uLow;
+  annotation(Documentation(info = "<html><p>Becomes true above <code>uHigh</code> and false below <code>uLow</code>.</p></html>"));
 end Hysteresis;

@@ -7,4 +7,5 @@ initial equation
   y = y_start;
 equation
   der(y) = k*u;
+  annotation(Documentation(info = "<html><p><code>dy/dt = k u</code>.</p></html>"));
 end Integrator;

@@ -10,4 +10,5 @@ equation
   assert(T_2 > 0, "The time constant T_2 must be positive");
   T_2*der(x) = u - x;
   y = k*(x + T_1/T_2*(u - x));
+  annotation(Documentation(info = "<html><p><code>k (T_1 s + 1)/(T_2 s + 1)</code>.</p></html>"));
 end LeadLag;

@@ -10,4 +10,5 @@ initial equation
 equation
   assert(yMax > yMin, "yMax must lie above yMin");
   der(y) = if y < yMin and k*u < 0 or y > yMax and k*u > 0 then 0 else k*u;
+  annotation(Documentation(info = "<html><p><code>dy/dt = k u</code> while y lies within its limits; at a limit it waits until u turns.</p></html>"));
 end LimIntegrator;

@@ -6,4 +6,5 @@ block Limiter "Limits of a signal"
 equation
   assert(uMax >= uMin, "uMax must not lie below uMin");
   y = smooth(0, if u > uMax then uMax elseif u < uMin then uMin else u);
+  annotation(Documentation(info = "<html><p>Follows the input within the limits; reaching them is an event.</p></html>"));
 end Limiter;

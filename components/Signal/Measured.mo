@@ -23,4 +23,5 @@ equation
     end for;
     y = late[delay + 1];
   end when;
+  annotation(Documentation(info = "<html><p>What a measuring chain makes of a value, in this order: gain and offset, a lag of first order, samples every <code>samplePeriod</code>, white noise of the standard deviation <code>std</code> (even distribution), and a delay of whole samples. The noise comes from a generator of its own and is the same in every run with the same seed.</p></html>"));
 end Measured;

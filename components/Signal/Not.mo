@@ -4,4 +4,5 @@ block Not "Logical not"
   Interfaces.BooleanOutput y "Output";
 equation
   y = not u;
+  annotation(Documentation(info = "<html><p>True where the input is not.</p></html>"));
 end Not;

@@ -5,4 +5,5 @@ block Or "Logical or"
   Interfaces.BooleanOutput y "Output";
 equation
   y = u1 or u2;
+  annotation(Documentation(info = "<html><p>True where one of the inputs is.</p></html>"));
 end Or;

@@ -9,4 +9,5 @@ equation
   assert(T > 0, "The time T must be positive");
   der(x) = k/T*u;
   y = k*u + x;
+  annotation(Documentation(info = "<html><p><code>y = k (u + 1/T integral of u)</code>, without limits; with limits take <code>LimPI</code>.</p></html>"));
 end PI;

@@ -3,4 +3,5 @@ block Product "Product of two signals"
   extends Bases.TwoToOne;
 equation
   y = u1*u2;
+  annotation(Documentation(info = "<html><p><code>y = u_1 u_2</code>.</p></html>"));
 end Product;

@@ -14,4 +14,5 @@ equation
     t_0 = time;
   end when;
   y = offset + (if time < startTime or time >= t_0 + width*period then 0 else amplitude);
+  annotation(Documentation(info = "<html><p><code>amplitude</code> during the share <code>width</code> of each period.</p></html>"));
 end Pulse;

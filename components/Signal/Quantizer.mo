@@ -5,4 +5,5 @@ block Quantizer "Rounds a signal to steps"
 equation
   assert(step > 0, "The step must be positive");
   y = step*floor(u/step + 0.5);
+  annotation(Documentation(info = "<html><p>Rounds to the nearest whole step: the resolution of a converter. Each step is an event.</p></html>"));
 end Quantizer;

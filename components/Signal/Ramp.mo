@@ -9,4 +9,5 @@ equation
   y = offset + (if time < startTime then 0
     elseif time < startTime + duration then (time - startTime)*height/duration
     else height);
+  annotation(Documentation(info = "<html><p>Straight from <code>offset</code> to <code>offset + height</code>; both corners are events.</p></html>"));
 end Ramp;

@@ -10,4 +10,5 @@ initial equation
 equation
   assert(rising > 0 and falling < 0, "rising must be positive, falling negative");
   der(y) = smooth(0, if (u - y)/T > rising then rising elseif (u - y)/T < falling then falling else (u - y)/T);
+  annotation(Documentation(info = "<html><p>Follows the input with the time constant T, at most with the given rates.</p></html>"));
 end RateLimiter;

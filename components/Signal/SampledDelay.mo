@@ -13,4 +13,5 @@ equation
     end for;
     y = x[n + 1];
   end when;
+  annotation(Documentation(info = "<html><p>The input of n samples ago.</p></html>"));
 end SampledDelay;

@@ -11,4 +11,5 @@ equation
   when tick then
     y = a*pre(y) + (1 - a)*k*u;
   end when;
+  annotation(Documentation(info = "<html><p><code>y_k = a y_(k-1) + (1 - a) k u_k</code> with <code>a = exp(-period/T)</code>: has the step response of a lag of first order at the samples.</p></html>"));
 end SampledFirstOrder;

@@ -19,4 +19,5 @@ equation
     x = min(max(pre(x) + k*samplePeriod/T_i*e, yMin - k*e), yMax - k*e);
     y = min(max(k*e + x, yMin), yMax);
   end when;
+  annotation(Documentation(info = "<html><p><code>y = k e + x</code>, <code>x_k = x_(k-1) + k period/T_i e</code>, carried out at the samples; the integral part is kept such that y stays within its limits (anti-windup).</p></html>"));
 end SampledPI;

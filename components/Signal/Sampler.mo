@@ -6,4 +6,5 @@ equation
   when tick then
     y = u;
   end when;
+  annotation(Documentation(info = "<html><p>Takes a sample each period and holds it.</p></html>"));
 end Sampler;

@@ -12,4 +12,5 @@ equation
   assert(w > 0, "The natural frequency w must be positive");
   der(y) = yd;
   der(yd) = w*(w*(k*u - y) - 2*D*yd);
+  annotation(Documentation(info = "<html><p><code>y'' + 2 D w y' + w^2 y = k w^2 u</code>.</p></html>"));
 end SecondOrder;

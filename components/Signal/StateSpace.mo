@@ -13,4 +13,5 @@ equation
   assert(size(B, 1) == size(A, 1) and size(C, 2) == size(A, 1), "B must have as many rows, C as many columns as A");
   der(x) = A*x + B*u;
   y = C*x + D*u;
+  annotation(Documentation(info = "<html><p><code>dx/dt = A x + B u</code>, <code>y = C x + D u</code>.</p></html>"));
 end StateSpace;

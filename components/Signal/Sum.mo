@@ -6,4 +6,5 @@ block Sum "Weighted sum of a vector of signals"
   Interfaces.RealOutput y "Output";
 equation
   y = k*u;
+  annotation(Documentation(info = "<html><p>The sum of all inputs with their gains.</p></html>"));
 end Sum;

@@ -6,4 +6,5 @@ block Switch "Chooses one of two signals"
   Interfaces.RealOutput y "Output";
 equation
   y = if u2 then u1 else u3;
+  annotation(Documentation(info = "<html><p>One of two inputs, by a condition; switching is an event.</p></html>"));
 end Switch;

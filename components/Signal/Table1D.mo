@@ -9,4 +9,5 @@ equation
     assert(table[i, 1] > table[i - 1, 1], "The abscissae of the table must increase");
   end for;
   y = Functions.interpolate(table, u, hold);
+  annotation(Documentation(info = "<html><p>Straight lines through the points of the table; beyond its ends the last line goes on, or the last value holds. The abscissae must grow.</p></html>"));
 end Table1D;

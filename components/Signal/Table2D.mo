@@ -11,4 +11,5 @@ equation
     assert(table[1, j] > table[1, j - 1], "The second argument of the table must increase");
   end for;
   y = Functions.interpolate2(table[2:end, 1], table[1, 2:end], table[2:end, 2:end], u1, u2);
+  annotation(Documentation(info = "<html><p>Bilinear between the points of the map; beyond its edges the values of the edge hold. Both axes must grow.</p></html>"));
 end Table2D;

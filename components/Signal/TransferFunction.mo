@@ -19,4 +19,5 @@ equation
     der(x[n]) = u - sum(d[n + 2 - i]*x[i] for i in 1:n);
   end if;
   y = c[1]*u + sum((c[n + 2 - i] - c[1]*d[n + 2 - i])*x[i] for i in 1:n);
+  annotation(Documentation(info = "<html><p><code>(b_1 s^m + .. )/(a_1 s^n + ..)</code> in controller canonical form; coefficients by falling powers of s, <code>m &lt;= n</code>.</p></html>"));
 end TransferFunction;

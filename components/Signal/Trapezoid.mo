@@ -16,4 +16,5 @@ equation
     elseif time < startTime + rising + holding then amplitude
     elseif time < startTime + rising + holding + falling then amplitude*(rising + holding + falling - t)/falling
     else 0);
+  annotation(Documentation(info = "<html><p>Up, hold and down along straight lines, once.</p></html>"));
 end Trapezoid;

@@ -8,4 +8,5 @@ equation
     x = u;
     y = pre(x);
   end when;
+  annotation(Documentation(info = "<html><p>The input of the last sample.</p></html>"));
 end UnitDelay;

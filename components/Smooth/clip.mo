@@ -5,5 +5,5 @@ function clip "Opening that rises from 0 at u = 0 to 1 at u = 1 + w, corners rou
   output Real y "Between 0 and 1, continuous first derivative, exactly 0 for u <= 0";
 algorithm
   y := Smooth.ramp(u, w) - Smooth.ramp(u - 1, w);
-  annotation(Inline = true);
+  annotation(Inline = true, Documentation(info = "<html><p><code>ramp(u, w) - ramp(u - 1, w)</code>. The opening of a valve over its command or over pressure.</p></html>"));
 end clip;

@@ -8,5 +8,5 @@ protected
 algorithm
   v := min(max(u, 0), w);
   y := v*v/(2*w) + max(u - w, 0);
-  annotation(Inline = true);
+  annotation(Inline = true, Documentation(info = "<html><p>The positive part, shifted by <code>w/2</code> beyond the parabola; exactly zero below, unlike <code>pos</code>.</p></html>"));
 end ramp;

@@ -7,5 +7,5 @@ protected
 algorithm
   v := min(max(u, 0), 1);
   y := v*v*(3 - 2*v);
-  annotation(Inline = true);
+  annotation(Inline = true, Documentation(info = "<html><p>The Hermite polynomial: value and slope are continuous, the curvature jumps at both ends.</p></html>"));
 end step;

@@ -6,4 +6,5 @@ model Convection "Heat transfer whose conductance follows a signal"
 equation
   solid.Q_flow = Gc*(solid.T - fluid.T);
   fluid.Q_flow = -solid.Q_flow;
+  annotation(Documentation(info = "<html><p><code>Q = G_c (T_solid - T_fluid)</code> with the conductance as a signal, for instance over the speed of a fan.</p></html>"));
 end Convection;

@@ -8,4 +8,5 @@ equation
   assert(C > 0, "The heat capacity C must be positive");
   T = port.T;
   C*der(T) = port.Q_flow;
+  annotation(Documentation(info = "<html><p><code>C dT/dt = Q</code>, one temperature throughout: valid where heat spreads within the body faster than it leaves it (Biot number below 0.1).</p></html>"));
 end HeatCapacitor;

@@ -5,4 +5,5 @@ model TemperatureSensor "Temperature of a node"
 equation
   T = port.T;
   port.Q_flow = 0;
+  annotation(Documentation(info = "<html><p>Without influence on the temperature.</p></html>"));
 end TemperatureSensor;

@@ -9,4 +9,5 @@ equation
   Q_flow = G*(port_a.T - port_b.T);
   port_a.Q_flow = Q_flow;
   port_b.Q_flow = -Q_flow;
+  annotation(Documentation(info = "<html><p><code>Q = G (T_a - T_b)</code>: conduction through a wall, or convection at a constant coefficient times area. Takes no heat itself.</p></html>"));
 end ThermalConductor;

@@ -18,7 +18,7 @@ model System "Pump-controlled cylinder with position loop (paper's Fig. 1): exte
   PositionControl control(K_x = K_x, A = cylinder.A_1, D = pump.V/(2*Modelica.Constants.pi)) "11: controller";
   replaceable ContinuousDrive drive constrainedby Drive "1: servo motor";
   Mechanical.Rotational.Inertia rotor(J = 1.8e-4) "Inertia of motor and pump";
-  replaceable BenchPump pump constrainedby Hydraulic.Bases.Machine "2: pump";
+  replaceable BenchPump pump constrainedby PumpPorts "2: pump";
   Hydraulic.PressureSensor lowPressure "3: low-pressure sensor";
   Hydraulic.Accumulator accumulator(V_0 = 1e-3, p_pre = 3e5, p_start = 5e5) "4: accumulator";
   Hydraulic.ReliefValve relief_A(p_set = 20.5e6, q_nom = 4e-5) "6.1: relief valve of A";

@@ -5,4 +5,5 @@ model IdealEncoder "Exact speed of a shaft"
 equation
   flange.tau = 0;
   w = der(flange.phi);
+  annotation(Documentation(info = "<html><p>Exact and without delay; the real one is <code>Encoder</code>.</p></html>"));
 end IdealEncoder;

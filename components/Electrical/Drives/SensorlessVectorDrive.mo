@@ -21,4 +21,5 @@ equation
   tau_T*der(T_e) = min(max(K_p*e + x, -T_max), T_max) - T_e;
   der(x) = K_i*e + K_i/K_p*(min(max(K_p*e + x, -T_max), T_max) - (K_p*e + x));
   flange.tau = -T_e;
+  annotation(Documentation(info = "<html><p><code>tau_T dT/dt = sat(K_p e + x) - T</code>, <code>tau_w dw_est/dt = w - w_est</code>: the loop holds the speed without droop, and the lag of the estimate is what makes it oscillate. With flux and slip: <code>FluxVectorDrive</code>, with the same ports. Form and values: reduced model for DOI 10.1177/09544054221102779, values assumed.</p></html>"));
 end SensorlessVectorDrive;

@@ -18,4 +18,5 @@ equation
   connect(control.u_q, motor.u_q);
   control.w = motor.w;
   connect(motor.flange, flange);
+  annotation(Documentation(info = "<html><p><code>PMSM</code> with <code>CurrentControl</code>: torque follows its command within a millisecond until the voltage ends. For longer runs <code>TorqueSource</code> is the same as a lag.</p></html>"));
 end ServoMotor;

@@ -6,4 +6,5 @@ partial block SpeedControl "Speed controller: torque command from a speed error"
   parameter Real K_p(unit = "N.m.s/rad", min = 0) = 0.0791 "Gain";
   parameter Real K_i(unit = "N.m/rad", min = 0) = 8.69 "Integral gain";
   parameter SI.Torque T_max(min = 0) = 9.54 "Greatest torque";
+  annotation(Documentation(info = "<html><p>Common ports of the speed controllers.</p></html>"));
 end SpeedControl;

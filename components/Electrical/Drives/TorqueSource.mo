@@ -11,4 +11,5 @@ equation
   assert(tau_i > 0 and T_max > 0, "tau_i and T_max must be positive");
   tau_i*der(T_e) = min(max(T_ref, -T_max), T_max) - T_e;
   flange.tau = -T_e + T_cog*sin(h_c*flange.phi);
+  annotation(Documentation(info = "<html><p><code>tau_i dT/dt = sat(T_ref) - T</code> and a cogging torque over the angle: the naive form of <code>ServoMotor</code>.</p></html>"));
 end TorqueSource;

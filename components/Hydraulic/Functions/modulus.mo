@@ -16,5 +16,5 @@ algorithm
   v_l := (1 - alpha)*x^(-1/m);
   v_g := alpha*(p_0/p_s)^(1/n_g);
   beta := (v_l + v_g)/(v_l/(beta_0*x) + v_g/(n_g*p_s));
-  annotation(Inline = true);
+  annotation(Inline = true, Documentation(info = "<html><p>Tangent modulus of oil with frozen air: volume over its derivative by pressure, <code>(v_l + v_g)/(v_l/beta_l + v_g/(n_g p))</code>, both parts referred to p_0. Source: E. B. Wylie and V. L. Streeter, Fluid Transients in Systems, 1993.</p></html>"));
 end modulus;

@@ -6,4 +6,5 @@ partial model Law "Friction of a piston against its cylinder"
   SI.Force f(nominal = 100) "Friction force, positive against positive motion";
 equation
   flange.f = f;
+  annotation(Documentation(info = "<html><p>Pressures count above the surroundings. All forms have the same ports: exchange them by redeclaration.</p></html>"));
 end Law;

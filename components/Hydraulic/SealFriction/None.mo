@@ -3,4 +3,5 @@ model None "No friction"
   extends Law;
 equation
   f = 0;
+  annotation(Documentation(info = "<html><p>Without friction.</p></html>"));
 end None;

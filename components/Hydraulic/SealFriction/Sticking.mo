@@ -22,4 +22,5 @@ equation
   f_dry = F_c*(1 + (k_st - 1)*exp(-(v/v_s)^2));
   f_visc = B*v;
   f = f_fric;
+  annotation(Documentation(info = "<html><p>Coulomb friction that grows with both pressures, Stribeck curve, and exact sticking by events (Karnopp's idea without its band). For holding loads; <code>Stribeck</code> is smoother, <code>LuGre</code> has bristles.</p></html>"));
 end Sticking;

@@ -5,4 +5,5 @@ model Viscous "Viscous friction only"
 equation
   assert(B >= 0, "The damping B must not be negative");
   f = B*der(flange.s);
+  annotation(Documentation(info = "<html><p><code>f = B v</code>: the naive form, without sticking.</p></html>"));
 end Viscous;

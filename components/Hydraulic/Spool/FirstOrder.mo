@@ -7,4 +7,5 @@ initial equation
 equation
   assert(tau > 0, "The time constant tau must be positive");
   tau*der(y) = min(max(u, -1), 1) - y;
+  annotation(Documentation(info = "<html><p><code>tau dy/dt + y = u</code>, u limited to -1 to 1.</p></html>"));
 end FirstOrder;

@@ -11,4 +11,5 @@ equation
   assert(h >= 0 and tau > 0, "h must not be negative, tau must be positive");
   tau_h*der(z) = max(u - h/2 - z, 0) + min(u + h/2 - z, 0);
   tau*der(y) = min(max(z, -1), 1) - y;
+  annotation(Documentation(info = "<html><p>Play of the width h (friction of the spool) before a lag: y follows only when the command has passed the play.</p></html>"));
 end Hysteretic;

@@ -7,4 +7,5 @@ equation
   w = der(flange.phi);
   a = der(w);
   flange.tau = 0;
+  annotation(Documentation(info = "<html><p>Without torque.</p></html>"));
 end AccelerationSensor;

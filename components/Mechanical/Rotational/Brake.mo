@@ -32,4 +32,5 @@ equation
   tau = tau_fric;
   flange_a.tau + flange_b.tau - tau = 0;
   lossPower = tau*w;
+  annotation(Documentation(info = "<html><p>As <code>Clutch</code>, against the housing.</p></html>"));
 end Brake;

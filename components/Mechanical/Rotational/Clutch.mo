@@ -26,4 +26,5 @@ equation
   tau_visc = 0;
   tau = tau_fric;
   lossPower = tau*w_rel;
+  annotation(Documentation(info = "<html><p>Torque up to <code>peak mu_c c_geo f_n</code> while the halves turn together, <code>mu_c c_geo f_n</code> while they slip; the normal force follows the command. Closing, sticking and slipping are events. Source: M. Otter, H. Elmqvist, S. E. Mattsson, CACSD 1999.</p></html>"));
 end Clutch;

@@ -5,4 +5,5 @@ model ConstantSpeed "Moves a flange with constant speed"
   parameter SI.Angle phi_start = 0 "Angle at time 0";
 equation
   flange.phi = phi_start + w_fixed*time;
+  annotation(Documentation(info = "<html><p>The angle grows evenly, whatever torque that takes.</p></html>"));
 end ConstantSpeed;

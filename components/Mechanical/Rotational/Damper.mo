@@ -9,4 +9,5 @@ equation
   w_rel = der(phi_rel);
   tau = d*w_rel;
   lossPower = tau*w_rel;
+  annotation(Documentation(info = "<html><p><code>tau = d w_rel</code>; power is lost in it, never given.</p></html>"));
 end Damper;

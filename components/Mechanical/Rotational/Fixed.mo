@@ -4,4 +4,5 @@ model Fixed "Flange fixed to the housing"
   Interfaces.RotationalFlange flange "Flange";
 equation
   flange.phi = phi_0;
+  annotation(Documentation(info = "<html><p>Holds a flange still.</p></html>"));
 end Fixed;

@@ -7,4 +7,5 @@ equation
   assert(abs(ratio) > 0, "The ratio must not be zero");
   flange_R.phi = ratio*flange_T.s;
   ratio*flange_R.tau + flange_T.f = 0;
+  annotation(Documentation(info = "<html><p><code>phi = ratio s</code> without loss; <code>ratio</code> is one over the radius of the pinion.</p></html>"));
 end IdealRackAndPinion;

@@ -5,4 +5,5 @@ model PositionSensor "Angle of a flange"
 equation
   phi = flange.phi;
   flange.tau = 0;
+  annotation(Documentation(info = "<html><p>Without torque.</p></html>"));
 end PositionSensor;

@@ -7,4 +7,5 @@ equation
   flange_a.phi = flange_b.phi;
   flange_a.tau + flange_b.tau = 0;
   power = flange_a.tau*der(flange_a.phi);
+  annotation(Documentation(info = "<html><p>Power from a to b, without influence.</p></html>"));
 end PowerSensor;

@@ -8,4 +8,5 @@ equation
   assert(w_nominal > 0, "w_nominal must be positive");
   w = der(flange.phi);
   flange.tau = tau_nominal*(w/w_nominal)*noEvent(abs(w/w_nominal));
+  annotation(Documentation(info = "<html><p>A fan or a ship: the torque grows with the square of the speed and acts against it.</p></html>"));
 end QuadraticLoad;

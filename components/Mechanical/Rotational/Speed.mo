@@ -8,4 +8,5 @@ equation
   flange.phi = phi;
   w = der(phi);
   w = w_ref;
+  annotation(Documentation(info = "<html><p>The flange moves exactly as the signal says, whatever torque that takes; the signal may jump only where nothing with inertia is joined.</p></html>"));
 end Speed;

@@ -6,4 +6,5 @@ model SpeedDependentLoad "Load over speed, given by a table"
 equation
   w = der(flange.phi);
   flange.tau = Signal.Functions.interpolate(table, w);
+  annotation(Documentation(info = "<html><p>Straight lines through the points of the table; positive values act against the motion at positive speed.</p></html>"));
 end SpeedDependentLoad;

@@ -5,4 +5,5 @@ model SpeedSensor "Speed of a flange"
 equation
   w = der(flange.phi);
   flange.tau = 0;
+  annotation(Documentation(info = "<html><p>Without torque.</p></html>"));
 end SpeedSensor;

@@ -6,4 +6,5 @@ model Spring "Linear spring"
 equation
   assert(c >= 0, "The stiffness c must not be negative");
   tau = c*(phi_rel - phi_rel0);
+  annotation(Documentation(info = "<html><p>Linear, without damping; keeps energy.</p></html>"));
 end Spring;

@@ -9,4 +9,5 @@ equation
   assert(c >= 0 and d >= 0, "Stiffness c and damping d must not be negative");
   w_rel = der(phi_rel);
   tau = c*(phi_rel - phi_rel0) + d*w_rel;
+  annotation(Documentation(info = "<html><p>Spring and damper side by side; the damper alone loses power.</p></html>"));
 end SpringDamper;

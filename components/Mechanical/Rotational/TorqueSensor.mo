@@ -7,4 +7,5 @@ equation
   flange_a.phi = flange_b.phi;
   flange_a.tau + flange_b.tau = 0;
   tau = flange_a.tau;
+  annotation(Documentation(info = "<html><p>The torque that a passes to b, without influence.</p></html>"));
 end TorqueSensor;

@@ -7,4 +7,5 @@ equation
   v = der(flange.s);
   a = der(v);
   flange.f = 0;
+  annotation(Documentation(info = "<html><p>Without force.</p></html>"));
 end AccelerationSensor;

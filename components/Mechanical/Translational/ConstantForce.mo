@@ -4,4 +4,5 @@ model ConstantForce "Constant force acting on a flange"
   parameter SI.Force f_constant = 1 "Force that accelerates the component joined";
 equation
   flange.f = -f_constant;
+  annotation(Documentation(info = "<html><p>Positive values accelerate what is joined in the positive direction.</p></html>"));
 end ConstantForce;

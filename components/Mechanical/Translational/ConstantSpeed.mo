@@ -5,4 +5,5 @@ model ConstantSpeed "Moves a flange with constant speed"
   parameter SI.Position s_start = 0 "Position at time 0";
 equation
   flange.s = s_start + v_fixed*time;
+  annotation(Documentation(info = "<html><p>The position grows evenly, whatever force that takes.</p></html>"));
 end ConstantSpeed;

@@ -9,4 +9,5 @@ equation
   v_rel = der(s_rel);
   f = d*v_rel;
   lossPower = f*v_rel;
+  annotation(Documentation(info = "<html><p><code>f = d v_rel</code>; power is lost in it, never given.</p></html>"));
 end Damper;

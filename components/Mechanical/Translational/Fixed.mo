@@ -4,4 +4,5 @@ model Fixed "Flange fixed to the housing"
   Interfaces.TranslationalFlange flange "Flange";
 equation
   flange.s = s_0;
+  annotation(Documentation(info = "<html><p>Holds a flange still.</p></html>"));
 end Fixed;

@@ -7,4 +7,5 @@ equation
   flange_a.s = flange_b.s;
   flange_a.f + flange_b.f = 0;
   f = flange_a.f;
+  annotation(Documentation(info = "<html><p>The force that a passes to b, without influence.</p></html>"));
 end ForceSensor;

@@ -6,4 +6,5 @@ model Gravity "Weight of a mass along the axis, on one flange"
   parameter SI.Acceleration g = Modelica.Constants.g_n "Acceleration of gravity";
 equation
   flange.f = m*g*sin(slope);
+  annotation(Documentation(info = "<html><p><code>f = m g sin(slope)</code> along the guide.</p></html>"));
 end Gravity;

@@ -5,4 +5,5 @@ model PositionSensor "Position of a flange"
 equation
   s = flange.s;
   flange.f = 0;
+  annotation(Documentation(info = "<html><p>Without force.</p></html>"));
 end PositionSensor;

@@ -7,4 +7,5 @@ equation
   flange_a.s = flange_b.s;
   flange_a.f + flange_b.f = 0;
   power = flange_a.f*der(flange_a.s);
+  annotation(Documentation(info = "<html><p>Power from a to b, without influence.</p></html>"));
 end PowerSensor;

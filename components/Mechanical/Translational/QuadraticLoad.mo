@@ -8,4 +8,5 @@ equation
   assert(v_nominal > 0, "v_nominal must be positive");
   v = der(flange.s);
   flange.f = f_nominal*(v/v_nominal)*noEvent(abs(v/v_nominal));
+  annotation(Documentation(info = "<html><p>A fan or a ship: the force grows with the square of the velocity and acts against it.</p></html>"));
 end QuadraticLoad;

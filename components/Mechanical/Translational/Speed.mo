@@ -8,4 +8,5 @@ equation
   flange.s = s;
   v = der(s);
   v = v_ref;
+  annotation(Documentation(info = "<html><p>The flange moves exactly as the signal says, whatever force that takes; the signal may jump only where nothing with inertia is joined.</p></html>"));
 end Speed;

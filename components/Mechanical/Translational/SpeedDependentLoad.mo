@@ -6,4 +6,5 @@ model SpeedDependentLoad "Load over speed, given by a table"
 equation
   v = der(flange.s);
   flange.f = Signal.Functions.interpolate(table, v);
+  annotation(Documentation(info = "<html><p>Straight lines through the points of the table; positive values act against the motion at positive velocity.</p></html>"));
 end SpeedDependentLoad;

@@ -5,4 +5,5 @@ model SpeedSensor "Speed of a flange"
 equation
   v = der(flange.s);
   flange.f = 0;
+  annotation(Documentation(info = "<html><p>Without force.</p></html>"));
 end SpeedSensor;

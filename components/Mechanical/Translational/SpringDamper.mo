@@ -9,4 +9,5 @@ equation
   assert(c >= 0 and d >= 0, "Stiffness c and damping d must not be negative");
   v_rel = der(s_rel);
   f = c*(s_rel - s_rel0) + d*v_rel;
+  annotation(Documentation(info = "<html><p>Spring and damper side by side; the damper alone loses power.</p></html>"));
 end SpringDamper;

@@ -6,4 +6,5 @@ partial function Law "What a law of density takes and gives"
   input Real x_u(unit = "1") = 0.2 "Share of the air that is not dissolved";
   output SI.Density rho(nominal = 1000) "Density";
   output SI.BulkModulus beta(nominal = 1e9) "Tangent bulk modulus rho/(d rho/d p)";
+  annotation(Documentation(info = "<html><p>A law returns density and tangent modulus together, so that volumes conserve mass; <code>x_u</code> is the undissolved share of the air.</p></html>"));
 end Law;

@@ -17,4 +17,5 @@ algorithm
     end if;
   end for;
   y := table[i, 2] + (table[i + 1, 2] - table[i, 2])*((x - table[i, 1])/(table[i + 1, 1] - table[i, 1]));
+  annotation(Documentation(info = "<html><p>The segment is searched from the start, so that tables of up to some hundred rows are fast enough.</p></html>"));
 end interpolate;

@@ -27,4 +27,5 @@ algorithm
   s := min(max((u - x[i])/(x[i + 1] - x[i]), 0), 1);
   t := min(max((v - y[j])/(y[j + 1] - y[j]), 0), 1);
   w := (1 - s)*((1 - t)*z[i, j] + t*z[i, j + 1]) + s*((1 - t)*z[i + 1, j] + t*z[i + 1, j + 1]);
+  annotation(Documentation(info = "<html><p>Weights are limited to the map: beyond its edges the values of the edge hold.</p></html>"));
 end interpolate2;

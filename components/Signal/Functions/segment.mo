@@ -32,4 +32,5 @@ algorithm
     t_0 := table[i, 1];
     t_next := table[i + 1, 1];
   end if;
+  annotation(Documentation(info = "<html><p>For a course over time: the value and the slope from a corner on, and when the next corner comes, so that each corner is one event.</p></html>"));
 end segment;
