@@ -4,7 +4,7 @@
 use super::lift::{Lifted, Raised};
 use crate::diag::Diagnostic;
 use crate::expr::VarId;
-use crate::lower::{Options, RowKind, System, lower};
+use crate::lower::{Options, RowKind, System, lower_explicit};
 use crate::solve::Point;
 use crate::structure::{self, StateChoice};
 use nalgebra::{DMatrix, DVector};
@@ -25,10 +25,14 @@ pub struct Plan {
     outputs: Vec<usize>,
     /// Unknowns that are not explicit: algebraic columns (false) and columns whose derivative is torn (true).
     implicit: Vec<(usize, bool)>,
+    /// Per row, which implicit unknown it belongs to.
+    implicit_row: Vec<Option<usize>>,
+    /// Per row, what it computes.
+    targets: Vec<Target>,
     /// What each entry of the system's Jacobian means.
     roles: Vec<Role>,
-    /// Discrete variables or loops: values need the event blocks.
-    blocks: bool,
+    /// There are discrete variables: values need the event blocks.
+    discrete: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -75,7 +79,7 @@ impl Plan {
     pub fn new(lifted: &Lifted) -> Result<Plan, Vec<Diagnostic>> {
         let checked = structure::analyze(&lifted.flat, &StateChoice::default());
         let Some(dae) = checked.value else { return Err(checked.diagnostics) };
-        let system = Arc::new(lower(Arc::new(dae), &Options::default()));
+        let system = Arc::new(lower_explicit(Arc::new(dae), &Options::default()));
         Ok(Plan::of(system, lifted))
     }
 
@@ -98,9 +102,31 @@ impl Plan {
                 implicit.push((j, c.state));
             }
         }
-        let blocks = !implicit.is_empty() || !system.dae.discrete.is_empty();
+        let discrete = !system.dae.discrete.is_empty();
         let parameters = lifted.parameters.len();
-        Plan { system, states, raised, parameters, outputs, implicit, roles, blocks }
+        let mut implicit_row = vec![None; system.columns.len()];
+        implicit.iter().enumerate().for_each(|(i, &(row, _))| implicit_row[row] = Some(i));
+        let target = |row: usize| match roles[row] {
+            _ if system.rows[row].kind != RowKind::Derivative => Target::Other,
+            Role::State(i) => Target::Rate(i),
+            _ => outputs.iter().position(|&o| o == row).map_or(Target::Other, Target::Output),
+        };
+        let targets = (0..system.columns.len()).map(target).collect();
+        Plan { implicit_row, targets, system, states, raised, parameters, outputs, implicit, roles, discrete }
+    }
+
+    /// How many unknowns follow from implicit equations.
+    pub fn implicit(&self) -> usize {
+        self.implicit.len()
+    }
+
+    /// Names of the unknowns of implicit equations.
+    pub fn implicit_names(&self) -> Vec<String> {
+        let name = |&(column, torn): &(usize, bool)| {
+            let variable = &self.system.dae.variables[self.system.columns[column].variable.index()].name;
+            if torn { format!("der({variable})") } else { variable.clone() }
+        };
+        self.implicit.iter().map(name).collect()
     }
 
     /// How many states.
@@ -237,7 +263,7 @@ impl Local {
     /// # Errors
     /// [`LocalError`]; the values are then meaningless.
     pub fn evaluate(&mut self, time: f64, x: &[f64], theta: &[f64], u: &[f64]) -> Result<(), LocalError> {
-        let Local { plan, point, y, yp, residual, .. } = self;
+        let Local { plan, point, y, yp, residual, entries, torn_entries, .. } = self;
         let system = &plan.system;
         for (&(column, _), &value) in plan.states.iter().zip(x) {
             y[column] = value;
@@ -245,7 +271,7 @@ impl Local {
         for (place, &value) in plan.raised.iter().zip(theta.iter().chain(u)) {
             y[place.column] = if place.negated { -value } else { value };
         }
-        if plan.blocks {
+        if plan.discrete || !plan.newton(time, y, yp, residual, entries, torn_entries, &mut point.values)? {
             for (j, c) in system.columns.iter().enumerate().filter(|(_, c)| c.state) {
                 point.values[system.layout.var(c.variable)] = y[j];
             }
@@ -254,10 +280,6 @@ impl Local {
                 y[j] = point.values[system.layout.var(c.variable)];
                 yp[j] = if c.state { point.values[system.layout.der(c.variable).expect("a state")] } else { 0.0 };
             }
-        } else {
-            yp.fill(0.0);
-            system.residual(time, y, yp, &mut point.values, residual).map_err(|_| LocalError::NonFinite)?;
-            yp.iter_mut().zip(residual.iter()).for_each(|(yp, r)| *yp = -r);
         }
         for (rate, &(column, _)) in self.rates.iter_mut().zip(&plan.states) {
             *rate = yp[column];
@@ -298,7 +320,7 @@ impl Local {
         for (column, role) in plan.roles.iter().enumerate() {
             for k in pattern.colptr[column]..pattern.colptr[column + 1] {
                 let value = -entries[k];
-                match (plan.target(pattern.rowidx[k]), *role) {
+                match (plan.targets[pattern.rowidx[k]], *role) {
                     (Target::Rate(i), Role::State(j)) => a[(i, j)] = value,
                     (Target::Rate(i), Role::Raised(j)) => b[(i, j)] = value * signs[j],
                     (Target::Output(i), Role::State(j)) => c[(i, j)] = value,
@@ -313,8 +335,7 @@ impl Local {
     fn eliminate(&mut self, torn: bool) -> Result<(), LocalError> {
         let Local { plan, entries, torn_entries, linear, .. } = self;
         let (n, r, p, q) = (plan.states.len(), plan.raised.len(), plan.outputs.len(), plan.implicit.len());
-        let mut rows = vec![None; plan.system.columns.len()];
-        plan.implicit.iter().enumerate().for_each(|(i, &(row, _))| rows[row] = Some(i));
+        let rows = &plan.implicit_row;
         let mut unknown = DMatrix::zeros(q, q);
         let mut known = DMatrix::zeros(q, n + r);
         // how rates and outputs depend on the unknowns
@@ -326,7 +347,7 @@ impl Local {
             for k in pattern.colptr[column]..pattern.colptr[column + 1] {
                 let row = pattern.rowidx[k];
                 let value = entries[k];
-                let target = match plan.target(row) {
+                let target = match plan.targets[row] {
                     Target::Rate(i) => Some(i),
                     Target::Output(i) => Some(n + i),
                     Target::Other => None,
@@ -356,12 +377,20 @@ impl Local {
             }
         }
         let solution = unknown.lu().solve(&known).ok_or(LocalError::Singular)?;
-        let through_all = &through * &solution;
         let Linearization { a, b, c, d } = linear;
-        *a -= through_all.view((0, 0), (n, n));
-        *b -= through_all.view((0, n), (n, r));
-        *c -= through_all.view((n, 0), (p, n));
-        *d -= through_all.view((n, n), (p, r));
+        // few rates and outputs depend on implicit unknowns, and these on few columns
+        let reached: Vec<usize> = (0..n + r).filter(|&j| known.column(j).iter().any(|v| *v != 0.0)).collect();
+        for t in (0..n + p).filter(|&t| through.row(t).iter().any(|v| *v != 0.0)) {
+            for &j in &reached {
+                let sum: f64 = (0..q).map(|k| through[(t, k)] * solution[(k, j)]).sum();
+                match (t < n, j < n) {
+                    (true, true) => a[(t, j)] -= sum,
+                    (true, false) => b[(t, j - n)] -= sum,
+                    (false, true) => c[(t - n, j)] -= sum,
+                    (false, false) => d[(t - n, j - n)] -= sum,
+                }
+            }
+        }
         for (i, &(column, torn)) in plan.implicit.iter().enumerate() {
             if torn && let Role::State(k) = plan.roles[column] {
                 a.row_mut(k).copy_from(&(-solution.row(i).columns(0, n)));
@@ -378,23 +407,96 @@ impl Local {
     }
 }
 
+/// Iterations of Newton's method on the implicit unknowns.
+const NEWTON: usize = 12;
+/// A correction is small below this part of the unknown's value.
+const CONVERGED: f64 = 1e-11;
+
+impl Plan {
+    /// Solves for the implicit unknowns from their last values, and for all rates; false where that does not converge.
+    fn newton(
+        &self,
+        time: f64,
+        y: &mut [f64],
+        yp: &mut [f64],
+        residual: &mut [f64],
+        entries: &mut [f64],
+        torn_entries: &mut [f64],
+        values: &mut [f64],
+    ) -> Result<bool, LocalError> {
+        let system = &self.system;
+        let mut before = f64::INFINITY;
+        for iteration in 0..NEWTON {
+            if system.residual(time, y, yp, values, residual).is_err() {
+                return if self.implicit.is_empty() { Err(LocalError::NonFinite) } else { Ok(false) };
+            }
+            for (j, row) in system.rows.iter().enumerate().filter(|(_, row)| row.kind == RowKind::Derivative) {
+                let _ = row;
+                yp[j] -= residual[j];
+            }
+            if self.implicit.is_empty() {
+                return Ok(true);
+            }
+            let Ok(change) = self.correction(time, y, yp, residual, entries, torn_entries, values) else {
+                return Ok(false);
+            };
+            let mut size = 0.0_f64;
+            for (&(column, torn), d) in self.implicit.iter().zip(change.iter()) {
+                let unknown = if torn { &mut yp[column] } else { &mut y[column] };
+                *unknown -= d;
+                size = size.max(d.abs() / (unknown.abs() + 1e-9));
+            }
+            if size < CONVERGED || iteration > 3 && size >= 0.5 * before && size < 1e-7 {
+                if system.residual(time, y, yp, values, residual).is_err() {
+                    return Ok(false);
+                }
+                for (j, _) in system.rows.iter().enumerate().filter(|(_, row)| row.kind == RowKind::Derivative) {
+                    yp[j] -= residual[j];
+                }
+                return Ok(true);
+            }
+            before = size;
+        }
+        Ok(false)
+    }
+
+    fn correction(
+        &self,
+        time: f64,
+        y: &[f64],
+        yp: &[f64],
+        residual: &[f64],
+        entries: &mut [f64],
+        torn_entries: &mut [f64],
+        values: &mut [f64],
+    ) -> Result<DVector<f64>, LocalError> {
+        let system = &self.system;
+        let torn = self.implicit.iter().any(|i| i.1);
+        system.jacobian(time, 0.0, y, yp, values, entries).map_err(|_| LocalError::NonFinite)?;
+        if torn {
+            system.jacobian(time, 1.0, y, yp, values, torn_entries).map_err(|_| LocalError::NonFinite)?;
+        }
+        let q = self.implicit.len();
+        let mut matrix = DMatrix::zeros(q, q);
+        let pattern = &system.pattern;
+        for (j, &(column, torn)) in self.implicit.iter().enumerate() {
+            for k in pattern.colptr[column]..pattern.colptr[column + 1] {
+                if let Some(i) = self.implicit_row[pattern.rowidx[k]] {
+                    matrix[(i, j)] = if torn { torn_entries[k] - entries[k] } else { entries[k] };
+                }
+            }
+        }
+        let right = DVector::from_fn(q, |i, _| residual[self.implicit[i].0]);
+        matrix.lu().solve(&right).ok_or(LocalError::Singular)
+    }
+}
+
 /// What a row computes.
+#[derive(Clone, Copy, Debug)]
 enum Target {
     Rate(usize),
     Output(usize),
     Other,
-}
-
-impl Plan {
-    fn target(&self, row: usize) -> Target {
-        if self.system.rows[row].kind != RowKind::Derivative {
-            return Target::Other;
-        }
-        match self.roles[row] {
-            Role::State(i) => Target::Rate(i),
-            _ => self.outputs.iter().position(|&o| o == row).map_or(Target::Other, Target::Output),
-        }
-    }
 }
 
 #[cfg(test)]

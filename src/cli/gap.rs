@@ -4,36 +4,122 @@ use clap::Args;
 use std::path::PathBuf;
 
 use super::messages::Messages;
+use super::recorder::write_text;
 use super::{DiskWorld, Ending, Failure, files};
-use crate::diag::{Checked, Diagnostic};
+use crate::diag::{Checked, Code, Diagnostic};
 use crate::gap::circuit::circuit;
+use crate::gap::diagnose::{Stage, Trouble, search};
 use crate::gap::effects::catalogue;
 use crate::gap::hypotheses::{self, Free, Hypothesis, Signal};
+use crate::gap::study::question;
+use crate::gap::words::words;
 use crate::study::{Knowledge, Study};
 
 /// Find where model and bench part, and which missing effect explains it
 #[derive(Args, Debug)]
 #[command(after_help = "\
+The verdict goes to stdout as JSON (or into the file given), the words to stderr. Recordings of role `held` are read
+last, when everything has been decided, and say how far the gap shrinks.
+
 Examples:
+  bramah gap study.toml --data bench/                       the diagnosis
+  bramah gap study.toml --data bench/ -o verdict.json
   bramah gap study.toml --list      what the network of the study's model could lack, and where
 
-Exit status: 0 fine, 1 the nominal model is wrong, 2 a study, file or column that cannot be used.")]
+Exit status: 0 whatever the verdict, 1 the nominal model is wrong, 2 a study, file or column that cannot be used.")]
 pub(super) struct GapArgs {
     /// The study
     #[arg(value_name = "STUDY.toml")]
     study: PathBuf,
+    /// The folder of the recordings [default: that of the study]
+    #[arg(long, value_name = "DIR")]
+    data: Option<PathBuf>,
+    /// The verdict as JSON, `-` for stdout
+    #[arg(short, long, visible_alias = "output-file", default_value = "-", value_name = "FILE")]
+    output: String,
     /// List every effect at every place where it fits, and stop
-    #[arg(long, required = true)]
+    #[arg(long)]
     list: bool,
 }
 
 pub(super) fn run(args: &GapArgs, messages: &mut Messages) -> Result<Ending, Failure> {
     let study = said(Study::read(&DiskWorld, &args.study, &mut messages.sources), messages)?;
-    let all = proposed(&study, messages)?;
     if args.list {
-        files::print(&listed(&all))?;
+        files::print(&listed(&proposed(&study, messages)?))?;
+        return Ok(Ending::Fine);
     }
+    diagnose(args, &study, messages)
+}
+
+fn diagnose(args: &GapArgs, study: &Study, messages: &mut Messages) -> Result<Ending, Failure> {
+    let begun = std::time::Instant::now();
+    let data = args.data.as_deref();
+    let question = question(&DiskWorld, study, data, &mut messages.sources).map_err(|u| {
+        if let Some(sources) = u.sources {
+            messages.sources = sources;
+        }
+        Failure { diagnostics: u.diagnostics }
+    })?;
+    messages.say(&question.diagnostics);
+    let stages = Stages::new();
+    let search = search(&question.problem, &mut |stage| stages.show(stage)).map_err(|t| trouble(&t))?;
+    stages.show(Stage::Held);
+    let held = question.held(data, &mut messages.sources).map_err(|diagnostics| Failure { diagnostics })?;
+    let verdict = search.verdict(&question.problem, &held, begun.elapsed().as_secs_f64());
+    stages.clear();
+    if held.is_empty() {
+        messages.remark("There are no held recordings: the gap is that on the recordings that were used.");
+    }
+    messages.remark(words(&verdict).trim_end());
+    let text = serde_json::to_string_pretty(&verdict).expect("numbers and texts always serialize");
+    write_text(&args.output, &format!("{text}\n"))?;
     Ok(Ending::Fine)
+}
+
+/// What stops a diagnosis: the nominal model does not compile, or cannot follow the recordings.
+fn trouble(trouble: &Trouble) -> Failure {
+    match trouble {
+        Trouble::Model(diagnostics) => Failure { diagnostics: diagnostics.clone() },
+        Trouble::Diverges(time, why) => {
+            let text = format!("the nominal model cannot follow the recordings: at {time} s {why}");
+            Diagnostic::new(Code::BadData, text)
+                .help("check the units and signs of the inputs in the study, and the model's start values")
+                .into()
+        }
+    }
+}
+
+/// The stages of a diagnosis as a line on a terminal.
+struct Stages {
+    bar: Option<indicatif::ProgressBar>,
+}
+
+impl Stages {
+    fn new() -> Self {
+        let terminal = std::io::IsTerminal::is_terminal(&std::io::stderr());
+        let bar = terminal.then(indicatif::ProgressBar::new_spinner);
+        if let Some(bar) = &bar {
+            bar.enable_steady_tick(std::time::Duration::from_millis(200));
+        }
+        Stages { bar }
+    }
+
+    fn show(&self, stage: Stage) {
+        let Some(bar) = &self.bar else { return };
+        bar.set_message(match stage {
+            Stage::Anchor => "noise, tolerances and disturbances".to_string(),
+            Stage::Locate => "places".to_string(),
+            Stage::Screen(n) => format!("all hypotheses for effect {n}"),
+            Stage::Refine(n) => format!("the best of them for effect {n}"),
+            Stage::Held => "held recordings".to_string(),
+        });
+    }
+
+    fn clear(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
 }
 
 /// The value of a stage; its warnings are said, its errors end the command.

@@ -117,8 +117,28 @@ pub struct Effect {
     pub needs_acceleration: bool,
 }
 
+/// The family of sources that have no form: not hypotheses, but what hypotheses are weighed against.
+const DISTURBANCE: &str = "disturbance";
+
 /// Reads the shipped effects and those of a folder, in the order of their names.
 pub fn catalogue(world: &dyn World, folder: Option<&Path>) -> Checked<Vec<Arc<Effect>>> {
+    let mut all = everything(world, folder);
+    if let Some(effects) = &mut all.value {
+        effects.retain(|e| e.family != DISTURBANCE);
+    }
+    all
+}
+
+/// The shipped sources, one for each kind of place.
+pub fn disturbances(world: &dyn World) -> Checked<Vec<Arc<Effect>>> {
+    let mut all = everything(world, None);
+    if let Some(effects) = &mut all.value {
+        effects.retain(|e| e.family == DISTURBANCE);
+    }
+    all
+}
+
+fn everything(world: &dyn World, folder: Option<&Path>) -> Checked<Vec<Arc<Effect>>> {
     let mut reader = Reader::default();
     reader.folder(&Shipped, Path::new("components/Effects"), "Effects");
     if let Some(folder) = folder {

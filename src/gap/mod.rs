@@ -1,9 +1,27 @@
 //! The gap between model and bench: where it lies, which effect causes it, how far it shrinks.
 //!
 //! [`effects`] reads the effect models, [`circuit`] the places of the nominal model, [`hypotheses`] puts every effect at
-//! every place where it fits, and [`augment`] writes the nominal model with effects attached.
+//! every place where it fits, and [`augment`] writes the nominal model with effects attached. [`problem`] makes of it
+//! what the [`filter`] runs over the recordings; [`fit`], [`screen`] and [`locate`] weigh parameters, effects and places
+//! by their [`evidence`]; [`diagnose`] puts all together into a [`verdict`].
 
 pub mod augment;
 pub mod circuit;
+pub mod data;
+pub mod diagnose;
 pub mod effects;
+pub mod evidence;
+pub mod filter;
+pub mod fit;
+pub mod held;
 pub mod hypotheses;
+pub mod levels;
+pub mod locate;
+pub mod noise;
+pub mod problem;
+pub mod recording;
+pub mod screen;
+pub mod step;
+pub mod study;
+pub mod verdict;
+pub mod words;

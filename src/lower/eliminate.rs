@@ -53,15 +53,18 @@ pub struct Plan {
     pub torn: Vec<(usize, Slot)>,
 }
 
-/// Sorts explicit assignments of `dae.continuous` into their fates, and gives every unknown its row.
-pub fn plan(dae: &Dae, layout: &Layout) -> Plan {
+/// Sorts explicit assignments of `dae.continuous` into their fates, and gives every unknown its row. With `keep`, some
+/// explicit variables of large systems become unknowns.
+pub fn plan(dae: &Dae, layout: &Layout, keep: bool) -> Plan {
     let mut planner = Planner::new(dae, layout);
     planner.collect(&dae.continuous);
     planner.find_leaves();
     planner.find_needed();
     planner.choose_inlined();
     planner.number_columns();
-    planner.choose_kept();
+    if keep {
+        planner.choose_kept();
+    }
     planner.finish()
 }
 

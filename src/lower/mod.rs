@@ -192,7 +192,19 @@ pub enum RowKind {
 /// Lowers a model.
 pub fn lower(dae: Arc<Dae>, options: &Options) -> System {
     let layout = Layout::new(&dae);
-    let plan = eliminate::plan(&dae, &layout);
+    let plan = eliminate::plan(&dae, &layout, true);
+    lower_planned(dae, layout, plan, options)
+}
+
+/// Lowers a model for evaluation point by point: all that is explicit stays so, however much it fills the Jacobian,
+/// because nobody factorises it.
+pub fn lower_explicit(dae: Arc<Dae>, options: &Options) -> System {
+    let layout = Layout::new(&dae);
+    let plan = eliminate::plan(&dae, &layout, false);
+    lower_planned(dae, layout, plan, options)
+}
+
+fn lower_planned(dae: Arc<Dae>, layout: Layout, plan: Plan, options: &Options) -> System {
     let mut shaper = Shaper::new(&dae, layout);
     let drafts = Drafts::new(&dae, &plan, &mut shaper);
     let Shaper { kernels, mut layout, .. } = shaper;

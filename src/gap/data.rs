@@ -1,0 +1,42 @@
+//! Recordings as the inference reads them.
+
+use std::sync::Arc;
+
+/// One recording in SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recording {
+    /// Times of the samples in seconds, growing.
+    pub times: Arc<[f64]>,
+    /// Per input of the model its samples; complete.
+    pub inputs: Vec<Arc<[f64]>>,
+    /// Per input: straight between samples instead of held.
+    pub linear: Vec<bool>,
+    /// Per signal of the study its samples; NaN where there is none.
+    pub signals: Vec<Arc<[f64]>>,
+}
+
+impl Recording {
+    /// Number of samples.
+    pub fn len(&self) -> usize {
+        self.times.len()
+    }
+
+    /// Never by construction, but a reader may ask.
+    pub fn is_empty(&self) -> bool {
+        self.times.is_empty()
+    }
+
+    /// Inputs at a sample.
+    pub fn input(&self, k: usize, u: &mut [f64]) {
+        u.iter_mut().zip(&self.inputs).for_each(|(u, samples)| *u = samples[k]);
+    }
+
+    /// Inputs that stand for the interval after sample `k`: held ones keep their value, linear ones take their mean,
+    /// which is right to second order in the interval.
+    pub fn input_between(&self, k: usize, u: &mut [f64]) {
+        for ((u, samples), &linear) in u.iter_mut().zip(&self.inputs).zip(&self.linear) {
+            let next = samples[(k + 1).min(samples.len() - 1)];
+            *u = if linear { 0.5 * (samples[k] + next) } else { samples[k] };
+        }
+    }
+}

@@ -1,0 +1,484 @@
+//! The whole diagnosis: noise, tolerances, places, effects one after another, and how far the gap shrinks.
+
+use super::data::Recording;
+use super::fit::{self, Fit, Prior, vuong};
+use super::held::{self, Gap};
+use super::hypotheses::{Hypothesis, Place};
+use super::locate::{self, Located};
+use super::problem::{Assembled, Chosen, Problem};
+use super::recording::{self, Gross};
+use super::screen::{self, Accepted, Candidate};
+use super::verdict as v;
+use std::collections::BTreeMap;
+
+/// Effects that are looked for one after another, at most.
+const MOST_EFFECTS: usize = 4;
+/// Candidates of a screen that are refined.
+const REFINED: usize = 6;
+/// Gain that a candidate must promise to be refined, nats.
+const PROMISING: f64 = 5.0;
+/// Candidates behind this part of the best one's gain are not refined.
+const FAR: f64 = 0.1;
+/// Iterations with which candidates are compared before the front is polished.
+const RACE: usize = 3;
+/// Gain that an effect must have to be accepted, nats.
+const ACCEPTED: f64 = 8.0;
+/// Vuong statistic that it must have.
+const CONSISTENT: f64 = 2.0;
+/// Part of the simulated gap that it must close.
+const CLOSES: f64 = 0.03;
+/// Alternatives this near cannot be told apart, nats.
+const NEAR: f64 = 6.0;
+/// Nor those this near that no block prefers clearly.
+const NEAR_IF_INCONSISTENT: f64 = 15.0;
+/// Vuong statistic below which an alternative is worse for certain.
+const CERTAINLY_WORSE: f64 = -1.64;
+/// Evidence for a place at which a gap counts as located, nats.
+const LOCATED: f64 = 50.0;
+
+/// A stage of the diagnosis, for progress bars.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// Noise, tolerances, levels.
+    Anchor,
+    /// Places.
+    Locate,
+    /// All hypotheses at once, looking for the n-th effect.
+    Screen(usize),
+    /// The best ones one by one.
+    Refine(usize),
+    /// Held recordings.
+    Held,
+}
+
+/// A refined candidate.
+struct Refined {
+    accepted: Accepted,
+    assembled: Assembled,
+    fit: Fit,
+}
+
+/// An accepted effect with what came with it.
+struct Found {
+    gain: f64,
+    t: f64,
+    alternatives: Vec<(Chosen, f64)>,
+}
+
+/// What the search came to; held recordings have not been touched.
+pub struct Search {
+    /// The nominal model with parameters within their tolerances.
+    base: Fit,
+    base_model: Assembled,
+    places: Vec<Located>,
+    accepted: Vec<Accepted>,
+    found: Vec<Found>,
+    last: Fit,
+    last_model: Assembled,
+    /// Places that are left.
+    left: Vec<Located>,
+    /// Gross errors of the recordings.
+    gross: Vec<Gross>,
+    /// Share of hypotheses that would have been seen at typical size.
+    visible: f64,
+}
+
+/// Why there is no verdict.
+#[derive(Clone, Debug)]
+pub enum Trouble {
+    /// The nominal model with its sources could not be compiled.
+    Model(Vec<crate::diag::Diagnostic>),
+    /// The nominal model cannot follow the recordings: at what time, and why.
+    Diverges(f64, String),
+}
+
+/// Searches on the train recordings.
+///
+/// # Errors
+/// [`Trouble`].
+pub fn search(problem: &Problem<'_>, progress: &mut dyn FnMut(Stage)) -> Result<Search, Trouble> {
+    progress(Stage::Anchor);
+    let gross = recording::gross_errors(problem);
+    let (base, base_model) = anchor(problem, &problem.noise_floor)?;
+    progress(Stage::Locate);
+    let places = locate::locate(problem, &base, &[]);
+    let mut search = Search {
+        last: base.clone(),
+        last_model: base_model.clone(),
+        base,
+        base_model,
+        places,
+        accepted: Vec::new(),
+        found: Vec::new(),
+        left: Vec::new(),
+        visible: 0.0,
+        gross,
+    };
+    while search.gross.is_empty() && search.accepted.len() < MOST_EFFECTS && search.step(problem, progress) {}
+    progress(Stage::Locate);
+    search.left = if search.accepted.is_empty() {
+        search.places.clone()
+    } else {
+        locate::locate(problem, &search.last, &search.accepted)
+    };
+    Ok(search)
+}
+
+/// The nominal model fitted within its tolerances.
+fn anchor(problem: &Problem<'_>, noise: &[f64]) -> Result<(Fit, Assembled), Trouble> {
+    let model = problem.assemble(&[], &problem.node_sources()).map_err(Trouble::Model)?;
+    let diverges = || Trouble::Diverges(0.0, "the model has no values on the way".into());
+    let levels = fit::first_levels(&model, noise, &problem.train).ok_or_else(|| why(problem, &model, noise))?;
+    let mut setting = model.setting(&levels, noise, Vec::new());
+    fit::adjust(&mut setting, &problem.train, 1).ok_or_else(diverges)?;
+    let priors = fit::tolerance_priors(problem);
+    let first = fit::fit(setting, &priors, &problem.train, None, fit::ITERATIONS).ok_or_else(diverges)?;
+    Ok((fit::polish(first, &problem.train, None), model))
+}
+
+fn why(problem: &Problem<'_>, model: &Assembled, noise: &[f64]) -> Trouble {
+    let setting = model.setting(&[], noise, Vec::new());
+    for r in &problem.train {
+        if let Err((time, e)) = super::filter::run(&setting, r, 0, usize::MAX, false) {
+            return Trouble::Diverges(time, e.to_string());
+        }
+    }
+    Trouble::Diverges(0.0, "the model has no values on the way".into())
+}
+
+impl Search {
+    /// Looks for one more effect; true when one was accepted.
+    fn step(&mut self, problem: &Problem<'_>, progress: &mut dyn FnMut(Stage)) -> bool {
+        let number = self.accepted.len() + 1;
+        progress(Stage::Screen(number));
+        let candidates = screen::screen(problem, &self.last, &self.accepted);
+        if number == 1 {
+            let seen = candidates.iter().filter(|c| c.visible > ACCEPTED).count();
+            self.visible = seen as f64 / candidates.len().max(1) as f64;
+        }
+        let front = candidates.first().map_or(0.0, |c| c.gain);
+        let promising: Vec<&Candidate> =
+            candidates.iter().filter(|c| c.gain > PROMISING.max(FAR * front)).take(REFINED).collect();
+        progress(Stage::Refine(number));
+        let mut refined: Vec<Refined> = promising.into_iter().filter_map(|c| self.refine(problem, c)).collect();
+        refined.sort_by(|a, b| b.fit.evidence.total_cmp(&a.fit.evidence));
+        self.sharpen(problem, &mut refined);
+        refined.sort_by(|a, b| b.fit.evidence.total_cmp(&a.fit.evidence));
+        if refined.is_empty() {
+            return false;
+        }
+        let best = refined.remove(0);
+        let gain = best.fit.evidence - self.last.evidence;
+        let t = vuong(&best.fit.blocks, &self.last.blocks);
+        let count = problem.tolerances.len();
+        let returned = self.last.prior_cost(count) - best.fit.prior_cost(count);
+        let consistent = t > CONSISTENT || returned > 0.5 * gain;
+        if gain < ACCEPTED || !consistent || self.closes(problem, &best) < CLOSES {
+            return false;
+        }
+        let near = |r: &&Refined| {
+            let behind = best.fit.evidence - r.fit.evidence;
+            let worse = vuong(&r.fit.blocks, &best.fit.blocks) < CERTAINLY_WORSE;
+            behind < NEAR || behind < NEAR_IF_INCONSISTENT && !worse
+        };
+        let alternatives = refined
+            .iter()
+            .filter(near)
+            .map(|r| (r.accepted.chosen.clone(), best.fit.evidence - r.fit.evidence))
+            .collect();
+        self.found.push(Found { gain, t, alternatives });
+        self.accepted.push(best.accepted);
+        let chosen: Vec<Vec<f64>> = best.assembled.attached.iter().map(|a| values(&best.fit, a)).collect();
+        self.accepted.iter_mut().zip(chosen).for_each(|(a, values)| a.chosen.values = values);
+        self.last = best.fit;
+        self.last_model = best.assembled;
+        true
+    }
+
+    /// Levels once more for those that are near the front.
+    fn sharpen(&self, problem: &Problem<'_>, refined: &mut [Refined]) {
+        let Some(front) = refined.first().map(|r| r.fit.evidence) else { return };
+        for r in refined.iter_mut().filter(|r| front - r.fit.evidence < 3.0 * NEAR_IF_INCONSISTENT).take(3) {
+            let cost = screen::variants_cost(&problem.hypotheses[r.accepted.chosen.hypothesis]);
+            r.fit.evidence += cost;
+            r.fit = fit::polish(r.fit.clone(), &problem.train, Some(self.last.share));
+            r.fit.evidence -= cost;
+            let own = r.assembled.attached.last().cloned().unwrap_or_default();
+            r.accepted.chosen.values = values(&r.fit, &own);
+        }
+    }
+
+    /// Fits one candidate together with everything accepted before.
+    fn refine(&self, problem: &Problem<'_>, candidate: &Candidate) -> Option<Refined> {
+        let accepted = Accepted { chosen: candidate.chosen.clone(), priors: candidate.priors.clone() };
+        let mut all = self.accepted.clone();
+        all.push(accepted.clone());
+        let (fit, assembled) = fitted(problem, &self.last, &all)?;
+        let own = assembled.attached.last().cloned().unwrap_or_default();
+        let chosen = Chosen { values: values(&fit, &own), ..accepted.chosen };
+        let mut fit = fit;
+        fit.evidence -= screen::variants_cost(&problem.hypotheses[candidate.chosen.hypothesis]);
+        Some(Refined { accepted: Accepted { chosen, ..accepted }, assembled, fit })
+    }
+
+    /// Part of the simulated gap on the train recordings that a candidate closes.
+    fn closes(&self, problem: &Problem<'_>, candidate: &Refined) -> f64 {
+        let gap = |f: &Fit| {
+            let runs = held::simulate_all(&f.setting, &problem.train);
+            held::gap(&runs, &problem.train, &f.setting.noise, &problem.full_scale).total
+        };
+        let before = gap(&self.last);
+        if before > 0.0 { 1.0 - gap(&candidate.fit) / before } else { 0.0 }
+    }
+}
+
+fn values(fit: &Fit, places: &[usize]) -> Vec<f64> {
+    places.iter().map(|&p| fit.setting.theta[p]).collect()
+}
+
+/// Fits a set of effects, from the values of an earlier fit.
+fn fitted(problem: &Problem<'_>, from: &Fit, accepted: &[Accepted]) -> Option<(Fit, Assembled)> {
+    let chosen: Vec<Chosen> = accepted.iter().map(|a| a.chosen.clone()).collect();
+    let mut assembled = problem.assemble(&chosen, &problem.node_sources()).ok()?;
+    locate::carry(from, accepted, &mut assembled);
+    let mut priors = fit::tolerance_priors(problem);
+    for (places, a) in assembled.attached.iter().zip(accepted) {
+        for (&parameter, prior) in places.iter().zip(&a.priors) {
+            let own = Prior { parameter, ..prior.clone() };
+            match priors.iter_mut().find(|p| p.parameter == parameter) {
+                Some(p) => *p = own,
+                None => priors.push(own),
+            }
+        }
+    }
+    let levels: Vec<f64> = from.setting.sources.iter().map(|s| s.level).collect();
+    let setting = assembled.setting(&levels, &from.setting.noise, Vec::new());
+    let fit = fit::fit(setting, &priors, &problem.train, Some(from.share), RACE)?;
+    Some((fit, assembled))
+}
+
+/// The three models whose gaps are compared, and those for what each effect closes.
+struct Finish<'a> {
+    problem: &'a Problem<'a>,
+    search: &'a Search,
+}
+
+impl Search {
+    /// The verdict. `held` is read here and nowhere before; without held recordings the train ones stand in.
+    pub fn verdict(&self, problem: &Problem<'_>, held: &[Recording], seconds: f64) -> v::Verdict {
+        Finish { problem, search: self }.verdict(held, seconds)
+    }
+
+    /// The accepted effects with their fitted values.
+    pub fn accepted(&self) -> &[Accepted] {
+        &self.accepted
+    }
+
+    /// The final fit and its model.
+    pub fn last(&self) -> (&Fit, &Assembled) {
+        (&self.last, &self.last_model)
+    }
+
+    /// The fit within tolerances and its model.
+    pub fn tolerated(&self) -> (&Fit, &Assembled) {
+        (&self.base, &self.base_model)
+    }
+}
+
+impl Finish<'_> {
+    fn verdict(&self, held: &[Recording], seconds: f64) -> v::Verdict {
+        let s = self.search;
+        let problem = self.problem;
+        let held = if held.is_empty() { &problem.train[..] } else { held };
+        let nominal = self.nominal();
+        let side =
+            |recordings: &[Recording]| [&nominal, &s.base.setting, &s.last.setting].map(|f| self.gap(f, recordings));
+        let (on_held, on_train) = (side(held), side(&problem.train));
+        let [n, t, e] = &on_held;
+        let measurable = n.total > 2.0 * n.error && n.total > 0.0;
+        let closed = measurable.then(|| 1.0 - e.total / n.total);
+        let by_effects = (measurable && t.total > 0.0).then(|| 1.0 - e.total / t.total);
+        let share = measurable.then(|| e.total / n.total);
+        let place = s.left.first().filter(|l| l.evidence > LOCATED && share.is_none_or(|s| s > 0.1));
+        let outside = s.accepted.is_empty() && place.is_some();
+        let verdict = match () {
+            () if !s.gross.is_empty() => "recording_error",
+            () if !s.accepted.is_empty() => "effects",
+            () if outside => "outside_library",
+            () if s.visible < 0.2 => "undecidable",
+            () => "nothing_found",
+        };
+        v::Verdict {
+            schema: 1,
+            verdict,
+            noise: self.by_signal(&s.last.setting.noise),
+            assumed: problem.tolerances.iter().filter(|t| t.assumed).map(|t| (t.name.clone(), t.sigma)).collect(),
+            recording: self.gross(),
+            places: self.places(&s.places),
+            effects: self.effects(held, t.total),
+            drifts: self.drifts(),
+            gap: v::Gaps { held: self.side(&on_held), train: self.side(&on_train) },
+            closed,
+            closed_by_effects: by_effects,
+            unexplained: v::Unexplained {
+                share,
+                place: place.map(|l| problem.disturbances[l.disturbance].attachments[0].place.place.clone()),
+                shape: None,
+            },
+            next_experiment: self.next_experiment(verdict),
+            seconds,
+        }
+    }
+
+    fn gross(&self) -> Vec<v::RecordingError> {
+        let error = |g: &Gross| v::RecordingError {
+            file: self.problem.files[g.recording].clone(),
+            signal: self.problem.signals[g.signal].name.clone(),
+            error: g.error,
+            value: g.value,
+        };
+        self.search.gross.iter().map(error).collect()
+    }
+
+    fn next_experiment(&self, verdict: &str) -> Option<String> {
+        let ambiguous = self.search.found.iter().any(|f| !f.alternatives.is_empty());
+        match verdict {
+            "undecidable" => Some(
+                "more excitation: steps of the inputs over their whole range, then slow triangles through zero".into(),
+            ),
+            "effects" if ambiguous => {
+                Some("the other excitation of the list that --plan gives for these alternatives".into())
+            }
+            _ => None,
+        }
+    }
+
+    /// The model as the study gives it.
+    fn nominal(&self) -> super::filter::Setting {
+        let model = &self.search.base_model;
+        let mut setting = model.setting(&vec![0.0; model.sources.len()], &self.search.last.setting.noise, Vec::new());
+        for (i, t) in self.problem.tolerances.iter().enumerate() {
+            setting.theta[i] = t.nominal;
+        }
+        setting
+    }
+
+    fn gap(&self, setting: &super::filter::Setting, recordings: &[Recording]) -> Gap {
+        let runs = held::simulate_all(setting, recordings);
+        held::gap(&runs, recordings, &self.search.last.setting.noise, &self.problem.full_scale)
+    }
+
+    fn by_signal(&self, values: &[f64]) -> BTreeMap<String, f64> {
+        self.problem.signals.iter().zip(values).map(|(s, v)| (s.name.clone(), *v)).collect()
+    }
+
+    fn side(&self, [n, t, e]: &[Gap; 3]) -> v::Side {
+        let columns = |n, t, e| v::Columns { nominal: Some(n), tolerances: Some(t), effects: Some(e) };
+        let signals = self.problem.signals.iter().enumerate();
+        v::Side {
+            total: columns(n.total, t.total, e.total),
+            signals: signals
+                .map(|(i, s)| (s.name.clone(), columns(n.signals[i], t.signals[i], e.signals[i])))
+                .collect(),
+        }
+    }
+
+    fn places(&self, places: &[Located]) -> Vec<v::Located> {
+        let total: f64 = places.iter().map(|l| l.evidence.max(0.0)).sum();
+        let located = |l: &Located| {
+            let place = &self.problem.disturbances[l.disturbance].attachments[0].place;
+            v::Located {
+                place: place.place.clone(),
+                node: place.node.clone(),
+                kind: place.kind.word(),
+                evidence: l.evidence,
+                share: if total > 0.0 { l.evidence.max(0.0) / total } else { 0.0 },
+            }
+        };
+        places.iter().filter(|l| l.evidence > 0.0).map(located).collect()
+    }
+
+    fn effects(&self, held: &[Recording], tolerated: f64) -> Vec<v::Effect> {
+        let s = self.search;
+        let full = self.gap(&s.last.setting, held).total;
+        (0..s.accepted.len())
+            .map(|i| {
+                let (alone, last) = self.closing(i, held, tolerated, full);
+                let h = self.hypothesis(&s.accepted[i].chosen);
+                let found = &s.found[i];
+                v::Effect {
+                    effect: h.effect.clone(),
+                    family: h.family.clone(),
+                    places: spots(h),
+                    evidence: found.gain,
+                    t: found.t,
+                    closes_alone: alone,
+                    closes_last: last,
+                    parameters: self.estimates(i, h),
+                    indistinguishable: found
+                        .alternatives
+                        .iter()
+                        .map(|(c, behind)| self.alternative(c, *behind))
+                        .collect(),
+                }
+            })
+            .collect()
+    }
+
+    fn hypothesis(&self, chosen: &Chosen) -> &Hypothesis {
+        &self.problem.hypotheses[chosen.hypothesis]
+    }
+
+    fn alternative(&self, chosen: &Chosen, behind: f64) -> v::Alternative {
+        let h = self.hypothesis(chosen);
+        v::Alternative { effect: h.effect.clone(), family: h.family.clone(), places: spots(h), behind }
+    }
+
+    /// What an effect closes alone, and what opens again without it, of the gap within tolerances.
+    fn closing(&self, i: usize, held: &[Recording], tolerated: f64, full: f64) -> (v::Maybe, v::Maybe) {
+        let s = self.search;
+        if tolerated <= 0.0 {
+            return (None, None);
+        }
+        if s.accepted.len() == 1 {
+            let closes = Some(1.0 - full / tolerated);
+            return (closes, closes);
+        }
+        let without: Vec<Accepted> = (0..s.accepted.len()).filter(|k| *k != i).map(|k| s.accepted[k].clone()).collect();
+        let gap = |set: &[Accepted]| Some(self.gap(&fitted(self.problem, &s.base, set)?.0.setting, held).total);
+        let alone = gap(&s.accepted[i..=i]).map(|g| 1.0 - g / tolerated);
+        (alone, gap(&without).map(|g| (g - full) / tolerated))
+    }
+
+    fn estimates(&self, i: usize, h: &Hypothesis) -> BTreeMap<String, v::Estimate> {
+        let s = self.search;
+        let places = &s.last_model.attached[i];
+        let names =
+            h.coefficients.iter().map(|c| (&c.name, &c.unit)).chain(h.shapes.iter().map(|s| (&s.name, &s.unit)));
+        let estimate = |(&place, (name, unit)): (&usize, (&String, &String))| {
+            let prior = s.last.priors.iter().position(|p| p.parameter == place);
+            let std = prior.map_or(0.0, |k| s.last.deviation(k));
+            (name.clone(), v::Estimate { value: s.last.setting.theta[place], std, unit: unit.clone() })
+        };
+        places.iter().zip(names).map(estimate).collect()
+    }
+
+    fn drifts(&self) -> Vec<v::Drift> {
+        let fit = &self.search.last;
+        let drift = |(i, t): (usize, &super::problem::Tolerance)| {
+            let value = fit.setting.theta[i];
+            v::Drift {
+                parameter: t.name.clone(),
+                nominal: t.nominal,
+                value,
+                std: fit.deviation(i),
+                tolerances: (value - t.nominal) / t.sigma,
+            }
+        };
+        self.problem.tolerances.iter().enumerate().map(drift).collect()
+    }
+}
+
+fn spots(h: &Hypothesis) -> Vec<v::Spot> {
+    h.places().into_iter().map(|p: &Place| v::Spot { place: p.place.clone(), node: p.node.clone() }).collect()
+}

@@ -1,0 +1,538 @@
+//! The anchor: an extended Kalman filter over a lifted model with an Ornstein-Uhlenbeck source per place. Beside the
+//! state it carries, for every free parameter, how the innovations depend on it; whitened innovations and columns give
+//! the Gaussian evidence of any set of parameters (see `evidence`).
+//!
+//! Everything is linearised at the predicted state, not the filtered one, so that sources do not swallow an effect.
+//! States, covariances and columns are in units of the states' sizes. States that nothing measured depends on
+//! (those of effects at their off value) are carried along without covariance.
+
+use super::data::Recording;
+use super::step::Exponential;
+use crate::analysis::local::{Local, LocalError, Plan};
+use nalgebra::{DMatrix, DVector};
+use std::sync::Arc;
+
+/// Stretches into which a recording is cut for statistics over blocks.
+pub const BLOCKS: usize = 16;
+
+/// Parts into which a step is cut where the model bends within it.
+const PARTS: usize = 8;
+/// A model counts as linear over a step when its curvature moves no state by more than this part of the state's
+/// standard deviation, or by [`LEAST_BEND`] of its size.
+const BEND: f64 = 0.2;
+const LEAST_BEND: f64 = 1e-4;
+
+/// What drives the model beside its inputs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Source {
+    /// Which parameter of the plan it is.
+    pub parameter: usize,
+    /// Standard deviation, in the parameter's unit.
+    pub level: f64,
+    /// Correlation time, s.
+    pub tau: f64,
+}
+
+/// Everything that a pass of the filter needs to know beside the data.
+#[derive(Clone, Debug)]
+pub struct Setting {
+    /// The model.
+    pub plan: Arc<Plan>,
+    /// Values of all parameters of the plan; those of sources are not read.
+    pub theta: Vec<f64>,
+    /// The sources.
+    pub sources: Vec<Source>,
+    /// Per signal the standard deviation of its noise.
+    pub noise: Vec<f64>,
+    /// Per signal the largest noise that its samples allow; misfit beyond is not noise.
+    pub most_noise: Vec<f64>,
+    /// Parameters whose columns are wanted.
+    pub columns: Vec<usize>,
+    /// How many of the first columns are wanted against all others; beyond, a column is wanted against these and its
+    /// own group only.
+    pub common: usize,
+    /// Stretches of columns behind the common ones that are wanted against each other.
+    pub groups: Vec<std::ops::Range<usize>>,
+    /// Per state its usual size, positive.
+    pub sizes: Vec<f64>,
+    /// Per recording, where steps are to be cut; found anew where nothing is said.
+    pub cuts: Vec<Vec<bool>>,
+}
+
+/// What a pass over one recording gave.
+#[derive(Clone, Debug)]
+pub struct Pass {
+    /// Log likelihood of the samples.
+    pub likelihood: f64,
+    /// Gram matrix of the whitened columns, and last the whitened data.
+    pub gram: DMatrix<f64>,
+    /// Log likelihood of each block.
+    pub blocks: Vec<f64>,
+    /// Whitened innovations, samples by signals; 0 where there is no sample.
+    pub white: DMatrix<f64>,
+    /// Linearised steps, if asked for.
+    pub tape: Vec<Step>,
+    /// Samples after which the step was cut because the model bends.
+    pub cut: Vec<bool>,
+    /// Filtered state at the last sample, SI.
+    pub last: Vec<f64>,
+    /// Mean square of each signal's innovation beyond what its prediction's uncertainty explains: noise variances as
+    /// the data show them.
+    pub noise: Vec<f64>,
+}
+
+/// A linearised step: from one sample to the next.
+#[derive(Clone, Debug)]
+pub struct Step {
+    /// Signals with a sample.
+    pub here: Vec<usize>,
+    /// Measured minus predicted output.
+    pub innovation: DVector<f64>,
+    /// d y / d z.
+    pub output: DMatrix<f64>,
+    /// What the filter added to the prediction.
+    pub correction: DVector<f64>,
+    /// d z next / d z.
+    pub transition: DMatrix<f64>,
+    /// Length, s.
+    pub h: f64,
+}
+
+/// Runs the filter over the first `samples` of a recording, the `number`-th of those that `Setting::cuts` counts.
+///
+/// # Errors
+/// When the model has no value on the way: the time, and why.
+pub fn run(
+    setting: &Setting,
+    recording: &Recording,
+    number: usize,
+    samples: usize,
+    with_tape: bool,
+) -> Result<Pass, (f64, LocalError)> {
+    let mut u = vec![0.0; recording.inputs.len()];
+    recording.input(0, &mut u);
+    let t0 = recording.times[0];
+    let mut theta = setting.theta.clone();
+    setting.sources.iter().for_each(|s| theta[s.parameter] = 0.0);
+    let mut local = Local::start(setting.plan.clone(), t0, &theta, &u).map_err(|e| (t0, e))?;
+    let start = local.state();
+    local.linearize(t0, &start, &theta, &u).map_err(|e| (t0, e))?;
+    let mut filter = Filter::new(setting, local, theta, start, recording);
+    filter.number = number;
+    let samples = samples.min(recording.len());
+    for k in 0..samples {
+        filter.sample(k, samples, with_tape).map_err(|e| (recording.times[k], e))?;
+    }
+    Ok(filter.finish())
+}
+
+struct Filter<'a> {
+    setting: &'a Setting,
+    recording: &'a Recording,
+    number: usize,
+    local: Local,
+    /// Parameters with the sources' present values.
+    theta: Vec<f64>,
+    u: Vec<f64>,
+    between: Vec<f64>,
+    /// States that are filtered, and states carried along.
+    active: Vec<usize>,
+    passive: Passive,
+    x: Vec<f64>,
+    /// Active states and sources, scaled.
+    z: DVector<f64>,
+    scale: DVector<f64>,
+    p: DMatrix<f64>,
+    /// d z / d parameters wanted.
+    s: DMatrix<f64>,
+    work: Work,
+    chunk: Vec<f64>,
+    noise: Vec<(f64, f64)>,
+    block: f64,
+    pass: Pass,
+}
+
+/// Matrices that are used again and again.
+struct Work {
+    a: DMatrix<f64>,
+    b: DMatrix<f64>,
+    exponential: Exponential,
+    next_p: DMatrix<f64>,
+    next_s: DMatrix<f64>,
+    transposed: DMatrix<f64>,
+    /// Transition over the whole interval between two samples.
+    total: DMatrix<f64>,
+}
+
+/// States that nothing depends on: a lower triangular appendix of the system.
+struct Passive {
+    states: Vec<usize>,
+    a: DMatrix<f64>,
+    exponential: Exponential,
+    h: f64,
+}
+
+impl Passive {
+    /// x next = x + integral (x' + A from the active states' half step); the matrix rarely changes.
+    fn step(&mut self, local: &Local, rates: &[f64], active: &[usize], moved: &[f64], x: &mut [f64], h: f64) {
+        let n = self.states.len();
+        if n == 0 {
+            return;
+        }
+        let full = &local.linear.a;
+        let fresh = DMatrix::from_fn(n, n, |i, j| full[(self.states[i], self.states[j])]);
+        if h != self.h || fresh != self.a {
+            self.exponential.compute(&fresh, h);
+            self.a = fresh;
+            self.h = h;
+        }
+        let rate = DVector::from_fn(n, |i, _| {
+            let row = self.states[i];
+            let along: f64 = active.iter().zip(moved).map(|(&j, dx)| full[(row, j)] * dx).sum();
+            rates[i] + 0.5 * along
+        });
+        let change = &self.exponential.integral * rate;
+        self.states.iter().zip(change.iter()).for_each(|(&i, dx)| x[i] += dx);
+    }
+}
+
+/// States from which no path of dependence leads to an output.
+fn passive_states(local: &Local) -> Vec<usize> {
+    let (a, c) = (&local.linear.a, &local.linear.c);
+    let n = a.nrows();
+    let mut seen: Vec<bool> = (0..n).map(|j| c.column(j).iter().any(|v| *v != 0.0)).collect();
+    loop {
+        let more: Vec<usize> = (0..n).filter(|&j| !seen[j] && (0..n).any(|i| seen[i] && a[(i, j)] != 0.0)).collect();
+        if more.is_empty() {
+            break;
+        }
+        more.into_iter().for_each(|j| seen[j] = true);
+    }
+    (0..n).filter(|&j| !seen[j]).collect()
+}
+
+impl<'a> Filter<'a> {
+    fn new(setting: &'a Setting, local: Local, theta: Vec<f64>, start: Vec<f64>, recording: &'a Recording) -> Self {
+        let passive = passive_states(&local);
+        let active: Vec<usize> = (0..start.len()).filter(|i| !passive.contains(i)).collect();
+        let n = active.len();
+        let nz = n + setting.sources.len();
+        let mut scale = DVector::from_element(nz, 1.0);
+        active.iter().enumerate().for_each(|(i, &x)| scale[i] = setting.sizes[x]);
+        setting.sources.iter().enumerate().for_each(|(i, source)| scale[n + i] = source.level.max(1e-300));
+        let mut z = DVector::zeros(nz);
+        active.iter().enumerate().for_each(|(i, &x)| z[i] = start[x] / scale[i]);
+        let columns = setting.columns.len();
+        let (samples, signals) = (recording.len(), setting.noise.len());
+        let pass = Pass {
+            likelihood: 0.0,
+            gram: DMatrix::zeros(columns + 1, columns + 1),
+            blocks: Vec::new(),
+            white: DMatrix::zeros(samples, signals),
+            tape: Vec::new(),
+            cut: vec![false; samples],
+            last: Vec::new(),
+            noise: Vec::new(),
+        };
+        let k = passive.len();
+        Filter {
+            setting,
+            recording,
+            number: 0,
+            local,
+            theta,
+            u: vec![0.0; recording.inputs.len()],
+            between: vec![0.0; recording.inputs.len()],
+            active,
+            passive: Passive { states: passive, a: DMatrix::zeros(0, 0), exponential: Exponential::new(k), h: 0.0 },
+            x: start,
+            z,
+            scale,
+            p: DMatrix::identity(nz, nz),
+            s: DMatrix::zeros(nz, columns),
+            work: Work {
+                a: DMatrix::zeros(nz, nz),
+                b: DMatrix::zeros(nz, columns),
+                exponential: Exponential::new(nz),
+                next_p: DMatrix::zeros(nz, nz),
+                next_s: DMatrix::zeros(nz, columns),
+                transposed: DMatrix::zeros(nz, nz),
+                total: DMatrix::zeros(nz, nz),
+            },
+            chunk: Vec::new(),
+            noise: vec![(0.0, 0.0); signals],
+            block: 0.0,
+            pass,
+        }
+    }
+
+    /// Puts the scaled state into `x` and the sources into `theta`; several sources of one place add up.
+    fn load(&mut self) {
+        let n = self.active.len();
+        for (i, &x) in self.active.iter().enumerate() {
+            self.x[x] = self.z[i] * self.scale[i];
+        }
+        self.setting.sources.iter().for_each(|s| self.theta[s.parameter] = 0.0);
+        for (i, source) in self.setting.sources.iter().enumerate() {
+            self.theta[source.parameter] += self.z[n + i] * self.scale[n + i];
+        }
+    }
+
+    /// Update with sample `k`, then prediction of the next.
+    fn sample(&mut self, k: usize, samples: usize, with_tape: bool) -> Result<(), LocalError> {
+        let recording = self.recording;
+        let t = recording.times[k];
+        recording.input(k, &mut self.u);
+        self.load();
+        self.local.linearize(t, &self.x, &self.theta, &self.u)?;
+        let before = self.z.clone();
+        let (here, innovation, output) = self.update(k);
+        let correction = &self.z - &before;
+        if (k + 1) * BLOCKS / samples > k * BLOCKS / samples {
+            self.close_block();
+        }
+        if k + 1 == samples {
+            return Ok(());
+        }
+        let h = recording.times[k + 1] - t;
+        recording.input_between(k, &mut self.between);
+        self.predict(k, &correction, h)?;
+        if with_tape {
+            let transition = self.work.total.clone();
+            self.pass.tape.push(Step { here, innovation, output, correction, transition, h });
+        }
+        Ok(())
+    }
+
+    /// The measurement, one signal after the other (their noises are independent): innovations whitened, state,
+    /// covariance and columns corrected.
+    fn update(&mut self, k: usize) -> (Vec<usize>, DVector<f64>, DMatrix<f64>) {
+        let n = self.active.len();
+        let (nz, width) = (self.z.len(), self.setting.columns.len());
+        let linear = &self.local.linear;
+        let signals = &self.recording.signals;
+        let here: Vec<usize> = (0..signals.len()).filter(|&i| signals[i][k].is_finite()).collect();
+        let q = here.len();
+        let innovation = DVector::from_fn(q, |row, _| signals[here[row]][k] - self.local.outputs[here[row]]);
+        let mut c = DMatrix::zeros(q, nz);
+        let before = self.z.clone();
+        let mut pc = DVector::zeros(nz);
+        let mut e = vec![0.0; width];
+        for (row, &i) in here.iter().enumerate() {
+            for (j, &x) in self.active.iter().enumerate() {
+                c[(row, j)] = linear.c[(i, x)] * self.scale[j];
+            }
+            for (j, source) in self.setting.sources.iter().enumerate() {
+                c[(row, n + j)] = linear.d[(i, source.parameter)] * self.scale[n + j];
+            }
+            let direction = c.row(row).transpose();
+            pc.gemv(1.0, &self.p, &direction, 0.0);
+            let variance = direction.dot(&pc) + self.setting.noise[i] * self.setting.noise[i];
+            let left = innovation[row] - direction.dot(&(&self.z - &before));
+            if !(variance > 0.0 && left.is_finite()) {
+                continue;
+            }
+            let root = variance.sqrt();
+            // how predicted outputs depend on the parameters; innovations do with the opposite sign
+            for (j, e) in e.iter_mut().enumerate() {
+                *e = linear.d[(i, self.setting.columns[j])] + direction.dot(&self.s.column(j));
+            }
+            self.pass.white[(k, i)] = left / root;
+            self.chunk.extend(e.iter().map(|e| e / root));
+            self.chunk.push(left / root);
+            let likelihood = -0.5 * left * left / variance - root.ln() - 0.5 * (2.0 * std::f64::consts::PI).ln();
+            self.pass.likelihood += likelihood;
+            self.block += likelihood;
+            self.z.axpy(left / variance, &pc, 1.0);
+            for (j, e) in e.iter().enumerate().filter(|(_, e)| **e != 0.0) {
+                self.s.column_mut(j).axpy(-e / variance, &pc, 1.0);
+            }
+            self.p.ger(-1.0 / variance, &pc, &pc, 1.0);
+        }
+        let moved = &self.z - &before;
+        for (row, &i) in here.iter().enumerate() {
+            let direction = c.row(row).transpose();
+            pc.gemv(1.0, &self.p, &direction, 0.0);
+            let residual = innovation[row] - direction.dot(&moved);
+            // expectation step for the noise: squared residual behind the update plus what is uncertain in it
+            self.noise[i].0 += residual * residual + direction.dot(&pc).max(0.0);
+            self.noise[i].1 += 1.0;
+        }
+        (here, innovation, c)
+    }
+
+    /// From the filtered state at sample `k` to the predicted one at the next: one step where the model is nearly linear
+    /// over it, else several. The transition over the whole interval is kept in `work.total`.
+    fn predict(&mut self, k: usize, correction: &DVector<f64>, h: f64) -> Result<(), LocalError> {
+        let t = self.recording.times[k];
+        let start = self.z.clone();
+        self.fill();
+        // x' at the filtered state, to first order from the predicted one
+        let mut rate = &self.work.a * correction;
+        let first_input = self.setting.plan.parameters();
+        let linear = &self.local.linear;
+        for (i, &xi) in self.active.iter().enumerate() {
+            let inputs = self.u.iter().zip(&self.between).enumerate();
+            let moved: f64 = inputs.map(|(k, (u, m))| linear.b[(xi, first_input + k)] * (m - u)).sum();
+            rate[i] += (self.local.rates[xi] + moved) / self.scale[i];
+        }
+        self.source_rates(correction, &mut rate);
+        let passive_rates: Vec<f64> = self.passive.states.iter().map(|&i| self.local.rates[i]).collect();
+        self.work.exponential.compute(&self.work.a, h);
+        let change = &self.work.exponential.integral * &rate;
+        self.z += &change;
+        let moved: Vec<f64> =
+            (0..self.active.len()).map(|i| (change[i] + 2.0 * correction[i]) * self.scale[i]).collect();
+        let nearly_linear = match self.setting.cuts.get(self.number) {
+            Some(cut) => !cut.get(k).copied().unwrap_or(false),
+            None => self.bend(t + h, &rate, &change, h)?,
+        };
+        self.pass.cut[k] = !nearly_linear;
+        self.passive.step(&self.local, &passive_rates, &self.active, &moved, &mut self.x, h);
+        if nearly_linear {
+            self.propagate(h);
+            self.work.total.copy_from(&self.work.exponential.transition);
+            return Ok(());
+        }
+        self.z = start;
+        self.work.total.fill_with_identity();
+        let part = h / PARTS as f64;
+        for i in 0..PARTS {
+            self.load();
+            self.local.linearize(t + i as f64 * part, &self.x, &self.theta, &self.between)?;
+            self.fill();
+            let mut rate = DVector::zeros(self.z.len());
+            for (i, &xi) in self.active.iter().enumerate() {
+                rate[i] = self.local.rates[xi] / self.scale[i];
+            }
+            self.source_rates(&DVector::zeros(self.z.len()), &mut rate);
+            self.work.exponential.compute(&self.work.a, part);
+            self.z += &self.work.exponential.integral * rate;
+            self.propagate(part);
+            self.work.total = &self.work.exponential.transition * &self.work.total;
+        }
+        Ok(())
+    }
+
+    /// Whether x' at the end of a step is what the linear model says, within the uncertainty of the state.
+    fn bend(&mut self, t: f64, rate: &DVector<f64>, change: &DVector<f64>, h: f64) -> Result<bool, LocalError> {
+        let expected = rate + &self.work.a * change;
+        self.load();
+        if self.local.evaluate(t, &self.x, &self.theta, &self.between).is_err() {
+            return Ok(false);
+        }
+        let fine = self.active.iter().enumerate().all(|(i, &xi)| {
+            let found = self.local.rates[xi] / self.scale[i];
+            let allowed = (BEND * self.p[(i, i)].max(0.0).sqrt()).max(LEAST_BEND);
+            0.5 * h * (found - expected[i]).abs() <= allowed
+        });
+        Ok(fine)
+    }
+
+    fn source_rates(&self, correction: &DVector<f64>, rate: &mut DVector<f64>) {
+        let n = self.active.len();
+        for (j, source) in self.setting.sources.iter().enumerate() {
+            rate[n + j] -= (self.z[n + j] - correction[n + j]) / source.tau;
+        }
+    }
+
+    /// The scaled matrices of the last linearisation.
+    fn fill(&mut self) {
+        let n = self.active.len();
+        let linear = &self.local.linear;
+        let Work { a, b, .. } = &mut self.work;
+        a.fill(0.0);
+        for (j, &xj) in self.active.iter().enumerate() {
+            for (i, &xi) in self.active.iter().enumerate() {
+                a[(i, j)] = linear.a[(xi, xj)] * self.scale[j] / self.scale[i];
+            }
+        }
+        for (j, source) in self.setting.sources.iter().enumerate() {
+            for (i, &xi) in self.active.iter().enumerate() {
+                a[(i, n + j)] = linear.b[(xi, source.parameter)] * self.scale[n + j] / self.scale[i];
+            }
+            a[(n + j, n + j)] = -1.0 / source.tau;
+        }
+        for (j, &parameter) in self.setting.columns.iter().enumerate() {
+            for (i, &xi) in self.active.iter().enumerate() {
+                b[(i, j)] = linear.b[(xi, parameter)] / self.scale[i];
+            }
+        }
+    }
+
+    /// Covariance and columns over the step that the exponential holds.
+    fn propagate(&mut self, h: f64) {
+        let n = self.active.len();
+        let Work { b, exponential, next_p, next_s, transposed, .. } = &mut self.work;
+        let m = &exponential.transition;
+        next_s.gemm(1.0, &exponential.integral, b, 0.0);
+        next_s.gemm(1.0, m, &self.s, 1.0);
+        std::mem::swap(&mut self.s, next_s);
+        next_p.gemm(1.0, m, &self.p, 0.0);
+        m.transpose_to(transposed);
+        self.p.gemm(1.0, next_p, transposed, 0.0);
+        // noise of the sources by the trapezoidal rule over the step
+        for (j, source) in self.setting.sources.iter().enumerate() {
+            let q = source_noise(source.tau, h);
+            let column = m.column(n + j);
+            self.p.ger(0.5 * q, &column, &column, 1.0);
+            self.p[(n + j, n + j)] += 0.5 * q;
+        }
+        symmetrize(&mut self.p);
+    }
+
+    fn close_block(&mut self) {
+        let width = self.setting.columns.len() + 1;
+        let rows = DMatrix::from_row_slice(self.chunk.len() / width, width, &self.chunk);
+        self.chunk.clear();
+        let common = self.setting.common;
+        let gram = &mut self.pass.gram;
+        if common + 1 >= width {
+            *gram += rows.tr_mul(&rows);
+        } else {
+            let mut wanted: Vec<usize> = (0..common).collect();
+            wanted.push(width - 1);
+            let left = rows.select_columns(&wanted);
+            let part = left.tr_mul(&rows);
+            for (i, &w) in wanted.iter().enumerate() {
+                for j in 0..width {
+                    gram[(w, j)] += part[(i, j)];
+                    if j >= common && j + 1 < width {
+                        gram[(j, w)] += part[(i, j)];
+                    }
+                }
+            }
+            for group in &self.setting.groups {
+                let own = rows.columns(group.start, group.len());
+                let part = own.tr_mul(&own);
+                let mut target = gram.view_mut((group.start, group.start), (group.len(), group.len()));
+                target += part;
+            }
+        }
+        self.pass.blocks.push(self.block);
+        self.block = 0.0;
+    }
+
+    fn finish(mut self) -> Pass {
+        self.load();
+        self.pass.last = self.x;
+        self.pass.noise = self.noise.iter().map(|(sum, n)| if *n > 0.0 { sum / n } else { 0.0 }).collect();
+        self.pass
+    }
+}
+
+/// Variance that a source of unit level gains over a step.
+pub fn source_noise(tau: f64, h: f64) -> f64 {
+    1.0 - (-2.0 * h / tau).exp()
+}
+
+/// Replaces a matrix by its symmetric part.
+pub fn symmetrize(p: &mut DMatrix<f64>) {
+    for j in 0..p.ncols() {
+        for i in 0..j {
+            let mean = 0.5 * (p[(i, j)] + p[(j, i)]);
+            p[(i, j)] = mean;
+            p[(j, i)] = mean;
+        }
+    }
+}

@@ -1,0 +1,264 @@
+//! Parameters of one model fitted to the train recordings: Gauss-Newton on the one-step prediction error, linearised
+//! anew in each iteration, with the levels of sources and noise by type-II likelihood.
+
+use super::data::Recording;
+use super::evidence::{self, Explained};
+use super::filter::{self, Pass, Setting};
+use super::levels;
+use super::problem::{Assembled, Problem};
+use nalgebra::DMatrix;
+use rayon::prelude::*;
+
+/// Iterations at most of a fit that counts.
+pub const ITERATIONS: usize = 5;
+/// Turns of levels and parameters at most.
+const TURNS: usize = 4;
+/// The log likelihood that another iteration must promise, nats.
+const WORTHWHILE: f64 = 0.3;
+/// Samples of each recording on which levels are fitted, at most.
+const LEVEL_SAMPLES: usize = 1200;
+
+/// Prior of a parameter of the plan.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Prior {
+    /// Index among the plan's parameters.
+    pub parameter: usize,
+    /// Most probable value.
+    pub mean: f64,
+    /// Standard deviation.
+    pub sigma: f64,
+    /// Least value.
+    pub min: f64,
+    /// Greatest value.
+    pub max: f64,
+}
+
+/// A fitted model.
+#[derive(Clone, Debug)]
+pub struct Fit {
+    /// Values, levels and noise.
+    pub setting: Setting,
+    /// The priors under which it was fitted.
+    pub priors: Vec<Prior>,
+    /// Log evidence, in nats scaled by `share`.
+    pub evidence: f64,
+    /// Log likelihood at the optimum, not scaled.
+    pub likelihood: f64,
+    /// Log likelihood by block, not scaled.
+    pub blocks: Vec<f64>,
+    /// Covariance of the fitted parameters, in the order of the priors.
+    pub covariance: DMatrix<f64>,
+    /// Effective share of independent samples.
+    pub share: f64,
+    /// Whitened innovations by recording.
+    pub white: Vec<DMatrix<f64>>,
+    /// Where steps were cut, by recording.
+    pub cuts: Vec<Vec<bool>>,
+}
+
+/// Runs the filter over all recordings, in parallel.
+pub fn passes(setting: &Setting, train: &[Recording], samples: usize, tape: bool) -> Option<Vec<Pass>> {
+    train.par_iter().enumerate().map(|(i, r)| filter::run(setting, r, i, samples, tape).ok()).collect()
+}
+
+fn total(passes: &[Pass]) -> (f64, DMatrix<f64>) {
+    let likelihood = passes.iter().map(|p| p.likelihood).sum();
+    let width = passes.first().map_or(0, |p| p.gram.nrows());
+    let gram = passes.iter().fold(DMatrix::zeros(width, width), |sum, p| sum + &p.gram);
+    (likelihood, gram)
+}
+
+/// Tolerances beyond which a parameter no longer counts as within its tolerance.
+const WITHIN: f64 = 3.0;
+
+/// Priors of the tolerances: parameters stay within three of them, beyond is a hypothesis of its own.
+pub fn tolerance_priors(problem: &Problem<'_>) -> Vec<Prior> {
+    let prior = |(parameter, t): (usize, &super::problem::Tolerance)| Prior {
+        parameter,
+        mean: t.nominal,
+        sigma: t.sigma,
+        min: t.min.max(t.nominal - WITHIN * t.sigma),
+        max: t.max.min(t.nominal + WITHIN * t.sigma),
+    };
+    problem.tolerances.iter().enumerate().map(prior).collect()
+}
+
+/// Levels of the sources at which each is as strong as the sensors can see in one sample, roughly: where the search
+/// for the levels begins.
+pub fn first_levels(assembled: &Assembled, noise: &[f64], train: &[Recording]) -> Option<Vec<f64>> {
+    let mut setting = assembled.setting(&[], noise, assembled.sources.clone().collect());
+    setting.sources.clear();
+    let samples = 600;
+    let (_, gram) = total(&passes(&setting, &train[..1], samples, false)?);
+    let n = samples.min(train[0].len()) as f64;
+    let level = |i: usize| if gram[(i, i)] > 0.0 { 0.3 * (n / gram[(i, i)]).sqrt() } else { 1e-12 };
+    Some((0..assembled.sources.len()).map(level).collect())
+}
+
+/// Adjusts levels and noise at the present values of the parameters.
+pub fn adjust(setting: &mut Setting, train: &[Recording], rounds: usize) -> Option<()> {
+    let columns = std::mem::take(&mut setting.columns);
+    for _ in 0..rounds {
+        let found = passes(setting, train, LEVEL_SAMPLES, true)?;
+        for i in 0..setting.noise.len() {
+            let count = found.iter().filter(|p| p.noise[i] > 0.0).count();
+            if count > 0 {
+                let mean = found.iter().map(|p| p.noise[i]).sum::<f64>() / count as f64;
+                setting.noise[i] = mean.sqrt().max(0.2 * setting.noise[i]).min(setting.most_noise[i]);
+            }
+        }
+        let tapes: Vec<&[filter::Step]> = found.iter().map(|p| &p.tape[..]).collect();
+        let (factors, _) = levels::fit(setting, &tapes);
+        setting.sources.iter_mut().zip(factors).for_each(|(s, f)| s.level *= f);
+    }
+    setting.columns = columns;
+    Some(())
+}
+
+/// Fits the parameters of `priors` from the values in `setting`. `share` scales the evidence; `None` finds it.
+pub fn fit(
+    mut setting: Setting,
+    priors: &[Prior],
+    train: &[Recording],
+    share: Option<f64>,
+    iterations: usize,
+) -> Option<Fit> {
+    setting.columns = priors.iter().map(|p| p.parameter).collect();
+    setting.common = setting.columns.len();
+    let set: Vec<usize> = (0..priors.len()).collect();
+    let sigmas: Vec<f64> = priors.iter().map(|p| p.sigma).collect();
+    let mut found = passes(&setting, train, usize::MAX, false)?;
+    let share = share.unwrap_or_else(|| share_of(&found));
+    for _ in 0..iterations {
+        let (likelihood, gram) = total(&found);
+        let (gram, before) = (gram * share, objective(&setting, priors, likelihood * share));
+        let step = explain(&setting, &gram, priors, &set, &sigmas)?;
+        let change: Vec<f64> = step.estimate.iter().copied().collect();
+        let promise = 0.5 * quadratic(&gram, &change, &sigmas);
+        if promise < WORTHWHILE {
+            break;
+        }
+        let mut length = 1.0;
+        let start = setting.theta.clone();
+        let mut accepted = false;
+        while length > 0.05 {
+            for (prior, d) in priors.iter().zip(&change) {
+                let value = start[prior.parameter] + length * d;
+                setting.theta[prior.parameter] = value.clamp(prior.min, prior.max);
+            }
+            if let Some(next) = passes(&setting, train, usize::MAX, false) {
+                let (likelihood, _) = total(&next);
+                if objective(&setting, priors, likelihood * share) >= before - 0.01 {
+                    found = next;
+                    accepted = true;
+                    break;
+                }
+            }
+            length *= 0.35;
+        }
+        if !accepted {
+            setting.theta = start;
+            break;
+        }
+        let (after, _) = total(&found);
+        if objective(&setting, priors, after * share) - before < 0.5 * WORTHWHILE {
+            break;
+        }
+    }
+    let (likelihood, gram) = total(&found);
+    let local = explain(&setting, &(gram * share), priors, &set, &sigmas)?;
+    Some(Fit {
+        evidence: share * likelihood + local.evidence,
+        likelihood,
+        blocks: found.iter().flat_map(|p| p.blocks.iter().copied()).collect(),
+        covariance: local.covariance,
+        share,
+        cuts: found.iter().map(|p| p.cut.clone()).collect(),
+        white: found.into_iter().map(|p| p.white).collect(),
+        priors: priors.to_vec(),
+        setting,
+    })
+}
+
+/// Levels and parameters in turn until neither gains: comparisons are between optima only. Without `share` it is found
+/// anew at the end.
+pub fn polish(mut best: Fit, train: &[Recording], share: Option<f64>) -> Fit {
+    for _ in 0..TURNS {
+        let mut setting = best.setting.clone();
+        if adjust(&mut setting, train, 1).is_none() {
+            break;
+        }
+        let Some(next) = fit(setting, &best.priors, train, share, ITERATIONS) else { break };
+        // noise and levels may move the constant of the likelihood: only what is more likely is kept
+        let gain = next.likelihood * best.share + (next.evidence - next.share * next.likelihood)
+            - best.likelihood * best.share
+            - (best.evidence - best.share * best.likelihood);
+        if gain <= 0.0 {
+            break;
+        }
+        best = next;
+        if gain < 1.0 {
+            break;
+        }
+    }
+    best
+}
+
+fn share_of(found: &[Pass]) -> f64 {
+    evidence::independent_share(&found.iter().map(|p| &p.white).collect::<Vec<_>>())
+}
+
+fn explain(
+    setting: &Setting,
+    gram: &DMatrix<f64>,
+    priors: &[Prior],
+    set: &[usize],
+    sigmas: &[f64],
+) -> Option<Explained> {
+    let means: Vec<f64> = priors.iter().map(|p| p.mean - setting.theta[p.parameter]).collect();
+    evidence::explain(gram, set, &means, sigmas)
+}
+
+fn objective(setting: &Setting, priors: &[Prior], likelihood: f64) -> f64 {
+    let square = |p: &Prior| ((setting.theta[p.parameter] - p.mean) / p.sigma).powi(2);
+    likelihood - 0.5 * priors.iter().map(square).sum::<f64>()
+}
+
+fn quadratic(gram: &DMatrix<f64>, d: &[f64], sigmas: &[f64]) -> f64 {
+    let mut sum = 0.0;
+    for i in 0..d.len() {
+        for j in 0..d.len() {
+            sum += d[i] * gram[(i, j)] * d[j];
+        }
+        sum += (d[i] / sigmas[i]).powi(2);
+    }
+    sum
+}
+
+impl Fit {
+    /// The part of the log posterior that the priors take, nats.
+    pub fn prior_cost(&self, count: usize) -> f64 {
+        let square = |p: &Prior| ((self.setting.theta[p.parameter] - p.mean) / p.sigma).powi(2);
+        0.5 * self.priors.iter().take(count).map(square).sum::<f64>()
+    }
+
+    /// Standard deviation of a fitted parameter by its place in the priors.
+    pub fn deviation(&self, i: usize) -> f64 {
+        self.covariance[(i, i)].max(0.0).sqrt()
+    }
+}
+
+/// Block-wise Vuong statistic of `a` over `b`: mean difference of log likelihoods over its standard error, corrected for
+/// the correlation of neighbouring blocks.
+pub fn vuong(a: &[f64], b: &[f64]) -> f64 {
+    let d: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
+    let n = d.len() as f64;
+    let mean = d.iter().sum::<f64>() / n;
+    let variance = d.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0);
+    if variance <= 0.0 {
+        return 0.0;
+    }
+    let neighbours = d.windows(2).map(|w| (w[0] - mean) * (w[1] - mean)).sum::<f64>() / (n - 1.0).max(1.0);
+    let correlation = (neighbours / variance).clamp(0.0, 0.9);
+    mean / (variance / n * (1.0 + correlation) / (1.0 - correlation)).sqrt()
+}

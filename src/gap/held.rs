@@ -1,0 +1,192 @@
+//! How large the gap is: simulation from the inputs alone, signal by signal, in parts of the full scale.
+
+use super::data::Recording;
+use super::filter::{self, Setting};
+use super::step::Exponential;
+use crate::analysis::local::Local;
+use nalgebra::DVector;
+use rayon::prelude::*;
+
+/// The start of a recording from which the initial state is estimated: this part of it, and at most so many seconds.
+const WINDOW: (f64, f64) = (0.05, 0.2);
+
+/// Residuals of one recording behind the window: samples by signals; NaN where nothing was measured.
+#[derive(Clone, Debug)]
+pub struct Residuals {
+    /// Index of the first sample scored.
+    pub from: usize,
+    /// Simulated signals from there on.
+    pub simulated: Vec<Vec<f64>>,
+}
+
+/// The gap of a model.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Gap {
+    /// RMS over the signals.
+    pub total: f64,
+    /// Per signal.
+    pub signals: Vec<f64>,
+    /// Standard error of the total, from blocks of the recordings.
+    pub error: f64,
+}
+
+/// Simulates a recording from its inputs; the state at the end of the window comes from the window's samples.
+/// `None` when the simulation does not reach the end.
+pub fn simulate(setting: &Setting, recording: &Recording) -> Option<Residuals> {
+    let from = window(recording);
+    let mut quiet = setting.clone();
+    quiet.sources.clear();
+    quiet.columns.clear();
+    quiet.common = 0;
+    quiet.groups.clear();
+    quiet.cuts.clear();
+    let pass = filter::run(&quiet, recording, 0, from + 1, false).ok()?;
+    let simulated = open_loop(&quiet, recording, from, pass.last)?;
+    Some(Residuals { from, simulated })
+}
+
+/// Simulates a recording from the model's own start.
+pub fn from_start(setting: &Setting, recording: &Recording) -> Option<Vec<Vec<f64>>> {
+    let mut u = vec![0.0; recording.inputs.len()];
+    recording.input(0, &mut u);
+    let local = Local::start(setting.plan.clone(), recording.times[0], &setting.theta, &u).ok()?;
+    open_loop(setting, recording, 0, local.state())
+}
+
+/// The first sample that is scored.
+pub fn window(recording: &Recording) -> usize {
+    let t0 = recording.times[0];
+    let span = recording.times[recording.len() - 1] - t0;
+    let until = t0 + (WINDOW.0 * span).min(WINDOW.1);
+    recording.times.iter().position(|t| *t >= until).unwrap_or(0).min(recording.len() - 1)
+}
+
+/// Signals from the inputs, from the state at sample `from`.
+fn open_loop(setting: &Setting, recording: &Recording, from: usize, state: Vec<f64>) -> Option<Vec<Vec<f64>>> {
+    let mut u = vec![0.0; recording.inputs.len()];
+    recording.input(from, &mut u);
+    let theta = &setting.theta;
+    let mut local = Local::start(setting.plan.clone(), recording.times[0], theta, &u).ok()?;
+    let n = state.len();
+    let scale = DVector::from_column_slice(&setting.sizes);
+    let mut x = state;
+    let mut stepper = Stepper { scale, exponential: Exponential::new(n), u: u.clone(), theta };
+    let mut simulated = vec![Vec::with_capacity(recording.len() - from); setting.noise.len()];
+    for k in from..recording.len() {
+        recording.input(k, &mut u);
+        let t = recording.times[k];
+        local.evaluate(t, &x, theta, &u).ok()?;
+        simulated.iter_mut().zip(&local.outputs).for_each(|(s, y)| s.push(*y));
+        if k + 1 == recording.len() {
+            break;
+        }
+        recording.input_between(k, &mut stepper.u);
+        stepper.advance(&mut local, t, recording.times[k + 1] - t, &mut x, 0)?;
+        if x.iter().any(|v| !v.is_finite()) {
+            return None;
+        }
+    }
+    Some(simulated)
+}
+
+/// Halvings of a step at most.
+const DEEPEST: u32 = 6;
+/// The curvature within a step that is let pass, in parts of the states' sizes.
+const CURVATURE: f64 = 1e-5;
+
+/// Exponential steps (Rosenbrock-Euler), halved until the model is nearly linear over each.
+struct Stepper<'a> {
+    scale: DVector<f64>,
+    exponential: Exponential,
+    u: Vec<f64>,
+    theta: &'a [f64],
+}
+
+impl Stepper<'_> {
+    fn advance(&mut self, local: &mut Local, t: f64, h: f64, x: &mut Vec<f64>, depth: u32) -> Option<()> {
+        let n = x.len();
+        local.linearize(t, x, self.theta, &self.u).ok()?;
+        let mut a = local.linear.a.clone();
+        for j in 0..n {
+            for i in 0..n {
+                a[(i, j)] *= self.scale[j] / self.scale[i];
+            }
+        }
+        self.exponential.compute(&a, h);
+        let rate = local.rate_vector().component_div(&self.scale);
+        let change = &self.exponential.integral * &rate;
+        let next: Vec<f64> = (0..n).map(|i| x[i] + change[i] * self.scale[i]).collect();
+        let expected = rate + a * change;
+        let found = local.evaluate(t + h, &next, self.theta, &self.u);
+        let bend = (0..n).map(|i| 0.5 * h * (local.rates[i] / self.scale[i] - expected[i]).abs()).fold(0.0, f64::max);
+        if depth < DEEPEST && (found.is_err() || bend > CURVATURE) {
+            self.advance(local, t, 0.5 * h, x, depth + 1)?;
+            return self.advance(local, t + 0.5 * h, 0.5 * h, x, depth + 1);
+        }
+        *x = next;
+        Some(())
+    }
+}
+
+/// Simulates all recordings.
+pub fn simulate_all(setting: &Setting, recordings: &[Recording]) -> Vec<Option<Residuals>> {
+    recordings.par_iter().map(|r| simulate(setting, r)).collect()
+}
+
+/// The gap by its definition: per signal sqrt(max(0, mean square - noise variance)) over full scale. A run that does not
+/// reach its end counts with a gap of one full scale.
+pub fn gap(runs: &[Option<Residuals>], recordings: &[Recording], noise: &[f64], full_scale: &[f64]) -> Gap {
+    let signals: Vec<f64> =
+        (0..noise.len()).map(|i| signal_gap(runs, recordings, i, noise[i], full_scale[i])).collect();
+    let total = rms(&signals);
+    Gap { error: standard_error(runs, recordings, full_scale, total), total, signals }
+}
+
+/// Standard error of the total from the spread of the mean squares of blocks.
+fn standard_error(runs: &[Option<Residuals>], recordings: &[Recording], full_scale: &[f64], total: f64) -> f64 {
+    let mut blocks = Vec::new();
+    for (run, recording) in runs.iter().zip(recordings) {
+        let Some(run) = run else { continue };
+        let length = (recording.len() - run.from).div_ceil(filter::BLOCKS).max(1);
+        for start in (0..recording.len() - run.from).step_by(length) {
+            let end = (start + length).min(recording.len() - run.from);
+            let square = |i: usize| {
+                let pairs =
+                    (start..end).map(|k| (recording.signals[i][run.from + k] - run.simulated[i][k]) / full_scale[i]);
+                let known: Vec<f64> = pairs.filter(|e| e.is_finite()).map(|e| e * e).collect();
+                known.iter().sum::<f64>() / known.len().max(1) as f64
+            };
+            blocks.push((0..full_scale.len()).map(square).sum::<f64>() / full_scale.len().max(1) as f64);
+        }
+    }
+    let n = blocks.len() as f64;
+    if n < 2.0 || total <= 0.0 {
+        return 0.0;
+    }
+    let mean = blocks.iter().sum::<f64>() / n;
+    let variance = blocks.iter().map(|b| (b - mean).powi(2)).sum::<f64>() / (n - 1.0);
+    (variance / n).sqrt() / (2.0 * total)
+}
+
+fn rms(values: &[f64]) -> f64 {
+    (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt()
+}
+
+fn signal_gap(runs: &[Option<Residuals>], recordings: &[Recording], i: usize, noise: f64, full_scale: f64) -> f64 {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for (run, recording) in runs.iter().zip(recordings) {
+        let Some(run) = run else {
+            let samples = recording.signals[i].iter().filter(|v| v.is_finite()).count() as f64;
+            sum += samples * full_scale * full_scale;
+            count += samples;
+            continue;
+        };
+        for (y, simulated) in recording.signals[i][run.from..].iter().zip(&run.simulated[i]).skip(1) {
+            if y.is_finite() {
+                sum += (y - simulated).powi(2);
+                count += 1.0;
+            }
+        }
+    }
+    if count == 0.0 || full_scale <= 0.0 { 0.0 } else { (sum / count - noise * noise).max(0.0).sqrt() / full_scale }
+}

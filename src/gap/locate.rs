@@ -1,0 +1,123 @@
+//! Where the gap lies, before anything is named: each place gets a slow source of its own, and what the recordings gain
+//! in likelihood by it ranks the places.
+
+use super::filter::{self, Setting, Source};
+use super::fit::{self, Fit};
+use super::levels;
+use super::problem::{Assembled, Problem, SLOW_TAU};
+use super::screen::Accepted;
+use rayon::prelude::*;
+
+/// Samples of each recording that are looked at, at most.
+const SAMPLES: usize = 1200;
+/// A place counts when it gains so much, nats.
+const GAIN: f64 = 4.0;
+/// Strengths tried, in units of what one sample shows.
+const STRENGTHS: [f64; 2] = [1.0, 12.0];
+
+/// A place and the evidence for something missing there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Located {
+    /// Index into [`Problem::disturbances`].
+    pub disturbance: usize,
+    /// Gain in log likelihood, scaled, nats.
+    pub evidence: f64,
+}
+
+/// Ranks all places beside what was accepted: greedily, each time the place that gains most.
+pub fn locate(problem: &Problem<'_>, base: &Fit, accepted: &[Accepted]) -> Vec<Located> {
+    let chosen: Vec<_> = accepted.iter().map(|a| a.chosen.clone()).collect();
+    let all: Vec<usize> = (0..problem.disturbances.len()).collect();
+    let Ok(assembled) = problem.assemble(&chosen, &all) else { return Vec::new() };
+    let Some(setting) = setting(problem, base, &assembled, accepted) else { return Vec::new() };
+    let Some(passes) = fit::passes(&setting, &problem.train, SAMPLES, true) else { return Vec::new() };
+    let tapes: Vec<&[filter::Step]> = passes.iter().map(|p| &p.tape[..]).collect();
+    let fast = base.setting.sources.len();
+    let mut factors = vec![1.0; fast];
+    factors.resize(setting.sources.len(), 1e-6);
+    let value = |factors: &[f64]| tapes.iter().map(|t| levels::likelihood(&setting, t, factors)).sum::<f64>();
+    let mut best = value(&factors);
+    let mut found = Vec::new();
+    for _ in 0..3 {
+        let trials: Vec<(usize, f64)> =
+            (fast..factors.len()).filter(|&i| factors[i] < 1e-3).flat_map(|i| STRENGTHS.map(|s| (i, s))).collect();
+        let results: Vec<(f64, usize, f64)> = trials
+            .par_iter()
+            .map(|&(i, s)| {
+                let mut changed = factors.clone();
+                changed[i] = s;
+                (value(&changed), i, s)
+            })
+            .collect();
+        if found.is_empty() {
+            found = first_ranking(&results, best, base.share, fast);
+        }
+        let Some(&(top, i, s)) = results.iter().max_by(|a, b| a.0.total_cmp(&b.0)) else { break };
+        if base.share * (top - best) < GAIN {
+            break;
+        }
+        factors[i] = s;
+        best = top;
+        // what the place is worth given the others
+        if let Some(place) = found.iter_mut().find(|f| f.disturbance == i - fast) {
+            place.evidence = place.evidence.max(GAIN);
+        }
+    }
+    rank(&mut found, &factors, fast, &value, best, base.share);
+    found
+}
+
+/// What each place gains alone.
+fn first_ranking(results: &[(f64, usize, f64)], base: f64, share: f64, fast: usize) -> Vec<Located> {
+    let mut found: Vec<Located> = Vec::new();
+    for &(value, i, _) in results {
+        let evidence = share * (value - base);
+        match found.iter_mut().find(|f| f.disturbance == i - fast) {
+            Some(f) => f.evidence = f.evidence.max(evidence),
+            None => found.push(Located { disturbance: i - fast, evidence }),
+        }
+    }
+    found
+}
+
+/// Places chosen come first, by what is lost when they are dropped again; then the others by what they gain alone.
+fn rank(found: &mut [Located], factors: &[f64], fast: usize, value: &impl Fn(&[f64]) -> f64, best: f64, share: f64) {
+    let chosen = |f: &Located| factors[fast + f.disturbance] > 1e-3;
+    for f in found.iter_mut() {
+        if chosen(f) {
+            let mut without = factors.to_vec();
+            without[fast + f.disturbance] = 1e-6;
+            f.evidence = share * (best - value(&without));
+        }
+    }
+    found.sort_by(|a, b| chosen(b).cmp(&chosen(a)).then(b.evidence.total_cmp(&a.evidence)));
+}
+
+/// The fitted model with its fast sources and a slow one at every place.
+fn setting(problem: &Problem<'_>, base: &Fit, assembled: &Assembled, accepted: &[Accepted]) -> Option<Setting> {
+    let mut scaled = assembled.clone();
+    carry(base, accepted, &mut scaled);
+    let first = fit::first_levels(&scaled, &base.setting.noise, &problem.train)?;
+    let nodes = problem.node_sources();
+    let mut setting = scaled.setting(&[], &base.setting.noise, Vec::new());
+    setting.sources.clear();
+    for (&node, source) in nodes.iter().zip(&base.setting.sources) {
+        setting.sources.push(Source { parameter: scaled.sources.start + node, ..source.clone() });
+    }
+    for (i, level) in first.into_iter().enumerate() {
+        setting.sources.push(Source { parameter: scaled.sources.start + i, level, tau: SLOW_TAU });
+    }
+    Some(setting)
+}
+
+/// Values of tolerances and accepted effects from a fit into another model.
+pub fn carry(base: &Fit, accepted: &[Accepted], assembled: &mut Assembled) {
+    for i in assembled.free.clone() {
+        assembled.theta[i] = base.setting.theta[i];
+    }
+    for (places, a) in assembled.attached.iter().zip(accepted) {
+        for (&place, value) in places.iter().zip(&a.chosen.values) {
+            assembled.theta[place] = *value;
+        }
+    }
+}

@@ -1,0 +1,245 @@
+//! What is diagnosed: the nominal model with its places, hypotheses, tolerances and recordings; and the models made of
+//! it by attaching hypotheses and sources.
+
+use super::augment::{self, Attached, Augmented, PLANT};
+use super::circuit::Circuit;
+use super::data::Recording;
+use super::effects::own_classes;
+use super::filter::{Setting, Source};
+use super::hypotheses::{Hypothesis, Signal, Site};
+use crate::analysis::lift;
+use crate::analysis::local::{Local, Plan};
+use crate::compile::Request;
+use crate::diag::Diagnostic;
+use crate::expr::VarId;
+use crate::flat::FlatModel;
+use crate::instance::Override;
+use crate::world::{MemoryWorld, Overlay, World};
+use std::ops::Range;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Correlation time of disturbances, s: what a bench's torques, flows and forces do beside their laws.
+pub const TAU: f64 = 0.025;
+/// Noise may be so much above what sixth differences show.
+const MOST_NOISE: f64 = 1.1;
+/// The same for sources that locate a gap, s.
+pub const SLOW_TAU: f64 = 0.1;
+
+/// A parameter that may be off within its tolerance.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tolerance {
+    /// Full name in the nominal model.
+    pub name: String,
+    /// Its unit as written.
+    pub unit: String,
+    /// Value of the nominal model, SI.
+    pub nominal: f64,
+    /// One standard deviation, SI.
+    pub sigma: f64,
+    /// Least value.
+    pub min: f64,
+    /// Greatest value.
+    pub max: f64,
+    /// The study does not say it: assumed.
+    pub assumed: bool,
+}
+
+/// The whole question.
+pub struct Problem<'a> {
+    /// Where classes come from.
+    pub world: &'a dyn World,
+    /// The nominal model.
+    pub request: Request,
+    /// The folder with effects of the user's own.
+    pub folder: Option<PathBuf>,
+    /// Places of the nominal model.
+    pub circuit: Circuit,
+    /// All explanations.
+    pub hypotheses: Vec<Hypothesis>,
+    /// One source per node, command and sensor.
+    pub disturbances: Vec<Hypothesis>,
+    /// Measured signals.
+    pub signals: Vec<Signal>,
+    /// Full scales of the signals, SI.
+    pub full_scale: Vec<f64>,
+    /// Noise that the study states, SI.
+    pub accuracy: Vec<Option<f64>>,
+    /// Noise that the samples show, SI: an upper bound where signals move fast.
+    pub noise_floor: Vec<f64>,
+    /// Parameters with their tolerances.
+    pub tolerances: Vec<Tolerance>,
+    /// Names of the train recordings, for messages alone.
+    pub files: Vec<String>,
+    /// Recordings to learn from.
+    pub train: Vec<Recording>,
+}
+
+/// A model with hypotheses attached, ready to be evaluated.
+#[derive(Clone, Debug)]
+pub struct Assembled {
+    /// Derivatives and all.
+    pub plan: Arc<Plan>,
+    /// Value of each parameter of the plan.
+    pub theta: Vec<f64>,
+    /// Parameters of the plan that are tolerances, in their order: always the first ones.
+    pub free: Range<usize>,
+    /// Parameters of the plan that are sources, in the order of the disturbances asked for.
+    pub sources: Range<usize>,
+    /// Per attached hypothesis its coefficients and shapes.
+    pub attached: Vec<Vec<usize>>,
+    /// Usual size of each state.
+    pub sizes: Vec<f64>,
+    /// Per signal the largest noise that its samples allow.
+    pub most_noise: Vec<f64>,
+    /// The Modelica text.
+    pub augmented: Augmented,
+}
+
+/// A hypothesis with one choice of its shapes and values of its coefficients.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chosen {
+    /// Index into [`Problem::hypotheses`].
+    pub hypothesis: usize,
+    /// Values of coefficients, then of shapes.
+    pub values: Vec<f64>,
+}
+
+impl Problem<'_> {
+    /// Physical sources: those at nodes.
+    pub fn node_sources(&self) -> Vec<usize> {
+        let at_node = |d: &Hypothesis| matches!(d.attachments[0].site, Site::Node(_));
+        (0..self.disturbances.len()).filter(|&i| at_node(&self.disturbances[i])).collect()
+    }
+
+    /// Number of blocks into which the train recordings are cut.
+    pub fn blocks(&self) -> f64 {
+        (self.train.len() * super::filter::BLOCKS) as f64
+    }
+
+    /// The nominal model with hypotheses and sources; coefficients and shapes of the hypotheses are free.
+    ///
+    /// # Errors
+    /// The diagnostics of the compiler: a hypothesis that cannot be attached.
+    pub fn assemble(&self, chosen: &[Chosen], sources: &[usize]) -> Result<Assembled, Vec<Diagnostic>> {
+        self.assembled(chosen, sources, chosen.len())
+    }
+
+    /// The same where only the first `shaped` hypotheses have free shapes: shapes that stand still cost less.
+    ///
+    /// # Errors
+    /// As [`Problem::assemble`].
+    pub fn assembled(&self, chosen: &[Chosen], sources: &[usize], shaped: usize) -> Result<Assembled, Vec<Diagnostic>> {
+        let attached: Vec<Attached<'_>> =
+            chosen.iter().enumerate().map(|(i, c)| self.attached(c, &format!("e{i}"))).collect();
+        let mut all = attached.clone();
+        all.extend(sources.iter().map(|&s| Attached {
+            name: format!("s{s}"),
+            hypothesis: &self.disturbances[s],
+            values: Vec::new(),
+        }));
+        let augmented = augment::augment(&self.circuit, &all, &self.signals);
+        let flat = self.flat(&augmented)?;
+        let still = |(i, c): (usize, &Chosen)| {
+            let count = self.hypotheses[c.hypothesis].coefficients.len();
+            if i < shaped { usize::MAX } else { count }
+        };
+        let counts: Vec<usize> = chosen.iter().enumerate().map(still).collect();
+        self.lifted(flat, augmented, &counts)
+    }
+
+    /// The flat model of an augmented text; classes of the nominal model come from where its request finds them.
+    fn flat(&self, augmented: &Augmented) -> Result<FlatModel, Vec<Diagnostic>> {
+        let source = PathBuf::from("(gap)/Augmented.mo");
+        let files = MemoryWorld::single(&source, augmented.text.clone());
+        let nominal = &self.request;
+        let inner = |o: &Override| Override { name: format!("{PLANT}.{}", o.name), value: o.value.clone() };
+        let mut request = Request {
+            source,
+            model: Some("Augmented".into()),
+            overrides: nominal.overrides.iter().map(inner).collect(),
+            libraries: nominal.libraries.clone(),
+            beside: nominal.beside.clone(),
+        };
+        if self.world.list(&nominal.source).is_some() || self.world.read(&nominal.source).is_ok() {
+            request.beside.push(nominal.source.clone());
+        }
+        own_classes(self.world, self.folder.as_deref(), &mut request);
+        let outcome = crate::compile::flatten(&Overlay { base: self.world, files }, &request);
+        outcome.value.map(|f| f.flat).ok_or(outcome.diagnostics)
+    }
+
+    /// A choice as the augmenter takes it.
+    pub fn attached(&self, chosen: &Chosen, name: &str) -> Attached<'_> {
+        let hypothesis = &self.hypotheses[chosen.hypothesis];
+        let names = hypothesis.coefficients.iter().map(|c| &c.name).chain(hypothesis.shapes.iter().map(|s| &s.name));
+        let values = names.cloned().zip(chosen.values.iter().copied()).collect();
+        Attached { name: name.into(), hypothesis, values }
+    }
+
+    /// `counts`: how many of the parameters of each hypothesis are free.
+    fn lifted(&self, flat: FlatModel, augmented: Augmented, counts: &[usize]) -> Result<Assembled, Vec<Diagnostic>> {
+        let mut ids: Vec<VarId> = Vec::new();
+        let mut add = |name: &str| -> Option<usize> {
+            let v = variable(&flat, name)?;
+            // a parameter may stand in several places of the list
+            Some(ids.iter().position(|x| *x == v).unwrap_or_else(|| {
+                ids.push(v);
+                ids.len() - 1
+            }))
+        };
+        for t in &self.tolerances {
+            add(&format!("{PLANT}.{}", t.name));
+        }
+        let free = 0..self.tolerances.len();
+        let mut sources = Vec::new();
+        let mut attached = Vec::new();
+        let (effect_names, source_names) = augmented.parameters.split_at(counts.len());
+        for names in source_names {
+            sources.extend(names.iter().filter_map(|n| add(n)));
+        }
+        for (names, &count) in effect_names.iter().zip(counts) {
+            attached.push(names.iter().take(count).filter_map(|n| add(n)).collect());
+        }
+        let sources = free.end..free.end + sources.len();
+        let outputs: Vec<VarId> = augmented.signals.iter().filter_map(|n| variable(&flat, n)).collect();
+        let plan = Arc::new(Plan::new(&lift(&flat, &ids, &outputs))?);
+        let theta = plan.parameter_values();
+        let u = vec![0.0; plan.inputs()];
+        let sizes = match self.train.first() {
+            Some(r) => {
+                let u: Vec<f64> = r.inputs.iter().map(|i| i[0]).collect();
+                Local::start(plan.clone(), r.times[0], &theta, &u)
+            }
+            None => Local::start(plan.clone(), 0.0, &theta, &u),
+        };
+        let sizes = sizes.map_or_else(|_| vec![1.0; plan.states()], |l| l.nominals());
+        let most_noise = self.noise_floor.iter().map(|n| MOST_NOISE * n).collect();
+        Ok(Assembled { plan, theta, free, sources, attached, sizes, most_noise, augmented })
+    }
+}
+
+impl Assembled {
+    /// A setting for the filter with these levels of the sources.
+    pub fn setting(&self, levels: &[f64], noise: &[f64], columns: Vec<usize>) -> Setting {
+        let source = |(parameter, &level): (usize, &f64)| Source { parameter, level, tau: TAU };
+        Setting {
+            plan: self.plan.clone(),
+            theta: self.theta.clone(),
+            sources: self.sources.clone().zip(levels).map(source).collect(),
+            noise: noise.to_vec(),
+            most_noise: self.most_noise.clone(),
+            common: columns.len(),
+            groups: Vec::new(),
+            columns,
+            sizes: self.sizes.clone(),
+            cuts: Vec::new(),
+        }
+    }
+}
+
+/// A variable by its name.
+pub fn variable(flat: &FlatModel, name: &str) -> Option<VarId> {
+    let i = flat.variables.iter().position(|v| v.name == name)?;
+    Some(VarId(u32::try_from(i).expect("fewer than 2^32 variables")))
+}

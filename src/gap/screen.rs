@@ -1,0 +1,311 @@
+//! All hypotheses at once: one pass of the filter gives every column, and the evidence of each hypothesis costs a small
+//! factorisation.
+
+use super::evidence;
+use super::fit::{self, Fit, Prior};
+use super::hypotheses::{Hypothesis, Site};
+use super::problem::{Chosen, Problem};
+use nalgebra::DMatrix;
+use std::ops::Range;
+
+/// The background is tried as fitted, and reduced: what a hypothesis explains must be allowed to leave it.
+const BACKGROUNDS: [f64; 2] = [1.0, 0.3];
+/// Hypotheses that are tried with the reduced background.
+const FRONT: usize = 20;
+/// Typical sizes that a coefficient may have at most, as prior deviation.
+const LARGEST: f64 = 30.0;
+
+/// A hypothesis with its evidence in the linear model.
+#[derive(Clone, Debug)]
+pub struct Candidate {
+    /// What, with the estimate of its coefficients and the variant of its shapes.
+    pub chosen: Chosen,
+    /// Gain in log evidence, nats.
+    pub gain: f64,
+    /// Priors of coefficients and shapes.
+    pub priors: Vec<Prior>,
+    /// The gain that an effect of typical size would bring, nats.
+    pub visible: f64,
+}
+
+/// How far a data sheet is usually off where it is wrong, as part of the value.
+const WRONG_SHEET: f64 = 0.3;
+
+/// Something accepted before.
+#[derive(Clone, Debug)]
+pub struct Accepted {
+    /// What, with values.
+    pub chosen: Chosen,
+    /// Priors of coefficients and shapes; `parameter` is not meaningful.
+    pub priors: Vec<Prior>,
+}
+
+/// One variant of a hypothesis in the joint model.
+struct Entry {
+    hypothesis: usize,
+    values: Vec<f64>,
+    columns: Range<usize>,
+}
+
+/// Weighs every hypothesis beside those accepted; best first, one entry a hypothesis.
+pub fn screen(problem: &Problem<'_>, base: &Fit, accepted: &[Accepted]) -> Vec<Candidate> {
+    let taken = |h: usize| accepted.iter().any(|a| a.chosen.hypothesis == h);
+    let open: Vec<usize> = (0..problem.hypotheses.len()).filter(|&h| !taken(h)).collect();
+    let (drifts, effects): (Vec<usize>, Vec<usize>) =
+        open.into_iter().partition(|&h| problem.hypotheses[h].family == "parameter");
+    let mut chosen: Vec<Chosen> = effects
+        .into_iter()
+        .filter(|&h| jointly(&problem.hypotheses[h]))
+        .flat_map(|h| variants(&problem.hypotheses[h], h))
+        .collect();
+    let before: Vec<Chosen> = accepted.iter().map(|a| a.chosen.clone()).collect();
+    chosen = attachable(problem, &before, chosen);
+    let Some(full) = Joint::new(problem, base, accepted, &before, chosen.clone(), BACKGROUNDS[0]) else {
+        return Vec::new();
+    };
+    let mut found = full.weigh(&drifts, None);
+    // once more for the front, with less background
+    let front: Vec<usize> = found.iter().take(FRONT).map(|c| c.chosen.hypothesis).collect();
+    chosen.retain(|c| front.contains(&c.hypothesis));
+    if let Some(reduced) = Joint::new(problem, base, accepted, &before, chosen, BACKGROUNDS[1]) {
+        for c in reduced.weigh(&drifts, Some(full.floor)) {
+            match found.iter_mut().find(|f| f.chosen.hypothesis == c.chosen.hypothesis) {
+                Some(f) if f.gain < c.gain => *f = c,
+                _ => {}
+            }
+        }
+    }
+    found.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    found
+}
+
+/// Whether the joint model can hold it at its off value.
+fn jointly(h: &Hypothesis) -> bool {
+    // states of sensors and commands hang on the model without changing its own order
+    !h.changes_order || h.attachments.iter().all(|a| matches!(a.site, Site::Sensor(_) | Site::Command(_)))
+}
+
+fn variants(h: &Hypothesis, index: usize) -> Vec<Chosen> {
+    let off: Vec<f64> = h.coefficients.iter().map(|c| c.off).collect();
+    let one = |shapes: Vec<(String, f64)>| Chosen {
+        hypothesis: index,
+        values: off.iter().copied().chain(shapes.into_iter().map(|s| s.1)).collect(),
+    };
+    h.variants().into_iter().map(one).collect()
+}
+
+/// Those that can be attached: where all together cannot, halves are tried.
+fn attachable(problem: &Problem<'_>, before: &[Chosen], chosen: Vec<Chosen>) -> Vec<Chosen> {
+    let all: Vec<Chosen> = before.iter().chain(&chosen).cloned().collect();
+    if chosen.is_empty() || problem.assembled(&all, &[], before.len()).is_ok() {
+        return chosen;
+    }
+    if chosen.len() == 1 {
+        return Vec::new();
+    }
+    let mut left = chosen;
+    let right = left.split_off(left.len() / 2);
+    let mut fine = attachable(problem, before, left);
+    fine.extend(attachable(problem, before, right));
+    fine
+}
+
+/// The Gram matrices of the joint model.
+struct Joint<'a> {
+    entries: Vec<Entry>,
+    /// Columns that everything is weighed against: tolerances, then what was accepted.
+    common: Vec<Prior>,
+    /// Scaled Gram matrix and scaled log likelihood.
+    gram: DMatrix<f64>,
+    likelihood: f64,
+    /// Log evidence without any hypothesis.
+    floor: f64,
+    problem: &'a Problem<'a>,
+}
+
+impl<'a> Joint<'a> {
+    fn new(
+        problem: &'a Problem<'a>,
+        base: &Fit,
+        accepted: &[Accepted],
+        before: &[Chosen],
+        chosen: Vec<Chosen>,
+        background: f64,
+    ) -> Option<Self> {
+        let all: Vec<Chosen> = before.iter().chain(&chosen).cloned().collect();
+        let mut assembled = problem.assembled(&all, &problem.node_sources(), before.len()).ok()?;
+        let mut common = fit::tolerance_priors(problem);
+        for prior in &common {
+            assembled.theta[prior.parameter] = base.setting.theta[prior.parameter];
+        }
+        for (places, a) in assembled.attached.iter().zip(accepted) {
+            for ((&place, value), prior) in places.iter().zip(&a.chosen.values).zip(&a.priors) {
+                assembled.theta[place] = *value;
+                common.push(Prior { parameter: place, ..prior.clone() });
+            }
+        }
+        let mut columns: Vec<usize> = common.iter().map(|p| p.parameter).collect();
+        let mut entries = Vec::new();
+        for (places, c) in assembled.attached[before.len()..].iter().zip(chosen) {
+            let count = problem.hypotheses[c.hypothesis].coefficients.len();
+            let first = columns.len();
+            columns.extend(&places[..count.min(places.len())]);
+            entries.push(Entry { hypothesis: c.hypothesis, values: c.values, columns: first..columns.len() });
+        }
+        let levels: Vec<f64> = base.setting.sources.iter().map(|s| s.level * background).collect();
+        let mut setting = assembled.setting(&levels, &base.setting.noise, columns);
+        setting.common = common.len();
+        setting.cuts.clone_from(&base.cuts);
+        setting.groups = entries.iter().map(|e| e.columns.clone()).collect();
+        let passes = fit::passes(&setting, &problem.train, usize::MAX, false)?;
+        let width = setting.columns.len() + 1;
+        let gram = passes.iter().fold(DMatrix::zeros(width, width), |sum, p| sum + &p.gram) * base.share;
+        let likelihood = base.share * passes.iter().map(|p| p.likelihood).sum::<f64>();
+        // means relative to where the model was linearised
+        common.iter_mut().for_each(|p| p.mean -= assembled.theta[p.parameter]);
+        let mut joint = Joint { entries, common, gram, likelihood, floor: 0.0, problem };
+        let (base, means, sigmas) = joint.base();
+        joint.floor = likelihood + evidence::explain(&joint.gram, &base, &means, &sigmas)?.evidence;
+        Some(joint)
+    }
+
+    /// Columns, means and deviations of what is always free.
+    fn base(&self) -> (Vec<usize>, Vec<f64>, Vec<f64>) {
+        let means = self.common.iter().map(|p| p.mean).collect();
+        ((0..self.common.len()).collect(), means, self.common.iter().map(|p| p.sigma).collect())
+    }
+
+    /// All hypotheses of this joint model and all drifts, over `floor` or over no hypothesis in this background if that
+    /// is more likely.
+    fn weigh(&self, drifts: &[usize], floor: Option<f64>) -> Vec<Candidate> {
+        let (base, means, sigmas) = self.base();
+        let floor = floor.map_or(self.floor, |f| f.max(self.floor));
+        let mut best: Vec<Candidate> = Vec::new();
+        let mut note = |c: Candidate| match best.iter_mut().find(|b| b.chosen.hypothesis == c.chosen.hypothesis) {
+            Some(b) if b.gain < c.gain => *b = c,
+            Some(_) => {}
+            None => best.push(c),
+        };
+        for entry in &self.entries {
+            if let Some(mut c) = self.entry(entry, &self.gram, &base, &means, &sigmas) {
+                // a choice among variants has its price
+                let cost = variants_cost(&self.problem.hypotheses[entry.hypothesis]);
+                c.gain += self.likelihood - floor - cost;
+                note(c);
+            }
+        }
+        for &h in drifts {
+            if let Some(mut c) = self.drift(h, &self.gram, &base, &means, &sigmas) {
+                c.gain += self.likelihood - floor;
+                note(c);
+            }
+        }
+        best.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        best
+    }
+
+    /// Evidence of one variant; coefficients that come out on the wrong side of their bounds are left at their off value.
+    fn entry(
+        &self,
+        entry: &Entry,
+        gram: &DMatrix<f64>,
+        base: &[usize],
+        means: &[f64],
+        sigmas: &[f64],
+    ) -> Option<Candidate> {
+        let h = &self.problem.hypotheses[entry.hypothesis];
+        let blocks = self.problem.blocks();
+        let mut prior_sigmas = Vec::new();
+        let mut visible = 0.0;
+        for (column, c) in entry.columns.clone().zip(&h.coefficients) {
+            let info = evidence::new_information(gram, column, base, sigmas);
+            prior_sigmas.push((blocks / info.max(1e-300)).sqrt().min(LARGEST * c.nominal.abs().max(1e-300)));
+            visible += 0.5 * c.nominal * c.nominal * info;
+        }
+        let mut active: Vec<usize> = (0..prior_sigmas.len()).collect();
+        loop {
+            if active.is_empty() {
+                return None;
+            }
+            let mut set = base.to_vec();
+            let (mut all_means, mut all_sigmas) = (means.to_vec(), sigmas.to_vec());
+            for &i in &active {
+                set.push(entry.columns.start + i);
+                all_means.push(0.0);
+                all_sigmas.push(prior_sigmas[i]);
+            }
+            let found = evidence::explain(gram, &set, &all_means, &all_sigmas)?;
+            let value = |k: usize| h.coefficients[active[k]].off + found.estimate[base.len() + k];
+            let wrong = (0..active.len()).find(|&k| {
+                let c = &h.coefficients[active[k]];
+                c.min.is_some_and(|m| value(k) < m) || c.off == 0.0 && c.max.is_some_and(|m| m <= 0.0 && value(k) > m)
+            });
+            if let Some(k) = wrong {
+                active.remove(k);
+                continue;
+            }
+            let mut values = entry.values.clone();
+            for (k, &i) in active.iter().enumerate() {
+                let c = &h.coefficients[i];
+                values[i] = value(k).min(c.max.unwrap_or(f64::INFINITY));
+            }
+            let priors = self.priors(h, &values, &prior_sigmas);
+            let chosen = Chosen { hypothesis: entry.hypothesis, values };
+            return Some(Candidate { chosen, gain: found.evidence, priors, visible });
+        }
+    }
+
+    fn priors(&self, h: &Hypothesis, values: &[f64], sigmas: &[f64]) -> Vec<Prior> {
+        let coefficient = |(c, sigma): (&super::effects::Coefficient, &f64)| Prior {
+            parameter: 0,
+            mean: c.off,
+            sigma: *sigma,
+            min: c.min.unwrap_or(f64::NEG_INFINITY),
+            max: c.max.unwrap_or(f64::INFINITY),
+        };
+        let mut priors: Vec<Prior> = h.coefficients.iter().zip(sigmas).map(coefficient).collect();
+        for &value in &values[h.coefficients.len()..] {
+            let size = value.abs().max(1e-300);
+            priors.push(Prior { parameter: 0, mean: value, sigma: 0.5 * size, min: 0.1 * value, max: 10.0 * value });
+        }
+        priors
+    }
+
+    /// A parameter far beyond its tolerance.
+    fn drift(
+        &self,
+        hypothesis: usize,
+        gram: &DMatrix<f64>,
+        base: &[usize],
+        means: &[f64],
+        sigmas: &[f64],
+    ) -> Option<Candidate> {
+        let h = &self.problem.hypotheses[hypothesis];
+        let index = drifting(self.problem, h)?;
+        let t = &self.problem.tolerances[index];
+        let others: Vec<usize> = base.iter().copied().filter(|&i| i != index).collect();
+        let other_sigmas: Vec<f64> = others.iter().map(|&i| sigmas[i]).collect();
+        let info = evidence::new_information(gram, index, &others, &other_sigmas);
+        let broad = (3.0 * t.sigma).max(WRONG_SHEET * t.nominal.abs());
+        let mut wide = sigmas.to_vec();
+        wide[index] = broad;
+        let found = evidence::explain(gram, base, means, &wide)?;
+        let value = t.nominal - means[index] + found.estimate[index];
+        let value = value.clamp(t.min, t.max);
+        let prior = Prior { parameter: index, mean: t.nominal, sigma: broad, min: t.min, max: t.max };
+        let visible = 0.5 * (10.0 * t.sigma).powi(2) * info;
+        let chosen = Chosen { hypothesis, values: vec![value] };
+        Some(Candidate { chosen, gain: found.evidence, priors: vec![prior], visible })
+    }
+}
+
+/// Nats that the choice among the variants of a hypothesis costs.
+pub fn variants_cost(h: &Hypothesis) -> f64 {
+    (h.shapes.iter().map(|s| s.grid.len()).product::<usize>() as f64).ln()
+}
+
+/// The tolerance that a drift moves.
+pub fn drifting(problem: &Problem<'_>, h: &Hypothesis) -> Option<usize> {
+    let name = &h.attachments[0].place.place;
+    problem.tolerances.iter().position(|t| t.name == *name)
+}

@@ -1,0 +1,221 @@
+//! From a study to a problem.
+
+use super::circuit;
+use super::data::Recording;
+use super::effects;
+use super::hypotheses::{self, Free, Signal};
+use super::noise;
+use super::problem::{Problem, Tolerance};
+use crate::analysis::lift::is_root;
+use crate::diag::{Diagnostic, Sources};
+use crate::expr::VarId;
+use crate::flat::{FlatModel, Variability};
+use crate::lower::{Options, lower};
+use crate::solve::Interpolation;
+use crate::study::{Bound, Knowledge, Role, Study, full_scales};
+use crate::world::World;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Standard deviation assumed for a parameter that the study does not speak of, as part of its value.
+pub const ASSUMED: f64 = 0.05;
+
+/// A study with its model read.
+pub struct Question<'a> {
+    /// What is diagnosed.
+    pub problem: Problem<'a>,
+    /// The study tied to the model.
+    pub bound: Bound,
+    /// Warnings.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// Why a study cannot be used, with the texts its messages point into.
+pub struct Unusable {
+    /// What is wrong.
+    pub diagnostics: Vec<Diagnostic>,
+    /// Texts of the model, if the trouble is there.
+    pub sources: Option<Sources>,
+    /// The nominal model is wrong, not the study.
+    pub model: bool,
+}
+
+impl Unusable {
+    fn study(diagnostics: Vec<Diagnostic>) -> Self {
+        Unusable { diagnostics, sources: None, model: false }
+    }
+
+    fn model<T>(outcome: crate::Outcome<T>) -> Self {
+        Unusable { diagnostics: outcome.diagnostics, sources: Some(outcome.sources), model: true }
+    }
+}
+
+/// Reads everything that a study names but its held recordings.
+///
+/// # Errors
+/// [`Unusable`].
+pub fn question<'a>(
+    world: &'a dyn World,
+    study: &Study,
+    data: Option<&Path>,
+    sources: &mut Sources,
+) -> Result<Question<'a>, Unusable> {
+    let request = study.request();
+    let outcome = crate::sort(world, &request);
+    let Some((flat, _, dae)) = outcome.value else { return Err(Unusable::model(outcome)) };
+    let mut diagnostics = Vec::new();
+    let checked = study.bind(&flat);
+    let Some(bound) = checked.value else { return Err(Unusable::study(checked.diagnostics)) };
+    let checked = bound.load(world, data, Role::Train, sources);
+    let Some(train) = checked.value else { return Err(Unusable::study(checked.diagnostics)) };
+    diagnostics.extend(checked.diagnostics);
+    let full_scale = full_scales(&bound, &train);
+    let signals: Vec<Signal> = bound
+        .signals
+        .iter()
+        .zip(&full_scale)
+        .map(|(s, &scale)| Signal { name: s.name.clone(), variable: name(&flat, s.variable), scale })
+        .collect();
+    let values = parameter_values(dae);
+    let tolerances = tolerances(&flat, &bound, &values);
+    let outcome = circuit::circuit(world, &request);
+    let Some(circuit) = outcome.value else { return Err(Unusable::model(outcome)) };
+    let folder = study.effects.folder.as_ref().map(|f| study.folder.join(f));
+    let checked = effects::catalogue(world, folder.as_deref());
+    let Some(catalogue) = checked.value else { return Err(Unusable::study(checked.diagnostics)) };
+    diagnostics.extend(checked.diagnostics);
+    let Some(sources) = effects::disturbances(world).value else { return Err(Unusable::study(Vec::new())) };
+    let free: Vec<Free> =
+        tolerances.iter().map(|t| Free { name: t.name.clone(), nominal: t.nominal, sigma: t.sigma }).collect();
+    let mut all = hypotheses::hypotheses(&circuit, &catalogue, &signals, &free);
+    hypotheses::narrow(&mut all, &study.effects);
+    let mut disturbances = hypotheses::hypotheses(&circuit, &sources, &signals, &[]);
+    disturbances.retain(|d| d.attachments.len() == 1);
+    let files = train.iter().map(|r| r.file.clone()).collect();
+    let train: Vec<Recording> = train.into_iter().map(|r| recording(&flat, &bound, r)).collect();
+    let noise_floor = full_scale.iter().enumerate().map(|(i, scale)| floor(&train, i, *scale)).collect();
+    let accuracy = bound.signals.iter().zip(&full_scale).map(|(s, f)| s.deviation(*f)).collect();
+    let problem = Problem {
+        world,
+        request,
+        folder,
+        circuit,
+        hypotheses: all,
+        disturbances,
+        signals,
+        full_scale,
+        accuracy,
+        noise_floor,
+        tolerances,
+        files,
+        train,
+    };
+    Ok(Question { problem, bound, diagnostics })
+}
+
+impl Question<'_> {
+    /// Reads the held recordings.
+    ///
+    /// # Errors
+    /// What is wrong with them.
+    pub fn held(&self, data: Option<&Path>, sources: &mut Sources) -> Result<Vec<Recording>, Vec<Diagnostic>> {
+        let checked = self.bound.load(self.problem.world, data, Role::Held, sources);
+        let flat = crate::flatten(self.problem.world, &self.problem.request);
+        match (checked.value, flat.value) {
+            (Some(found), Some(f)) => Ok(found.into_iter().map(|r| recording(&f.flat, &self.bound, r)).collect()),
+            _ => Err(checked.diagnostics),
+        }
+    }
+}
+
+/// Noise of a signal, never quite zero.
+fn floor(train: &[Recording], signal: usize, full_scale: f64) -> f64 {
+    let samples: Vec<&[f64]> = train.iter().map(|r| &*r.signals[signal]).collect();
+    noise::floor(&samples).max(1e-9 * full_scale.abs())
+}
+
+fn name(flat: &FlatModel, v: VarId) -> String {
+    flat.variables[v.index()].name.clone()
+}
+
+fn parameter_values(dae: crate::structure::Dae) -> impl Fn(VarId) -> f64 {
+    let system = lower(Arc::new(dae), &Options { native: false });
+    let mut values = system.layout.values();
+    system.evaluate_parameters(&mut values, &[]);
+    move |v| values[system.layout.var(v)]
+}
+
+/// Inputs in the order of the model; those that the study leaves out keep their start value.
+fn recording(flat: &FlatModel, bound: &Bound, r: crate::study::Recording) -> Recording {
+    let count = r.times.len();
+    let mut inputs: Vec<Arc<[f64]>> = Vec::new();
+    let mut linear = Vec::new();
+    for (v, variable) in (0..).map(VarId).zip(&flat.variables).filter(|(_, v)| v.input) {
+        match bound.inputs.iter().position(|i| i.variable == v) {
+            Some(i) => {
+                inputs.push(Arc::from(&r.inputs[i][..]));
+                linear.push(bound.inputs[i].interpolation == Interpolation::Linear);
+            }
+            None => {
+                let value = variable.binding.or(variable.start).and_then(|e| flat.exprs.as_num(e)).unwrap_or(0.0);
+                inputs.push(Arc::from(vec![value; count]));
+                linear.push(false);
+            }
+        }
+    }
+    let signals = r.signals.iter().map(|s| Arc::from(&s[..])).collect();
+    Recording { times: Arc::from(&r.times[..]), inputs, linear, signals }
+}
+
+/// Tolerances of the study, then the assumed ones of all other parameters on which others do not depend.
+fn tolerances(flat: &FlatModel, bound: &Bound, value: &impl Fn(VarId) -> f64) -> Vec<Tolerance> {
+    let mut all = Vec::new();
+    for p in &bound.parameters {
+        let nominal = value(p.variable);
+        let sigma = match p.knowledge {
+            Knowledge::Exact => continue,
+            Knowledge::Relative(part) => part * nominal.abs(),
+            Knowledge::Absolute(value) => value,
+            Knowledge::Free => nominal.abs().max(1e-12),
+        };
+        all.push(tolerance(flat, p.variable, nominal, sigma, (p.min, p.max), false));
+    }
+    for (v, variable) in (0..).map(VarId).zip(&flat.variables) {
+        let spoken = bound.parameters.iter().any(|p| p.variable == v);
+        let physical = variable.unit.as_deref().is_some_and(|u| !u.is_empty() && u != "1");
+        if spoken || variable.hidden || !physical || variable.variability != Variability::Parameter || !is_root(flat, v)
+        {
+            continue;
+        }
+        // parameters of the model's own level and of its components; not of what these are made of
+        let nominal = value(v);
+        if bound.parameters.is_empty() && nominal != 0.0 && nominal.is_finite() {
+            all.push(tolerance(flat, v, nominal, ASSUMED * nominal.abs(), (None, None), true));
+        }
+    }
+    all
+}
+
+fn tolerance(
+    flat: &FlatModel,
+    v: VarId,
+    nominal: f64,
+    sigma: f64,
+    bounds: (Option<f64>, Option<f64>),
+    assumed: bool,
+) -> Tolerance {
+    let variable = &flat.variables[v.index()];
+    let number = |e: Option<crate::expr::ExprId>| e.and_then(|e| flat.exprs.as_num(e)).filter(|b| b.is_finite());
+    // a parameter that must be positive stays so: a hundredth of its value is the least
+    let declared = number(variable.min).map(|m| if m == 0.0 && nominal > 0.0 { 0.01 * nominal } else { m });
+    let least = if nominal > 0.0 { Some(0.01 * nominal) } else { None };
+    Tolerance {
+        name: variable.name.clone(),
+        unit: variable.unit.as_deref().unwrap_or("").to_string(),
+        nominal,
+        sigma,
+        min: bounds.0.or(declared).or(least).unwrap_or(f64::NEG_INFINITY),
+        max: bounds.1.or(number(variable.max)).unwrap_or(f64::INFINITY),
+        assumed,
+    }
+}

@@ -1,0 +1,188 @@
+//! The verdict as scripts read it: schema 1.
+
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// A number that may not be known.
+pub type Maybe = Option<f64>;
+
+/// Everything that the diagnosis says.
+#[derive(Clone, Debug, Serialize)]
+pub struct Verdict {
+    /// Version of this layout.
+    pub schema: u32,
+    /// The first that holds of `recording_error`, `effects`, `outside_library`, `undecidable`, `nothing_found`.
+    pub verdict: &'static str,
+    /// Standard deviation of each sensor's noise, SI.
+    pub noise: BTreeMap<String, f64>,
+    /// What the study did not say and was assumed.
+    pub assumed: BTreeMap<String, f64>,
+    /// Gross errors of the recordings.
+    pub recording: Vec<RecordingError>,
+    /// Places where the two part, most certain first; before anything is named.
+    pub places: Vec<Located>,
+    /// Effects in the order of acceptance.
+    pub effects: Vec<Effect>,
+    /// Every free parameter.
+    pub drifts: Vec<Drift>,
+    /// The gap in parts of full scale.
+    pub gap: Gaps,
+    /// Part of the held gap that is closed by tolerances and effects.
+    pub closed: Maybe,
+    /// Part that effects close beyond tolerances.
+    pub closed_by_effects: Maybe,
+    /// What is left.
+    pub unexplained: Unexplained,
+    /// What to measure next, where the data cannot tell.
+    pub next_experiment: Option<String>,
+    /// Time that the diagnosis took.
+    pub seconds: f64,
+}
+
+/// A gross error of a recording.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RecordingError {
+    /// The file.
+    pub file: String,
+    /// The signal.
+    pub signal: String,
+    /// `sign`, `factor`, `swap`, `shift` or `stuck`.
+    pub error: &'static str,
+    /// The factor, the delay in s, or nothing of interest.
+    pub value: f64,
+}
+
+/// A place with its evidence.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Located {
+    /// Its name.
+    pub place: String,
+    /// Everything that is the same place.
+    pub node: Vec<String>,
+    /// What is missing there.
+    pub kind: &'static str,
+    /// Nats.
+    pub evidence: f64,
+    /// Its part of all evidence.
+    pub share: f64,
+}
+
+/// A place by name.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Spot {
+    /// Its name.
+    pub place: String,
+    /// Everything that is the same place.
+    pub node: Vec<String>,
+}
+
+/// An accepted effect.
+#[derive(Clone, Debug, Serialize)]
+pub struct Effect {
+    /// Class of the effect.
+    pub effect: String,
+    /// Its family.
+    pub family: String,
+    /// Where.
+    pub places: Vec<Spot>,
+    /// Nats gained when it was accepted.
+    pub evidence: f64,
+    /// Block-wise Vuong statistic.
+    pub t: f64,
+    /// Part of the held gap (behind tolerances) that it closes alone.
+    pub closes_alone: Maybe,
+    /// Part that opens again without it.
+    pub closes_last: Maybe,
+    /// Coefficients and shapes.
+    pub parameters: BTreeMap<String, Estimate>,
+    /// What the data cannot tell from it.
+    pub indistinguishable: Vec<Alternative>,
+}
+
+/// A value with its uncertainty.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Estimate {
+    /// Value.
+    pub value: f64,
+    /// One standard deviation.
+    pub std: f64,
+    /// Unit.
+    pub unit: String,
+}
+
+/// Another explanation that the data cannot exclude.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Alternative {
+    /// Class of the effect.
+    pub effect: String,
+    /// Its family.
+    pub family: String,
+    /// Where.
+    pub places: Vec<Spot>,
+    /// Nats behind the best.
+    pub behind: f64,
+}
+
+/// A free parameter.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Drift {
+    /// Its name.
+    pub parameter: String,
+    /// Of the nominal model.
+    pub nominal: f64,
+    /// As fitted.
+    pub value: f64,
+    /// One standard deviation.
+    pub std: f64,
+    /// Deviation in tolerances.
+    pub tolerances: f64,
+}
+
+/// Gaps on held and train recordings.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Gaps {
+    /// On recordings that were not used.
+    pub held: Side,
+    /// On those that were.
+    pub train: Side,
+}
+
+/// Gaps on one kind of recordings.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Side {
+    /// RMS over the signals.
+    pub total: Columns,
+    /// Per signal.
+    pub signals: BTreeMap<String, Columns>,
+}
+
+/// The gap of three models.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Columns {
+    /// As the study gives it.
+    pub nominal: Maybe,
+    /// Parameters moved within their tolerances.
+    pub tolerances: Maybe,
+    /// With the effects.
+    pub effects: Maybe,
+}
+
+/// What is left.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Unexplained {
+    /// Of the nominal gap.
+    pub share: Maybe,
+    /// Where, if it can be told.
+    pub place: Option<String>,
+    /// What it follows, if anything.
+    pub shape: Option<Vec<Term>>,
+}
+
+/// A term of the missing through variable.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Term {
+    /// In words of the neighbouring ports.
+    pub term: String,
+    /// Part of the variance explained up to this term, on blocks kept back.
+    pub r2: f64,
+}

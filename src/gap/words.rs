@@ -1,0 +1,109 @@
+//! The verdict in words, one screen of them.
+
+use super::verdict::{Effect, Verdict};
+use std::fmt::Write;
+
+/// What the diagnosis found, for people.
+pub fn words(v: &Verdict) -> String {
+    let mut text = String::new();
+    for r in &v.recording {
+        let what = match r.error {
+            "sign" => "has the wrong sign".to_string(),
+            "factor" => format!("is {} times what it should be", number(r.value)),
+            "swap" => "is swapped with another column".to_string(),
+            "stuck" => "is stuck".to_string(),
+            _ => "is shifted".to_string(),
+        };
+        let _ = writeln!(text, "The recording `{}` is wrong: `{}` {what}.", r.file, r.signal);
+    }
+    for (i, e) in v.effects.iter().enumerate() {
+        text.push_str(&effect(i, e));
+    }
+    let place = v.places.first().filter(|p| p.evidence > 8.0).map(|p| format!("`{}` ({})", p.place, p.kind));
+    match (v.verdict, &place) {
+        ("outside_library", Some(p)) => {
+            let _ = writeln!(text, "Something is missing at {p} that none of the known effects explains.");
+        }
+        ("undecidable", _) => {
+            text.push_str("The recordings cannot tell: effects of usual size would hardly show in them.\n")
+        }
+        ("nothing_found", _) => text.push_str(
+            "Nothing is missing that these recordings could show: what is left is within tolerances and noise.\n",
+        ),
+        _ => {}
+    }
+    let held = &v.gap.held.total;
+    if let (Some(n), Some(t), Some(e)) = (held.nominal, held.tolerances, held.effects) {
+        let _ = writeln!(
+            text,
+            "Gap on recordings that were not used, of full scale: {} nominal, {} with parameters within their tolerances, {} with the effects.",
+            percent(n),
+            percent(t),
+            percent(e)
+        );
+    }
+    if let Some(share) = v.unexplained.share {
+        let at = v.unexplained.place.as_ref().map(|p| format!(", most of it at `{p}`")).unwrap_or_default();
+        let _ = writeln!(text, "Not explained: {} of the nominal gap{at}.", percent(share));
+    }
+    for d in v.drifts.iter().filter(|d| d.tolerances.abs() >= 2.0) {
+        let _ = writeln!(
+            text,
+            "`{}` is {} instead of {} ({:+.1} tolerances).",
+            d.parameter,
+            number(d.value),
+            number(d.nominal),
+            d.tolerances
+        );
+    }
+    if !v.assumed.is_empty() {
+        let _ = writeln!(text, "{} parameters without a stated tolerance were taken as known to 5 %.", v.assumed.len());
+    }
+    if let Some(next) = &v.next_experiment {
+        let _ = writeln!(text, "To decide: {next}.");
+    }
+    text
+}
+
+fn effect(i: usize, e: &Effect) -> String {
+    let places: Vec<String> = e.places.iter().map(|p| format!("`{}`", p.place)).collect();
+    let values: Vec<String> = e
+        .parameters
+        .iter()
+        .map(|(n, p)| format!("{n} = {} +- {} {}", number(p.value), number(p.std), p.unit))
+        .collect();
+    let mut text = format!(
+        "{}. {} ({}) at {}: {}. Evidence {:.0} nats, t = {:.1}.\n",
+        i + 1,
+        e.family.replace('_', " "),
+        e.effect,
+        places.join(" and "),
+        values.join(", ").trim_end(),
+        e.evidence,
+        e.t
+    );
+    if let Some(alone) = e.closes_alone {
+        let _ =
+            writeln!(text, "   It closes {} of the gap that tolerances leave on the held recordings.", percent(alone));
+    }
+    if !e.indistinguishable.is_empty() {
+        let others: Vec<String> = e
+            .indistinguishable
+            .iter()
+            .map(|a| {
+                let places: Vec<&str> = a.places.iter().map(|p| p.place.as_str()).collect();
+                format!("{} at {} ({:.1} nats behind)", a.effect, places.join(" and "), a.behind)
+            })
+            .collect();
+        let _ = writeln!(text, "   These data cannot tell it from {}.", others.join(", "));
+    }
+    text
+}
+
+fn number(v: f64) -> String {
+    if v == 0.0 || (1e-3..1e5).contains(&v.abs()) { format!("{v:.4}") } else { format!("{v:.3e}") }
+}
+
+fn percent(v: f64) -> String {
+    format!("{:.1} %", 100.0 * v)
+}
