@@ -27,6 +27,8 @@ pub struct Plan {
     implicit: Vec<(usize, bool)>,
     /// Per row, which implicit unknown it belongs to.
     implicit_row: Vec<Option<usize>>,
+    /// Rows `der(x) - value`.
+    explicit: Vec<usize>,
     /// Per row, what it computes.
     targets: Vec<Target>,
     /// What each entry of the system's Jacobian means.
@@ -112,7 +114,9 @@ impl Plan {
             _ => outputs.iter().position(|&o| o == row).map_or(Target::Other, Target::Output),
         };
         let targets = (0..system.columns.len()).map(target).collect();
-        Plan { implicit_row, targets, system, states, raised, parameters, outputs, implicit, roles, discrete }
+        let is_explicit = |j: &usize| system.rows[*j].kind == RowKind::Derivative;
+        let explicit = (0..system.rows.len()).filter(is_explicit).collect();
+        Plan { implicit_row, explicit, targets, system, states, raised, parameters, outputs, implicit, roles, discrete }
     }
 
     /// How many unknowns follow from implicit equations.
@@ -409,7 +413,7 @@ impl Local {
 
 /// Iterations of Newton's method on the implicit unknowns.
 const NEWTON: usize = 12;
-/// A correction is small below this part of the unknown's value.
+/// Residuals and corrections are rounding below this part of what they began with.
 const CONVERGED: f64 = 1e-11;
 
 impl Plan {
@@ -425,37 +429,41 @@ impl Plan {
         values: &mut [f64],
     ) -> Result<bool, LocalError> {
         let system = &self.system;
-        let mut before = f64::INFINITY;
+        let mut first = 0.0;
         for iteration in 0..NEWTON {
             if system.residual(time, y, yp, values, residual).is_err() {
                 return if self.implicit.is_empty() { Err(LocalError::NonFinite) } else { Ok(false) };
             }
-            for (j, row) in system.rows.iter().enumerate().filter(|(_, row)| row.kind == RowKind::Derivative) {
-                let _ = row;
+            for &j in &self.explicit {
                 yp[j] -= residual[j];
             }
-            if self.implicit.is_empty() {
+            let size = self.implicit.iter().map(|i| residual[i.0].abs()).fold(0.0, f64::max);
+            // residuals at the level of rounding: of the first ones, or of the unknowns' own contributions
+            if self.implicit.is_empty() || size == 0.0 || iteration > 0 && size <= CONVERGED * first {
                 return Ok(true);
+            }
+            if iteration == 0 {
+                first = size;
             }
             let Ok(change) = self.correction(time, y, yp, residual, entries, torn_entries, values) else {
                 return Ok(false);
             };
-            let mut size = 0.0_f64;
+            let mut moved = 0.0_f64;
             for (&(column, torn), d) in self.implicit.iter().zip(change.iter()) {
                 let unknown = if torn { &mut yp[column] } else { &mut y[column] };
                 *unknown -= d;
-                size = size.max(d.abs() / (unknown.abs() + 1e-9));
+                moved = moved.max(d.abs() / (unknown.abs() + f64::MIN_POSITIVE));
             }
-            if size < CONVERGED || iteration > 3 && size >= 0.5 * before && size < 1e-7 {
+            if moved < CONVERGED {
+                // the residual can shrink no further: it is rounding
                 if system.residual(time, y, yp, values, residual).is_err() {
                     return Ok(false);
                 }
-                for (j, _) in system.rows.iter().enumerate().filter(|(_, row)| row.kind == RowKind::Derivative) {
+                for &j in &self.explicit {
                     yp[j] -= residual[j];
                 }
                 return Ok(true);
             }
-            before = size;
         }
         Ok(false)
     }

@@ -221,14 +221,15 @@ impl Search {
         Some(Refined { accepted: Accepted { chosen, ..accepted }, assembled, fit })
     }
 
-    /// Part of the simulated gap on the train recordings that a candidate closes.
+    /// Part of the simulated gap on the train recordings, within tolerances and without any effect, that a candidate
+    /// closes.
     fn closes(&self, problem: &Problem<'_>, candidate: &Refined) -> f64 {
         let gap = |f: &Fit| {
             let runs = held::simulate_all(&f.setting, &problem.train);
             held::gap(&runs, &problem.train, &f.setting.noise, &problem.full_scale).total
         };
-        let before = gap(&self.last);
-        if before > 0.0 { 1.0 - gap(&candidate.fit) / before } else { 0.0 }
+        let whole = gap(&self.base);
+        if whole > 0.0 { (gap(&self.last) - gap(&candidate.fit)) / whole } else { 0.0 }
     }
 }
 

@@ -7,7 +7,7 @@
 //! (those of effects at their off value) are carried along without covariance.
 
 use super::data::Recording;
-use super::step::Exponential;
+use super::step::{Exponential, multiply};
 use crate::analysis::local::{Local, LocalError, Plan};
 use nalgebra::{DMatrix, DVector};
 use std::sync::Arc;
@@ -468,9 +468,9 @@ impl<'a> Filter<'a> {
         next_s.gemm(1.0, &exponential.integral, b, 0.0);
         next_s.gemm(1.0, m, &self.s, 1.0);
         std::mem::swap(&mut self.s, next_s);
-        next_p.gemm(1.0, m, &self.p, 0.0);
+        multiply(next_p, m, &self.p, 0.0);
         m.transpose_to(transposed);
-        self.p.gemm(1.0, next_p, transposed, 0.0);
+        multiply(&mut self.p, next_p, transposed, 0.0);
         // noise of the sources by the trapezoidal rule over the step
         for (j, source) in self.setting.sources.iter().enumerate() {
             let q = source_noise(source.tau, h);

@@ -1,6 +1,7 @@
 //! How strong the sources and the sensors' noise are: type-II likelihood on linearised steps, without the model.
 
 use super::filter::{Setting, Step, source_noise, symmetrize};
+use super::step::multiply;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -61,9 +62,9 @@ pub fn likelihood(setting: &Setting, tape: &[Step], factors: &[f64]) -> f64 {
         d -= &step.correction;
         moved.gemv(1.0, &step.transition, &d, 0.0);
         std::mem::swap(&mut d, &mut moved);
-        next.gemm(1.0, &step.transition, &p, 0.0);
+        multiply(&mut next, &step.transition, &p, 0.0);
         step.transition.transpose_to(&mut transposed);
-        p.gemm(1.0, &next, &transposed, 0.0);
+        multiply(&mut p, &next, &transposed, 0.0);
         for (j, f) in factors.iter().enumerate() {
             let noise = f * f * source_noise(setting.sources[j].tau, step.h);
             let column = step.transition.column(n + j);

@@ -2,12 +2,37 @@
 
 use nalgebra::DMatrix;
 
+/// Matrices up to this size are multiplied by plain loops.
+const LARGE: usize = 32;
 /// Taylor coefficients 1/(k + 1)! of phi; with arguments below [`SMALL`] the error is under 1e-8.
 const COEFFICIENTS: [f64; 7] = [1.0, 1.0 / 2.0, 1.0 / 6.0, 1.0 / 24.0, 1.0 / 120.0, 1.0 / 720.0, 1.0 / 5040.0];
 /// The largest norm at which the polynomial is used; larger ones are halved until they fit.
 const SMALL: f64 = 0.3;
 /// Halvings at most: beyond, the step is far longer than any time constant that matters.
 const MOST_HALVINGS: i32 = 40;
+
+/// `out = a b + beta out` for small square matrices, without the packing that pays for large ones only.
+pub fn multiply(out: &mut DMatrix<f64>, a: &DMatrix<f64>, b: &DMatrix<f64>, beta: f64) {
+    let n = a.nrows();
+    if n > LARGE {
+        out.gemm(1.0, a, b, beta);
+        return;
+    }
+    let (a, b) = (a.as_slice(), b.as_slice());
+    for (j, column) in out.as_mut_slice().chunks_exact_mut(n).enumerate() {
+        if beta == 0.0 {
+            column.fill(0.0);
+        } else if beta != 1.0 {
+            column.iter_mut().for_each(|v| *v *= beta);
+        }
+        for (k, from) in a.chunks_exact(n).enumerate() {
+            let factor = b[j * n + k];
+            if factor != 0.0 {
+                column.iter_mut().zip(from).for_each(|(v, a)| *v += a * factor);
+            }
+        }
+    }
+}
 
 /// Work space for matrices of one size.
 #[derive(Clone, Debug)]
@@ -40,8 +65,8 @@ impl Exponential {
         // Horner: phi = 1 + z/2 (1 + z/3 (1 + ...))
         // phi = p(X) + X^3 q(X), both quadratic (Paterson and Stockmeyer): three products for degree six
         let c = |k: usize| COEFFICIENTS[k];
-        self.next.gemm(1.0, &self.small, &self.small, 0.0);
-        self.transition.gemm(1.0, &self.small, &self.next, 0.0);
+        multiply(&mut self.next, &self.small, &self.small, 0.0);
+        multiply(&mut self.transition, &self.small, &self.next, 0.0);
         let (x, square, cube) = (&self.small, &self.next, &self.transition);
         self.high.copy_from(x);
         self.high.zip_apply(square, |h, s| *h = c(4) * *h + c(5) * s);
@@ -52,16 +77,16 @@ impl Exponential {
             self.high[(i, i)] += c(3);
             self.integral[(i, i)] += c(0);
         }
-        self.integral.gemm(1.0, &self.transition, &self.high, 1.0);
+        multiply(&mut self.integral, &self.transition, &self.high, 1.0);
         self.transition.fill_with_identity();
-        self.transition.gemm(1.0, &self.small, &self.integral, 1.0);
+        multiply(&mut self.transition, &self.small, &self.integral, 1.0);
         self.integral *= scale;
         for _ in 0..halvings {
             // integral over 2 s = (exp(s A) + 1) integral over s
             self.next.copy_from(&self.integral);
-            self.next.gemm(1.0, &self.transition, &self.integral, 1.0);
+            multiply(&mut self.next, &self.transition, &self.integral, 1.0);
             std::mem::swap(&mut self.integral, &mut self.next);
-            self.next.gemm(1.0, &self.transition, &self.transition, 0.0);
+            multiply(&mut self.next, &self.transition, &self.transition, 0.0);
             std::mem::swap(&mut self.transition, &mut self.next);
         }
     }
