@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 /// Effects that are looked for one after another, at most.
 const MOST_EFFECTS: usize = 4;
 /// Candidates of a screen that are refined.
-const REFINED: usize = 6;
+const REFINED: usize = 5;
 /// Gain that a candidate must promise to be refined, nats.
 const PROMISING: f64 = 5.0;
 /// Candidates behind this part of the best one's gain are not refined.
@@ -27,6 +27,8 @@ const ACCEPTED: f64 = 8.0;
 const CONSISTENT: f64 = 2.0;
 /// Part of the simulated gap that it must close.
 const CLOSES: f64 = 0.03;
+/// Candidates this near are equally good: the simpler one stands first, nats.
+const AS_GOOD: f64 = 2.0;
 /// Alternatives this near cannot be told apart, nats.
 const NEAR: f64 = 6.0;
 /// Nor those this near that no block prefers clearly.
@@ -65,6 +67,19 @@ struct Found {
     alternatives: Vec<(Chosen, f64)>,
 }
 
+/// A refined candidate of one round, for the ranking.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trial {
+    /// The effect that was looked for: 1, 2, ...
+    pub round: usize,
+    /// What, with fitted values.
+    pub chosen: Chosen,
+    /// Gain in evidence, nats.
+    pub gain: f64,
+    /// Block-wise Vuong statistic over the model before.
+    pub t: f64,
+}
+
 /// What the search came to; held recordings have not been touched.
 pub struct Search {
     /// The nominal model with parameters within their tolerances.
@@ -77,6 +92,8 @@ pub struct Search {
     last_model: Assembled,
     /// Places that are left.
     left: Vec<Located>,
+    /// All refined candidates.
+    trials: Vec<Trial>,
     /// Gross errors of the recordings.
     gross: Vec<Gross>,
     /// Share of hypotheses that would have been seen at typical size.
@@ -112,9 +129,11 @@ pub fn search(problem: &Problem<'_>, progress: &mut dyn FnMut(Stage)) -> Result<
         found: Vec::new(),
         left: Vec::new(),
         visible: 0.0,
+        trials: Vec::new(),
         gross,
     };
     while search.gross.is_empty() && search.accepted.len() < MOST_EFFECTS && search.step(problem, progress) {}
+    search.prune(problem);
     progress(Stage::Locate);
     search.left = if search.accepted.is_empty() {
         search.places.clone()
@@ -164,16 +183,18 @@ impl Search {
         refined.sort_by(|a, b| b.fit.evidence.total_cmp(&a.fit.evidence));
         self.sharpen(problem, &mut refined);
         refined.sort_by(|a, b| b.fit.evidence.total_cmp(&a.fit.evidence));
+        let trials: Vec<Trial> = refined.iter().map(|r| self.trial(number, r)).collect();
+        self.trials.extend(trials);
         if refined.is_empty() {
             return false;
         }
-        let best = refined.remove(0);
+        let best = refined.remove(simplest(problem, &refined));
         let gain = best.fit.evidence - self.last.evidence;
         let t = vuong(&best.fit.blocks, &self.last.blocks);
         let count = problem.tolerances.len();
         let returned = self.last.prior_cost(count) - best.fit.prior_cost(count);
         let consistent = t > CONSISTENT || returned > 0.5 * gain;
-        if gain < ACCEPTED || !consistent || self.closes(problem, &best) < CLOSES {
+        if gain < ACCEPTED || !consistent {
             return false;
         }
         let near = |r: &&Refined| {
@@ -193,6 +214,15 @@ impl Search {
         self.last = best.fit;
         self.last_model = best.assembled;
         true
+    }
+
+    fn trial(&self, round: usize, r: &Refined) -> Trial {
+        Trial {
+            round,
+            chosen: r.accepted.chosen.clone(),
+            gain: r.fit.evidence - self.last.evidence,
+            t: vuong(&r.fit.blocks, &self.last.blocks),
+        }
     }
 
     /// Levels once more for those that are near the front.
@@ -221,16 +251,51 @@ impl Search {
         Some(Refined { accepted: Accepted { chosen, ..accepted }, assembled, fit })
     }
 
-    /// Part of the simulated gap on the train recordings, within tolerances and without any effect, that a candidate
-    /// closes.
-    fn closes(&self, problem: &Problem<'_>, candidate: &Refined) -> f64 {
+    /// Drops again what closes little of the simulated gap now that everything else is there: one effect hides another,
+    /// so this is asked at the end only.
+    fn prune(&mut self, problem: &Problem<'_>) {
         let gap = |f: &Fit| {
             let runs = held::simulate_all(&f.setting, &problem.train);
             held::gap(&runs, &problem.train, &f.setting.noise, &problem.full_scale).total
         };
         let whole = gap(&self.base);
-        if whole > 0.0 { (gap(&self.last) - gap(&candidate.fit)) / whole } else { 0.0 }
+        while !self.accepted.is_empty() {
+            let full = gap(&self.last);
+            let without = |i: usize| {
+                let rest: Vec<Accepted> =
+                    (0..self.accepted.len()).filter(|k| *k != i).map(|k| self.accepted[k].clone()).collect();
+                if rest.is_empty() {
+                    return Some((self.base.clone(), self.base_model.clone()));
+                }
+                fitted(problem, &self.last, &rest)
+            };
+            let least = (0..self.accepted.len())
+                .filter_map(|i| without(i).map(|(f, m)| ((gap(&f) - full) / whole, i, f, m)))
+                .min_by(|a, b| a.0.total_cmp(&b.0));
+            match least {
+                Some((closes, i, fit, model)) if closes < CLOSES || whole <= 0.0 => {
+                    self.accepted.remove(i);
+                    self.found.remove(i);
+                    let values: Vec<Vec<f64>> = model.attached.iter().map(|a| values(&fit, a)).collect();
+                    self.accepted.iter_mut().zip(values).for_each(|(a, v)| a.chosen.values = v);
+                    self.last = fit;
+                    self.last_model = model;
+                }
+                _ => break,
+            }
+        }
     }
+}
+
+/// Among the candidates that are practically as good as the first, the one with the fewest parameters.
+fn simplest(problem: &Problem<'_>, refined: &[Refined]) -> usize {
+    let size = |r: &Refined| {
+        let h = &problem.hypotheses[r.accepted.chosen.hypothesis];
+        h.coefficients.len() + h.shapes.len()
+    };
+    let front = refined[0].fit.evidence;
+    let level = refined.iter().take_while(|r| front - r.fit.evidence < AS_GOOD).count();
+    (0..level).min_by_key(|&i| (size(&refined[i]), i)).unwrap_or(0)
 }
 
 fn values(fit: &Fit, places: &[usize]) -> Vec<f64> {
@@ -273,6 +338,11 @@ impl Search {
     /// The accepted effects with their fitted values.
     pub fn accepted(&self) -> &[Accepted] {
         &self.accepted
+    }
+
+    /// Everything that was refined, round by round, best first.
+    pub fn trials(&self) -> &[Trial] {
+        &self.trials
     }
 
     /// The final fit and its model.

@@ -1,0 +1,174 @@
+//! The diagnosis on small plants made here: what is missing is found, and nothing is found where nothing is missing.
+
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+use bramah::diag::Sources;
+use bramah::gap::diagnose::search;
+use bramah::gap::study::question;
+use bramah::gap::verdict::Verdict;
+use bramah::solve::Interpolation;
+use bramah::study::Study;
+use bramah::world::MemoryWorld;
+use bramah::{Request, Simulation};
+use std::fmt::Write;
+use std::path::Path;
+
+/// A slide on a spring with its own connectors; the plant has dry friction of another form than the library's.
+const MODEL: &str = "
+package Slide
+  connector Flange Real s(unit = \"m\"); flow Real f(unit = \"N\"); end Flange;
+  model Mass
+    Flange flange;
+    parameter Real m(unit = \"kg\") = 10;
+    Real s(unit = \"m\", start = 0, fixed = true, nominal = 0.1);
+    Real v(unit = \"m/s\", start = 0, fixed = true, nominal = 0.1);
+  equation
+    s = flange.s; v = der(s); m*der(v) = flange.f;
+  end Mass;
+  model Spring
+    Flange flange;
+    parameter Real c(unit = \"N/m\") = 400;
+    parameter Real d(unit = \"N.s/m\") = 30;
+  equation
+    flange.f = c*flange.s + d*der(flange.s);
+  end Spring;
+  model Push
+    Flange flange;
+    input Real u(unit = \"N\");
+  equation
+    flange.f = -u;
+  end Push;
+  model Rub
+    Flange flange;
+    parameter Real F(unit = \"N\") = 0;
+    Real v(unit = \"m/s\");
+  equation
+    v = der(flange.s); flange.f = F*v/sqrt(v^2 + 1e-5);
+  end Rub;
+  model Nominal
+    input Real u(unit = \"N\");
+    Mass mass; Spring spring; Push push(u = u);
+  equation
+    connect(mass.flange, spring.flange); connect(push.flange, mass.flange);
+  end Nominal;
+  model Plant
+    extends Nominal(mass(m = 10.1), spring(d = 31));
+    Rub rub;
+  equation
+    connect(rub.flange, mass.flange);
+  end Plant;
+end Slide;";
+
+const STUDY: &str = "
+version = 1
+model = \"Slide.mo\"
+class = \"Slide.Nominal\"
+[inputs]
+u = { column = \"u\", unit = \"N\", hold = true }
+[signals]
+s = { variable = \"mass.s\", column = \"s\", unit = \"m\" }
+v = { variable = \"mass.v\", column = \"v\", unit = \"m/s\" }
+[[recordings]]
+file = \"train.csv\"
+role = \"train\"
+time = \"t\"
+[[recordings]]
+file = \"held.csv\"
+role = \"held\"
+time = \"t\"
+[parameters]
+\"mass.m\" = { sigma = \"2 %\" }
+\"spring.c\" = { sigma = \"2 %\" }
+\"spring.d\" = { sigma = \"10 %\" }
+";
+
+/// Numbers of a normal distribution, the same for the same seed.
+struct Normal(u64);
+
+impl Normal {
+    fn next(&mut self) -> f64 {
+        let mut uniform = || {
+            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (self.0 >> 11) as f64 / (1u64 << 53) as f64
+        };
+        (0..12).map(|_| uniform()).sum::<f64>() - 6.0
+    }
+}
+
+/// A recording of the plant with this friction under steps of random height.
+fn recording(world: &MemoryWorld, friction: f64, seed: u64) -> String {
+    let request = Request { source: "Slide.mo".into(), model: Some("Slide.Plant".into()), ..Request::default() };
+    let mut plant = Simulation::compile(world, &request).unwrap();
+    plant.set("rub.F", friction).unwrap();
+    let mut random = Normal(seed);
+    let (count, h) = (1500, 0.004);
+    let times: Vec<f64> = (0..count).map(|k| f64::from(k) * h).collect();
+    let mut u = 0.0;
+    let force: Vec<f64> = (0..count)
+        .map(|k| {
+            if k % 75 == 0 {
+                u = 20.0 * random.next();
+            }
+            u
+        })
+        .collect();
+    plant.input("u", &times, &force, Interpolation::Held).unwrap();
+    plant.stop_time(f64::from(count - 1) * h);
+    let settings = plant.settings();
+    settings.interval = h;
+    settings.event_rows = false;
+    settings.tolerance = 1e-8;
+    let run = plant.run().unwrap().trajectory;
+    let (s, v) = (run.column("mass.s").unwrap(), run.column("mass.v").unwrap());
+    let mut text = String::from("t,u,s,v\n");
+    for k in 0..times.len() {
+        let (ds, dv) = (2e-4 * random.next(), 2e-3 * random.next());
+        writeln!(text, "{},{},{},{}", times[k], force[k], s[k] + ds, v[k] + dv).unwrap();
+    }
+    text
+}
+
+fn diagnosed(friction: f64, held_seed: u64) -> Verdict {
+    let mut world = MemoryWorld::single("Slide.mo", MODEL);
+    let (train, held) = (recording(&world, friction, 11), recording(&world, friction, held_seed));
+    world.add("train.csv", train);
+    world.add("held.csv", held);
+    world.add("study.toml", STUDY);
+    let mut sources = Sources::default();
+    let study = Study::read(&world, Path::new("study.toml"), &mut sources).value.unwrap();
+    let question = question(&world, &study, None, &mut sources).ok().unwrap();
+    let found = search(&question.problem, &mut |_| ()).ok().unwrap();
+    let held = question.held(None, &mut sources).unwrap();
+    found.verdict(&question.problem, &held, 0.0)
+}
+
+#[test]
+fn dry_friction_is_named_at_its_place_and_held_recordings_change_no_choice() {
+    let first = diagnosed(3.0, 12);
+    assert_eq!(first.verdict, "effects");
+    let effect = &first.effects[0];
+    assert_eq!(effect.family, "dry_friction");
+    assert!(effect.places[0].node.iter().any(|n| n == "mass.flange"), "{:?}", effect.places);
+    assert!(first.closed_by_effects.unwrap() > 0.6, "{:?}", first.gap.held.total);
+    let second = diagnosed(3.0, 13);
+    let same = |a: &Verdict, b: &Verdict| {
+        let text = |v: &Verdict| {
+            let effects: Vec<String> = v
+                .effects
+                .iter()
+                .map(|e| format!("{} {:?} {} {:?}", e.effect, e.places, e.evidence, e.parameters))
+                .collect();
+            format!("{} {:?} {:?} {:?} {effects:?} {:?}", v.verdict, v.noise, v.places, v.drifts, v.gap.train)
+        };
+        text(a) == text(b)
+    };
+    assert!(same(&first, &second), "held recordings may change the figures for held recordings only");
+    assert_ne!(first.gap.held, second.gap.held);
+}
+
+#[test]
+fn a_sound_plant_lacks_nothing() {
+    let verdict = diagnosed(0.0, 12);
+    assert!(verdict.effects.is_empty(), "{:?}", verdict.effects);
+    assert_eq!(verdict.verdict, "nothing_found");
+}
