@@ -19,12 +19,17 @@ const REFINED: usize = 5;
 const PROMISING: f64 = 5.0;
 /// Candidates behind this part of the best one's gain are not refined.
 const FAR: f64 = 0.1;
+/// Candidates beyond those that are there or not.
+const BOUNDED: usize = 2;
 /// Iterations with which candidates are compared before the front is polished.
 const RACE: usize = 3;
 /// Gain that an effect must have to be accepted, nats.
 const ACCEPTED: f64 = 8.0;
 /// Vuong statistic that it must have.
 const CONSISTENT: f64 = 2.0;
+/// Gain from which an effect may be one that acts rarely, nats; and how much more it must win than lose.
+const RARE: f64 = 30.0;
+const RARE_RATIO: f64 = 2.0;
 /// Part of the simulated gap that it must close.
 const CLOSES: f64 = 0.03;
 /// Candidates this near are equally good: the simpler one stands first, nats.
@@ -78,6 +83,8 @@ pub struct Trial {
     pub gain: f64,
     /// Block-wise Vuong statistic over the model before.
     pub t: f64,
+    /// Log likelihood won in the blocks that gain, and lost in the others, nats, not scaled.
+    pub won_and_lost: (f64, f64),
 }
 
 /// What the search came to; held recordings have not been touched.
@@ -176,8 +183,12 @@ impl Search {
             self.visible = seen as f64 / candidates.len().max(1) as f64;
         }
         let front = candidates.first().map_or(0.0, |c| c.gain);
-        let promising: Vec<&Candidate> =
-            candidates.iter().filter(|c| c.gain > PROMISING.max(FAR * front)).take(REFINED).collect();
+        let front = candidates.first().map_or(0.0, |c| c.gain);
+        let worth = |c: &&Candidate| c.gain > PROMISING.max(FAR * front);
+        let mut promising: Vec<&Candidate> = candidates.iter().filter(worth).take(REFINED).collect();
+        // what is there or not may look small from where it is not
+        let bounded = |c: &&Candidate| bounded(&problem.hypotheses[c.chosen.hypothesis]) && c.gain > PROMISING;
+        promising.extend(candidates.iter().skip(promising.len()).filter(bounded).take(BOUNDED));
         progress(Stage::Refine(number));
         let mut refined: Vec<Refined> = promising.into_iter().filter_map(|c| self.refine(problem, c)).collect();
         refined.sort_by(|a, b| b.fit.evidence.total_cmp(&a.fit.evidence));
@@ -193,7 +204,7 @@ impl Search {
         let t = vuong(&best.fit.blocks, &self.last.blocks);
         let count = problem.tolerances.len();
         let returned = self.last.prior_cost(count) - best.fit.prior_cost(count);
-        let consistent = t > CONSISTENT || returned > 0.5 * gain;
+        let consistent = t > CONSISTENT || returned > 0.5 * gain || rare(&best.fit, &self.last, gain);
         if gain < ACCEPTED || !consistent {
             return false;
         }
@@ -222,6 +233,12 @@ impl Search {
             chosen: r.accepted.chosen.clone(),
             gain: r.fit.evidence - self.last.evidence,
             t: vuong(&r.fit.blocks, &self.last.blocks),
+            won_and_lost: r
+                .fit
+                .blocks
+                .iter()
+                .zip(&self.last.blocks)
+                .fold((0.0, 0.0), |(won, lost), (a, b)| if a > b { (won + a - b, lost) } else { (won, lost + b - a) }),
         }
     }
 
@@ -240,7 +257,34 @@ impl Search {
 
     /// Fits one candidate together with everything accepted before.
     fn refine(&self, problem: &Problem<'_>, candidate: &Candidate) -> Option<Refined> {
-        let accepted = Accepted { chosen: candidate.chosen.clone(), priors: candidate.priors.clone() };
+        let estimated = self.refine_from(problem, candidate, candidate.chosen.values.clone());
+        // an effect that is there or not (a rectifying sensor) looks small from where it is not
+        let h = &problem.hypotheses[candidate.chosen.hypothesis];
+        let mut whole = candidate.chosen.values.clone();
+        for (value, c) in whole.iter_mut().zip(&h.coefficients) {
+            if let Some(max) = share(c) {
+                *value = 0.98 * max;
+            }
+        }
+        if !bounded(h) {
+            return estimated;
+        }
+        // sources as strong as the nominal model needs them would hide how right it is
+        let full = self.refine_from(problem, candidate, whole).map(|mut r| {
+            let cost = screen::variants_cost(h);
+            r.fit.evidence += cost;
+            r.fit = fit::polish(r.fit, &problem.train, Some(self.last.share));
+            r.fit.evidence -= cost;
+            let own = r.assembled.attached.last().cloned().unwrap_or_default();
+            r.accepted.chosen.values = values(&r.fit, &own);
+            r
+        });
+        [estimated, full].into_iter().flatten().max_by(|a, b| a.fit.evidence.total_cmp(&b.fit.evidence))
+    }
+
+    fn refine_from(&self, problem: &Problem<'_>, candidate: &Candidate, values_from: Vec<f64>) -> Option<Refined> {
+        let chosen = Chosen { values: values_from, ..candidate.chosen.clone() };
+        let accepted = Accepted { chosen, priors: candidate.priors.clone() };
         let mut all = self.accepted.clone();
         all.push(accepted.clone());
         let (fit, assembled) = fitted(problem, &self.last, &all)?;
@@ -285,6 +329,24 @@ impl Search {
             }
         }
     }
+}
+
+/// The value at which a coefficient stands for the whole effect, if it is a share of one.
+fn share(c: &super::effects::Coefficient) -> Option<f64> {
+    c.max.filter(|m| m.is_finite() && *m <= 10.0 * c.nominal.abs())
+}
+
+fn bounded(h: &Hypothesis) -> bool {
+    h.family != "parameter" && h.coefficients.iter().any(|c| share(c).is_some())
+}
+
+/// An effect that acts in few blocks gains much there and loses next to nothing elsewhere; the mean over all blocks
+/// does not show it.
+fn rare(with: &Fit, without: &Fit, gain: f64) -> bool {
+    let d = || with.blocks.iter().zip(&without.blocks).map(|(a, b)| a - b);
+    let won: f64 = d().filter(|d| *d > 0.0).sum();
+    let lost: f64 = -d().filter(|d| *d < 0.0).sum::<f64>();
+    gain > RARE && won > RARE_RATIO * lost
 }
 
 /// Among the candidates that are practically as good as the first, the one with the fewest parameters.

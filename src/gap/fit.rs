@@ -11,12 +11,15 @@ use rayon::prelude::*;
 
 /// Iterations at most of a fit that counts.
 pub const ITERATIONS: usize = 5;
+/// Mean square of whitened innovations beyond which the noise floor is not believed.
+const MISFIT: f64 = 4.0;
 /// Turns of levels and parameters at most.
 const TURNS: usize = 4;
 /// The log likelihood that another iteration must promise, nats.
 const WORTHWHILE: f64 = 0.3;
-/// Samples of each recording on which levels are fitted, at most.
+/// Samples of each recording on which levels are fitted, at least, and part of the recording.
 const LEVEL_SAMPLES: usize = 1200;
+const LEVEL_PART: usize = 3;
 
 /// Prior of a parameter of the plan.
 #[derive(Clone, Debug, PartialEq)]
@@ -99,8 +102,13 @@ pub fn first_levels(assembled: &Assembled, noise: &[f64], train: &[Recording]) -
 pub fn adjust(setting: &mut Setting, train: &[Recording], rounds: usize) -> Option<()> {
     let columns = std::mem::take(&mut setting.columns);
     for _ in 0..rounds {
-        let found = passes(setting, train, LEVEL_SAMPLES, true)?;
+        let longest = train.iter().map(Recording::len).max().unwrap_or(0);
+        let found = passes(setting, train, LEVEL_SAMPLES.max(longest / LEVEL_PART), true)?;
         for i in 0..setting.noise.len() {
+            // where sources cannot take what is left, it counts as noise after all
+            if mean_square(&found, i) > MISFIT {
+                setting.most_noise[i] *= 2.0;
+            }
             let count = found.iter().filter(|p| p.noise[i] > 0.0).count();
             if count > 0 {
                 let mean = found.iter().map(|p| p.noise[i]).sum::<f64>() / count as f64;
@@ -202,6 +210,15 @@ pub fn polish(mut best: Fit, train: &[Recording], share: Option<f64>) -> Fit {
         }
     }
     best
+}
+
+/// Mean square of a signal's whitened innovations, 1 where the model is right.
+fn mean_square(found: &[Pass], signal: usize) -> f64 {
+    let known = || {
+        found.iter().flat_map(|p| p.white.column(signal).iter().copied().collect::<Vec<f64>>()).filter(|v| *v != 0.0)
+    };
+    let count = known().count();
+    known().map(|v| v * v).sum::<f64>() / count.max(1) as f64
 }
 
 fn share_of(found: &[Pass]) -> f64 {

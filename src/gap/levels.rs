@@ -8,6 +8,9 @@ use rayon::prelude::*;
 /// Factors by which a level is tried, coarse ones first.
 const ROUNDS: [&[f64]; 3] = [&[0.1, 10.0], &[0.3, 3.0], &[0.55, 1.8]];
 
+/// Steps at most in a direction that pays.
+const FURTHER: usize = 5;
+
 /// Adjusts the levels of the sources, relative to those in the setting, so that the tapes become most likely.
 /// Returns the factors and the log likelihood reached.
 pub fn fit(setting: &Setting, tapes: &[&[Step]]) -> (Vec<f64>, f64) {
@@ -22,8 +25,16 @@ pub fn fit(setting: &Setting, tapes: &[&[Step]]) -> (Vec<f64>, f64) {
                 factors[i] = before * f;
                 let found = value(&factors);
                 if found > best {
-                    best = found;
-                    kept = factors[i];
+                    // on in this direction while it pays
+                    (best, kept) = (found, factors[i]);
+                    for _ in 0..FURTHER {
+                        factors[i] *= f;
+                        let next = value(&factors);
+                        if next <= best {
+                            break;
+                        }
+                        (best, kept) = (next, factors[i]);
+                    }
                     break;
                 }
             }
