@@ -183,7 +183,6 @@ impl Search {
             self.visible = seen as f64 / candidates.len().max(1) as f64;
         }
         let front = candidates.first().map_or(0.0, |c| c.gain);
-        let front = candidates.first().map_or(0.0, |c| c.gain);
         let worth = |c: &&Candidate| c.gain > PROMISING.max(FAR * front);
         let mut promising: Vec<&Candidate> = candidates.iter().filter(worth).take(REFINED).collect();
         // what is there or not may look small from where it is not
