@@ -171,8 +171,6 @@ fn go(text: &str) -> Vec<Diagnostic> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 400, ..ProptestConfig::default() })]
-
     #[test]
     fn damaged_models_end(which in any::<proptest::sample::Index>(), all in prop::collection::vec(damage(), 1..4)) {
         let mut text = TEXTS[which.index(TEXTS.len())].clone();

@@ -34,6 +34,10 @@ const PAUSE: u32 = 200;
 /// The same where states may have to be changed in time.
 const PAUSE_WITH_SELECTIONS: u32 = 10;
 
+/// What the corrector may leave, in tolerances, where there are algebraic unknowns: what it leaves in them looks like an
+/// error of integration, and half of all steps fail the error test where they depend strongly on the states.
+const ALGEBRAIC_CORRECTOR: f64 = 0.1;
+
 /// Why a run ends before its stop time.
 pub struct Stop {
     /// How.
@@ -303,6 +307,9 @@ impl<'a> Driver<'a, '_> {
         let span = self.settings.stop_time - self.t;
         let longest = if still { span / 500.0 } else { self.settings.longest_step };
         ida.set_longest_step(longest);
+        if !self.restart.is_explicit() {
+            ida.set_corrector_tolerance(ALGEBRAIC_CORRECTOR);
+        }
         ida.set_shortest_step(1e-15 * span.abs().max(self.t.abs()));
         ida.pause_after(if system.dae.selections.is_empty() { PAUSE } else { PAUSE_WITH_SELECTIONS });
         self.ida = Some(ida);

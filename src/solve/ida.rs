@@ -208,6 +208,12 @@ impl<E: Equations> Ida<E> {
         unsafe { (&mut (*self.context).equations, slice(self.y, self.n), slice(self.yp, self.n)) }
     }
 
+    /// How far the corrector iterates, in tolerances; IDA's own choice is 0.33.
+    pub fn set_corrector_tolerance(&mut self, part: f64) {
+        // SAFETY: plain setter
+        unsafe { s::IDASetNonlinConvCoef(self.memory, part) };
+    }
+
     /// Forgets the past and starts again at `t` from these values.
     ///
     /// # Errors
