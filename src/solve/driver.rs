@@ -1,22 +1,25 @@
-//! One run from its start to its end: steps, rows, events.
+//! One run from its start to its end.
 
-use super::events::{EventFailure, Events, Outcome};
-use super::ida::{Failure, Ida, Reached, Tolerances};
+mod event;
+mod failure;
+mod legs;
+
+use super::events::{Events, Outcome};
+use super::ida::{Ida, Tolerances};
 use super::linear::Lu;
 use super::model::Model;
-use super::modes::{Modes, RootFunctions, same_time};
+use super::modes::{Modes, RootFunctions};
 use super::monitor::{Chatter, Told};
 use super::newton::Scales;
 use super::output::Grid;
 use super::restart::Restart;
-use super::schedule::{Clocks, next_time_crossing};
+use super::schedule::Clocks;
 use super::settings::{End, Settings, Statistics};
 use super::state::State;
-use super::{Control, Input, Progress, Run, Sink, initialize, report, selection};
+use super::{Control, Input, Run, Sink, initialize, report};
 use crate::diag::{Code, Diagnostic};
-use crate::expr::Node;
 use crate::lower::{Layout, Pattern, Program, System};
-use crate::structure::{ActionKind, StateChoice};
+use crate::structure::StateChoice;
 use std::ops::ControlFlow;
 use std::time::Instant;
 
@@ -28,12 +31,12 @@ fn now() -> Instant {
 
 /// Steps between two looks at the outside when no row is due.
 const PAUSE: u32 = 200;
-/// When time moves by less than this part of the run from pause to pause, so many times in a row, the step size counts
-/// as collapsed: the run would not end within days.
-const CREEPING: f64 = 1e-11;
-const PATIENCE: u32 = 20;
 /// The same where states may have to be changed in time.
 const PAUSE_WITH_SELECTIONS: u32 = 10;
+
+/// What the corrector may leave, in tolerances, where there are algebraic unknowns: what it leaves in them looks like an
+/// error of integration, and half of all steps fail the error test where they depend strongly on the states.
+const ALGEBRAIC_CORRECTOR: f64 = 0.1;
 
 /// Why a run ends before its stop time.
 pub struct Stop {
@@ -269,77 +272,6 @@ impl<'a> Driver<'a, '_> {
         self.judge(model, &outcome)
     }
 
-    /// Runs the event iteration and puts root functions on the right side.
-    fn iterate(&mut self, model: &mut Model<'a>, cause: Cause) -> Result<Outcome, Stop> {
-        let (system, t) = (self.system, self.t);
-        let outcome = self.events.iterate(system, &self.scales, &self.modes, &mut model.values).map_err(|failure| {
-            let when = match cause {
-                Cause::Start => "at the start".to_string(),
-                _ => format!("at the event at time {} s", report::number(t)),
-            };
-            let diagnostic = match failure {
-                EventFailure::Blocks(f) => report::block_failure(system, Code::EventFailed, &f, &model.values, &when),
-                EventFailure::Endless(variables) => report::changing(system, Code::EventFailed, &variables, &when),
-            };
-            let end = match diagnostic.code {
-                Code::NonFinite => End::NonFinite,
-                _ => End::StepTooSmall,
-            };
-            Stop::new(end, diagnostic)
-        })?;
-        self.modes.release();
-        if !model.roots.is_empty() {
-            system.crossings_from(&mut model.values, model.roots.raw());
-            model.roots.settle(system, &mut self.modes, &model.values);
-        }
-        self.next_crossing = next_time_crossing(system, &model.values, t);
-        Ok(outcome)
-    }
-
-    /// Assertions and `terminate` of an event whose rows are out.
-    fn judge(&mut self, model: &mut Model<'a>, outcome: &Outcome) -> Flow {
-        for (action, text) in &outcome.failed {
-            if let ActionKind::Assert(assert) = &self.system.dae.actions[*action].kind {
-                let first = self.told.first_action(*action);
-                self.assertion(assert.warning, first, assert.origin, text)?;
-            }
-        }
-        self.check_asserts(model)?;
-        match &outcome.terminate {
-            Some(message) => Err(Stop { end: End::Terminated(message.clone()), diagnostics: Vec::new() }),
-            None => Ok(()),
-        }
-    }
-
-    fn check_asserts(&mut self, model: &mut Model<'a>) -> Flow {
-        let system = self.system;
-        if system.dae.asserts.is_empty() {
-            return Ok(());
-        }
-        system.asserts.program.run(&mut model.values);
-        for (i, assert) in system.dae.asserts.iter().enumerate() {
-            if model.values[system.asserts.holds[i]] == 0.0 {
-                let first = self.told.first(i);
-                let text = report::message_text(system, &assert.message, &model.values);
-                self.assertion(assert.warning, first, assert.origin, &text)?;
-            }
-        }
-        Ok(())
-    }
-
-    fn assertion(&mut self, warning: bool, first: bool, origin: crate::flat::Origin, text: &str) -> Flow {
-        let code = if warning { Code::AssertionWarning } else { Code::AssertionFailed };
-        let text = format!("{text} (at time {} s)", report::number(self.t));
-        let diagnostic = report::at_origin(&self.system.dae, code, text, origin, "does not hold");
-        if !warning {
-            return Err(Stop::new(End::Assertion, diagnostic));
-        }
-        if first {
-            self.diagnostics.push(diagnostic);
-        }
-        Ok(())
-    }
-
     /// Writes the wanted values that stand in their slots.
     fn write_row(&mut self, model: &mut Model<'a>) -> Flow {
         for (cell, &slot) in self.row.iter_mut().zip(&self.slots) {
@@ -352,21 +284,6 @@ impl<'a> Driver<'a, '_> {
             ControlFlow::Continue(()) => Ok(()),
             ControlFlow::Break(()) => Err(self.interrupted()),
         }
-    }
-
-    fn non_finite_row(&self, model: &Model<'a>) -> Stop {
-        let trap = report::find_trap(self.system, &model.values);
-        let mut diagnostic = report::non_finite(self.system, self.t, trap);
-        if let Some(i) = self.row.iter().position(|v| !v.is_finite()) {
-            let variable = &self.system.dae.variables[self.settings.wanted[i].index()];
-            diagnostic = diagnostic.note(format!("`{}` is {} then", variable.name, self.row[i]));
-        }
-        Stop::new(End::NonFinite, diagnostic)
-    }
-
-    fn interrupted(&self) -> Stop {
-        let text = format!("interrupted at time {} s", report::number(self.t));
-        Stop::new(End::Interrupted, Diagnostic::new(Code::Interrupted, text))
     }
 
     /// Makes the integrator from the values of the start.
@@ -390,16 +307,14 @@ impl<'a> Driver<'a, '_> {
         let span = self.settings.stop_time - self.t;
         let longest = if still { span / 500.0 } else { self.settings.longest_step };
         ida.set_longest_step(longest);
+        if !self.restart.is_explicit() {
+            ida.set_corrector_tolerance(ALGEBRAIC_CORRECTOR);
+        }
         ida.set_shortest_step(1e-15 * span.abs().max(self.t.abs()));
         ida.pause_after(if system.dae.selections.is_empty() { PAUSE } else { PAUSE_WITH_SELECTIONS });
         self.ida = Some(ida);
         self.first_step(Cause::Start);
         Ok(())
-    }
-
-    fn refused(&self, failure: &Failure) -> Stop {
-        let text = format!("the integrator refused to start at time {} s: {failure:?}", report::number(self.t));
-        Stop::new(End::StepTooSmall, Diagnostic::new(Code::StepTooSmall, text))
     }
 
     fn ida(&mut self) -> &mut Ida<Model<'a>> {
@@ -413,123 +328,6 @@ impl<'a> Driver<'a, '_> {
         model.values.clone()
     }
 
-    fn integrate(&mut self) -> Flow {
-        let stop = self.settings.stop_time;
-        while self.t < stop && !same_time(self.t, stop) {
-            self.leg()?;
-            if self.choice.is_some() {
-                return Ok(());
-            }
-        }
-        if self.uses_terminal() { self.event(Cause::Terminal) } else { Ok(()) }
-    }
-
-    fn uses_terminal(&self) -> bool {
-        let exprs = &self.system.dae.exprs;
-        let ids = (0..u32::try_from(exprs.len()).unwrap_or(u32::MAX)).map(crate::expr::ExprId);
-        ids.into_iter().any(|e| exprs.node(e) == Node::Terminal)
-    }
-
-    /// The next event of known time.
-    fn next_event(&mut self) -> f64 {
-        let known = self.clocks.next().min(self.next_crossing);
-        let t = self.t;
-        known.min(self.ida().equations().playback.next_jump(t))
-    }
-
-    /// Where the integrator must stop next: an event, a bend of an input, the end.
-    fn next_stop(&mut self) -> f64 {
-        let t = self.t;
-        let kink = self.ida().equations().playback.next_kink(t);
-        self.next_event().min(kink).min(self.settings.stop_time)
-    }
-
-    /// Integrates to the next event, or the next bend of an input.
-    fn leg(&mut self) -> Flow {
-        let (event, to) = (self.next_event(), self.next_stop());
-        self.ida().set_stop(to);
-        let span = self.settings.stop_time - self.settings.start_time;
-        loop {
-            let row = self.grid.next();
-            let target = if row < to && !same_time(row, to) { row } else { to };
-            match self.ida().advance(target) {
-                Ok((Reached::Output, t)) => {
-                    self.t = t;
-                    self.output()?;
-                    if self.states_fail() {
-                        return Ok(());
-                    }
-                }
-                Ok((Reached::Pause, t)) => {
-                    self.creep = if t - self.t < CREEPING * span { self.creep + 1 } else { 0 };
-                    self.t = t;
-                    self.look_outside()?;
-                    if self.creep >= PATIENCE {
-                        return Err(self.failed(Failure::ErrorTest));
-                    }
-                    if self.states_fail() {
-                        return Ok(());
-                    }
-                }
-                Ok((Reached::Stop, _)) => {
-                    self.t = to;
-                    return if event <= to || same_time(event, to) {
-                        self.event(Cause::Time)
-                    } else {
-                        self.pass_kink()
-                    };
-                }
-                Ok((Reached::Root, t)) => {
-                    self.t = t;
-                    return self.event(Cause::Root);
-                }
-                Err((failure, t)) => {
-                    self.t = t;
-                    return Err(self.failed(failure));
-                }
-            }
-        }
-    }
-
-    /// Whether other states should be chosen; notes which.
-    fn states_fail(&mut self) -> bool {
-        if self.system.dae.selections.is_empty() || self.control.reselect.is_none() {
-            return false;
-        }
-        let t = self.t;
-        self.choice = self.with_model(|driver, model, y, yp| {
-            model.observe(t, y, yp);
-            selection::better_choice(driver.system, &driver.scales, &model.values)
-        });
-        self.choice.is_some()
-    }
-
-    /// At a bend of an input, or at the end.
-    fn pass_kink(&mut self) -> Flow {
-        let t = self.t;
-        let row = self.grid.next();
-        if row <= t || same_time(row, t) {
-            self.output()?;
-        }
-        let (model, ..) = self.ida().parts();
-        let Model { playback, values, .. } = model;
-        playback.seek(t, values);
-        Ok(())
-    }
-
-    /// A row on the grid.
-    fn output(&mut self) -> Flow {
-        let t = self.t;
-        self.with_model(|driver, model, y, yp| {
-            model.load(t, y, yp);
-            driver.program.run(&mut model.values);
-            driver.write_row(model)?;
-            driver.check_asserts(model)
-        })?;
-        self.grid.pass(t);
-        self.look_outside()
-    }
-
     /// Runs `act` with the model and the integrator's values at hand.
     fn with_model<T>(&mut self, act: impl FnOnce(&mut Self, &mut Model<'a>, &[f64], &[f64]) -> T) -> T {
         let mut ida = self.ida.take().expect("made before the first step");
@@ -537,155 +335,5 @@ impl<'a> Driver<'a, '_> {
         let result = act(self, model, y, yp);
         self.ida = Some(ida);
         result
-    }
-
-    /// Interruption and progress.
-    fn look_outside(&mut self) -> Flow {
-        if self.control.interrupt.is_some_and(|flag| flag.load(std::sync::atomic::Ordering::Relaxed)) {
-            return Err(self.interrupted());
-        }
-        let progress = Progress { time: self.t, events: self.statistics.events };
-        let go_on = self.control.progress.as_mut().is_none_or(|report| report(&progress));
-        if go_on { Ok(()) } else { Err(self.interrupted()) }
-    }
-
-    /// An event where the integrator stands.
-    fn event(&mut self, cause: Cause) -> Flow {
-        self.statistics.events += 1;
-        let crossing = self.find_roots(cause);
-        let t = self.t;
-        let outcome = self.with_model(|driver, model, y, yp| {
-            model.observe(t, y, yp);
-            driver.restart.before(driver.system, &model.values, y);
-            if driver.settings.event_rows {
-                driver.write_row(model)?;
-            }
-            driver.prepare_event(model, cause);
-            let outcome = driver.iterate(model, cause)?;
-            if driver.settings.event_rows || same_time(driver.grid.next(), t) {
-                driver.write_row(model)?;
-            }
-            driver.grid.pass(t);
-            driver.restart.gather(driver.system, &model.values);
-            Ok(outcome)
-        })?;
-        self.with_model(|driver, model, _, _| driver.judge(model, &outcome))?;
-        if cause != Cause::Terminal {
-            self.go_on(cause, &outcome)?;
-            if self.chatter.note(t, crossing) {
-                return Err(Stop::new(End::Chattering, self.chatter.report(self.system, t)));
-            }
-        }
-        self.look_outside()
-    }
-
-    /// Notes which root functions have crossed; the first crossing among them.
-    fn find_roots(&mut self, cause: Cause) -> Option<u32> {
-        self.roots.clear();
-        if cause != Cause::Root {
-            return None;
-        }
-        let mut roots = std::mem::take(&mut self.roots);
-        roots.extend_from_slice(self.ida().found());
-        self.roots = roots;
-        let first = self.roots.iter().position(|&d| d != 0)?;
-        u32::try_from(self.ida().equations().roots.crossing(first)).ok()
-    }
-
-    /// What the event's cause changes at once.
-    fn prepare_event(&mut self, model: &mut Model<'a>, cause: Cause) {
-        let t = self.t;
-        let Model { values, playback, roots, .. } = model;
-        match cause {
-            Cause::Root => {
-                for (function, &direction) in self.roots.iter().enumerate().filter(|(_, d)| **d != 0) {
-                    self.modes.force(self.system, roots.crossing(function), direction, values);
-                }
-            }
-            Cause::Terminal => values[Layout::TERMINAL] = 1.0,
-            Cause::Time => {
-                playback.seek(t, values);
-                let events = &self.events;
-                self.clocks.ring(t, |i| events.raise(i, values));
-            }
-            Cause::Start => {}
-        }
-    }
-
-    /// Continues after an event: with the integrator's past where it is still true, else afresh.
-    fn go_on(&mut self, cause: Cause, outcome: &Outcome) -> Flow {
-        let t = self.t;
-        let next = self.next_stop();
-        let ida = self.ida.as_mut().expect("made before the first step");
-        let serves = !outcome.reinitialised
-            && match cause {
-                Cause::Root => self.restart.past_serves_ahead(ida, t, outcome.changed),
-                _ => self.restart.past_serves(ida, t, next),
-            };
-        if serves {
-            return Ok(());
-        }
-        self.restart.remember_step(ida);
-        self.statistics.restarts += 1;
-        self.first_step(cause).then_some(()).ok_or_else(|| self.refused(&Failure::Code(0)))
-    }
-
-    /// Restarts from the gathered values with a first step of sensible length; false when IDA refuses.
-    fn first_step(&mut self, cause: Cause) -> bool {
-        let t = self.t;
-        let room = self.next_stop() - t;
-        let ida = self.ida.as_mut().expect("made before the first step");
-        let (start, root) = (cause == Cause::Start, cause == Cause::Root);
-        self.restart.restart(ida, t, room, self.settings.longest_step, start, root)
-    }
-
-    /// What IDA's failure means for the user.
-    fn failed(&mut self, failure: Failure) -> Stop {
-        let (system, t) = (self.system, self.t);
-        if let Failure::Panic(text) = failure {
-            std::panic::resume_unwind(Box::new(text));
-        }
-        // what was reached is kept
-        let reached = self.with_model(|driver, model, y, yp| {
-            model.load(t, y, yp);
-            driver.program.run(&mut model.values);
-            driver.write_row(model)
-        });
-        if let Err(stop) = reached {
-            return stop;
-        }
-        if failure == Failure::NonFinite {
-            return self.non_finite(t);
-        }
-        let ida = self.ida();
-        let mut errors = Vec::new();
-        ida.weighted_errors(&mut errors);
-        let (h, y) = (ida.step_lengths().0, ida.y().to_vec());
-        errors.truncate(system.columns.len());
-        let why = match failure {
-            Failure::ErrorTest => "the error test fails however small the step".to_string(),
-            Failure::Convergence => "the equations cannot be solved for a step".to_string(),
-            Failure::Singular(Some(s)) if s.column < system.columns.len() => {
-                let v = system.columns[s.column].variable;
-                format!("the equations do not determine `{}` there", system.dae.variables[v.index()].name)
-            }
-            Failure::Singular(_) => "the equations became singular".to_string(),
-            Failure::TooMuchAccuracy => "the tolerance is finer than numbers of 64 bits allow".to_string(),
-            other => format!("{other:?}"),
-        };
-        Stop::new(End::StepTooSmall, report::step_collapse(system, t, h, &why, &errors, &y))
-    }
-
-    fn non_finite(&mut self, t: f64) -> Stop {
-        let system = self.system;
-        let model = self.ida().equations();
-        let (at, trap) = match model.trap.take() {
-            Some((at, y, yp)) => {
-                model.observe(at, &y, &yp);
-                (at, report::find_trap(system, &model.values))
-            }
-            None => (t, None),
-        };
-        Stop::new(End::NonFinite, report::non_finite(system, at, trap))
     }
 }

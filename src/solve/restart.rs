@@ -72,6 +72,11 @@ impl Restart {
         &self.nominal
     }
 
+    /// True when there are no algebraic unknowns.
+    pub fn is_explicit(&self) -> bool {
+        self.explicit
+    }
+
     /// The gathered unknowns.
     pub fn y(&self) -> &[f64] {
         &self.y

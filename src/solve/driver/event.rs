@@ -1,0 +1,176 @@
+//! What happens at an event: causes, iteration, assertions, and how the integrator goes on.
+
+use super::{Cause, Driver, Flow, Stop};
+use crate::diag::Code;
+use crate::lower::Layout;
+use crate::solve::events::{EventFailure, Outcome};
+use crate::solve::ida::Failure;
+use crate::solve::model::Model;
+use crate::solve::modes::same_time;
+use crate::solve::report;
+use crate::solve::schedule::next_time_crossing;
+use crate::solve::settings::End;
+use crate::structure::ActionKind;
+
+impl<'a> Driver<'a, '_> {
+    /// Runs the event iteration and puts root functions on the right side.
+    pub(super) fn iterate(&mut self, model: &mut Model<'a>, cause: Cause) -> Result<Outcome, Stop> {
+        let (system, t) = (self.system, self.t);
+        let outcome = self.events.iterate(system, &self.scales, &self.modes, &mut model.values).map_err(|failure| {
+            let when = match cause {
+                Cause::Start => "at the start".to_string(),
+                _ => format!("at the event at time {} s", report::number(t)),
+            };
+            let diagnostic = match failure {
+                EventFailure::Blocks(f) => report::block_failure(system, Code::EventFailed, &f, &model.values, &when),
+                EventFailure::Endless(variables) => report::changing(system, Code::EventFailed, &variables, &when),
+            };
+            let end = match diagnostic.code {
+                Code::NonFinite => End::NonFinite,
+                _ => End::StepTooSmall,
+            };
+            Stop::new(end, diagnostic)
+        })?;
+        self.modes.release();
+        if !model.roots.is_empty() {
+            system.crossings_from(&mut model.values, model.roots.raw());
+            model.roots.settle(system, &mut self.modes, &model.values);
+        }
+        self.next_crossing = next_time_crossing(system, &model.values, t);
+        Ok(outcome)
+    }
+
+    /// Assertions and `terminate` of an event whose rows are out.
+    pub(super) fn judge(&mut self, model: &mut Model<'a>, outcome: &Outcome) -> Flow {
+        for (action, text) in &outcome.failed {
+            if let ActionKind::Assert(assert) = &self.system.dae.actions[*action].kind {
+                let first = self.told.first_action(*action);
+                self.assertion(assert.warning, first, assert.origin, text)?;
+            }
+        }
+        self.check_asserts(model)?;
+        match &outcome.terminate {
+            Some(message) => Err(Stop { end: End::Terminated(message.clone()), diagnostics: Vec::new() }),
+            None => Ok(()),
+        }
+    }
+
+    pub(super) fn check_asserts(&mut self, model: &mut Model<'a>) -> Flow {
+        let system = self.system;
+        if system.dae.asserts.is_empty() {
+            return Ok(());
+        }
+        system.asserts.program.run(&mut model.values);
+        for (i, assert) in system.dae.asserts.iter().enumerate() {
+            if model.values[system.asserts.holds[i]] == 0.0 {
+                let first = self.told.first(i);
+                let text = report::message_text(system, &assert.message, &model.values);
+                self.assertion(assert.warning, first, assert.origin, &text)?;
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn assertion(&mut self, warning: bool, first: bool, origin: crate::flat::Origin, text: &str) -> Flow {
+        let code = if warning { Code::AssertionWarning } else { Code::AssertionFailed };
+        let text = format!("{text} (at time {} s)", report::number(self.t));
+        let diagnostic = report::at_origin(&self.system.dae, code, text, origin, "does not hold");
+        if !warning {
+            return Err(Stop::new(End::Assertion, diagnostic));
+        }
+        if first {
+            self.diagnostics.push(diagnostic);
+        }
+        Ok(())
+    }
+
+    /// An event where the integrator stands.
+    pub(super) fn event(&mut self, cause: Cause) -> Flow {
+        self.statistics.events += 1;
+        let crossing = self.find_roots(cause);
+        let t = self.t;
+        let outcome = self.with_model(|driver, model, y, yp| {
+            model.observe(t, y, yp);
+            driver.restart.before(driver.system, &model.values, y);
+            if driver.settings.event_rows {
+                driver.write_row(model)?;
+            }
+            driver.prepare_event(model, cause);
+            let outcome = driver.iterate(model, cause)?;
+            if driver.settings.event_rows || same_time(driver.grid.next(), t) {
+                driver.write_row(model)?;
+            }
+            driver.grid.pass(t);
+            driver.restart.gather(driver.system, &model.values);
+            Ok(outcome)
+        })?;
+        self.with_model(|driver, model, _, _| driver.judge(model, &outcome))?;
+        if cause != Cause::Terminal {
+            self.go_on(cause, &outcome)?;
+            if self.chatter.note(t, crossing) {
+                return Err(Stop::new(End::Chattering, self.chatter.report(self.system, t)));
+            }
+        }
+        self.look_outside()
+    }
+
+    /// Notes which root functions have crossed; the first crossing among them.
+    pub(super) fn find_roots(&mut self, cause: Cause) -> Option<u32> {
+        self.roots.clear();
+        if cause != Cause::Root {
+            return None;
+        }
+        let mut roots = std::mem::take(&mut self.roots);
+        roots.extend_from_slice(self.ida().found());
+        self.roots = roots;
+        let first = self.roots.iter().position(|&d| d != 0)?;
+        u32::try_from(self.ida().equations().roots.crossing(first)).ok()
+    }
+
+    /// What the event's cause changes at once.
+    pub(super) fn prepare_event(&mut self, model: &mut Model<'a>, cause: Cause) {
+        let t = self.t;
+        let Model { values, playback, roots, .. } = model;
+        match cause {
+            Cause::Root => {
+                for (function, &direction) in self.roots.iter().enumerate().filter(|(_, d)| **d != 0) {
+                    self.modes.force(self.system, roots.crossing(function), direction, values);
+                }
+            }
+            Cause::Terminal => values[Layout::TERMINAL] = 1.0,
+            Cause::Time => {
+                playback.seek(t, values);
+                let events = &self.events;
+                self.clocks.ring(t, |i| events.raise(i, values));
+            }
+            Cause::Start => {}
+        }
+    }
+
+    /// Continues after an event: with the integrator's past where it is still true, else afresh.
+    pub(super) fn go_on(&mut self, cause: Cause, outcome: &Outcome) -> Flow {
+        let t = self.t;
+        let next = self.next_stop();
+        let ida = self.ida.as_mut().expect("made before the first step");
+        let serves = !outcome.reinitialised
+            && match cause {
+                Cause::Root => self.restart.past_serves_ahead(ida, t, outcome.changed),
+                _ => self.restart.past_serves(ida, t, next),
+            };
+        if serves {
+            return Ok(());
+        }
+        self.restart.remember_step(ida);
+        self.statistics.restarts += 1;
+        self.first_step(cause).then_some(()).ok_or_else(|| self.refused(&Failure::Code(0)))
+    }
+
+    /// Restarts from the gathered values with a first step of sensible length; false when IDA refuses.
+    pub(super) fn first_step(&mut self, cause: Cause) -> bool {
+        let t = self.t;
+        let room = self.next_stop() - t;
+        let ida = self.ida.as_mut().expect("made before the first step");
+        let (start, root) = (cause == Cause::Start, cause == Cause::Root);
+        self.restart.restart(ida, t, room, self.settings.longest_step, start, root)
+    }
+}

@@ -1,0 +1,80 @@
+//! Why a run stops early, in words.
+
+use super::{Driver, Stop};
+use crate::diag::{Code, Diagnostic};
+use crate::solve::ida::Failure;
+use crate::solve::model::Model;
+use crate::solve::report;
+use crate::solve::settings::End;
+
+impl<'a> Driver<'a, '_> {
+    pub(super) fn non_finite_row(&self, model: &Model<'a>) -> Stop {
+        let trap = report::find_trap(self.system, &model.values);
+        let mut diagnostic = report::non_finite(self.system, self.t, trap);
+        if let Some(i) = self.row.iter().position(|v| !v.is_finite()) {
+            let variable = &self.system.dae.variables[self.settings.wanted[i].index()];
+            diagnostic = diagnostic.note(format!("`{}` is {} then", variable.name, self.row[i]));
+        }
+        Stop::new(End::NonFinite, diagnostic)
+    }
+
+    pub(super) fn interrupted(&self) -> Stop {
+        let text = format!("interrupted at time {} s", report::number(self.t));
+        Stop::new(End::Interrupted, Diagnostic::new(Code::Interrupted, text))
+    }
+
+    pub(super) fn refused(&self, failure: &Failure) -> Stop {
+        let text = format!("the integrator refused to start at time {} s: {failure:?}", report::number(self.t));
+        Stop::new(End::StepTooSmall, Diagnostic::new(Code::StepTooSmall, text))
+    }
+
+    /// What IDA's failure means for the user.
+    pub(super) fn failed(&mut self, failure: Failure) -> Stop {
+        let (system, t) = (self.system, self.t);
+        if let Failure::Panic(text) = failure {
+            std::panic::resume_unwind(Box::new(text));
+        }
+        // what was reached is kept
+        let reached = self.with_model(|driver, model, y, yp| {
+            model.load(t, y, yp);
+            driver.program.run(&mut model.values);
+            driver.write_row(model)
+        });
+        if let Err(stop) = reached {
+            return stop;
+        }
+        if failure == Failure::NonFinite {
+            return self.non_finite(t);
+        }
+        let ida = self.ida();
+        let mut errors = Vec::new();
+        ida.weighted_errors(&mut errors);
+        let (h, y) = (ida.step_lengths().0, ida.y().to_vec());
+        errors.truncate(system.columns.len());
+        let why = match failure {
+            Failure::ErrorTest => "the error test fails however small the step".to_string(),
+            Failure::Convergence => "the equations cannot be solved for a step".to_string(),
+            Failure::Singular(Some(s)) if s.column < system.columns.len() => {
+                let v = system.columns[s.column].variable;
+                format!("the equations do not determine `{}` there", system.dae.variables[v.index()].name)
+            }
+            Failure::Singular(_) => "the equations became singular".to_string(),
+            Failure::TooMuchAccuracy => "the tolerance is finer than numbers of 64 bits allow".to_string(),
+            other => format!("{other:?}"),
+        };
+        Stop::new(End::StepTooSmall, report::step_collapse(system, t, h, &why, &errors, &y))
+    }
+
+    pub(super) fn non_finite(&mut self, t: f64) -> Stop {
+        let system = self.system;
+        let model = self.ida().equations();
+        let (at, trap) = match model.trap.take() {
+            Some((at, y, yp)) => {
+                model.observe(at, &y, &yp);
+                (at, report::find_trap(system, &model.values))
+            }
+            None => (t, None),
+        };
+        Stop::new(End::NonFinite, report::non_finite(system, at, trap))
+    }
+}

@@ -1,0 +1,143 @@
+//! From event to event: steps, rows on the grid, and what the outside has to say between them.
+
+use super::{Cause, Driver, Flow};
+use crate::expr::Node;
+use crate::solve::Progress;
+use crate::solve::ida::{Failure, Reached};
+use crate::solve::model::Model;
+use crate::solve::modes::same_time;
+use crate::solve::selection;
+
+/// When time moves by less than this part of the run from pause to pause, so many times in a row, the step size counts
+/// as collapsed: the run would not end within days.
+const CREEPING: f64 = 1e-11;
+const PATIENCE: u32 = 20;
+
+impl<'a> Driver<'a, '_> {
+    pub(super) fn integrate(&mut self) -> Flow {
+        let stop = self.settings.stop_time;
+        while self.t < stop && !same_time(self.t, stop) {
+            self.leg()?;
+            if self.choice.is_some() {
+                return Ok(());
+            }
+        }
+        if self.uses_terminal() { self.event(Cause::Terminal) } else { Ok(()) }
+    }
+
+    pub(super) fn uses_terminal(&self) -> bool {
+        let exprs = &self.system.dae.exprs;
+        let ids = (0..u32::try_from(exprs.len()).unwrap_or(u32::MAX)).map(crate::expr::ExprId);
+        ids.into_iter().any(|e| exprs.node(e) == Node::Terminal)
+    }
+
+    /// The next event of known time.
+    pub(super) fn next_event(&mut self) -> f64 {
+        let known = self.clocks.next().min(self.next_crossing);
+        let t = self.t;
+        known.min(self.ida().equations().playback.next_jump(t))
+    }
+
+    /// Where the integrator must stop next: an event, a bend of an input, the end.
+    pub(super) fn next_stop(&mut self) -> f64 {
+        let t = self.t;
+        let kink = self.ida().equations().playback.next_kink(t);
+        self.next_event().min(kink).min(self.settings.stop_time)
+    }
+
+    /// Integrates to the next event, or the next bend of an input.
+    pub(super) fn leg(&mut self) -> Flow {
+        let (event, to) = (self.next_event(), self.next_stop());
+        self.ida().set_stop(to);
+        let span = self.settings.stop_time - self.settings.start_time;
+        loop {
+            let row = self.grid.next();
+            let target = if row < to && !same_time(row, to) { row } else { to };
+            match self.ida().advance(target) {
+                Ok((Reached::Output, t)) => {
+                    self.t = t;
+                    self.output()?;
+                    if self.states_fail() {
+                        return Ok(());
+                    }
+                }
+                Ok((Reached::Pause, t)) => {
+                    self.creep = if t - self.t < CREEPING * span { self.creep + 1 } else { 0 };
+                    self.t = t;
+                    self.look_outside()?;
+                    if self.creep >= PATIENCE {
+                        return Err(self.failed(Failure::ErrorTest));
+                    }
+                    if self.states_fail() {
+                        return Ok(());
+                    }
+                }
+                Ok((Reached::Stop, _)) => {
+                    self.t = to;
+                    return if event <= to || same_time(event, to) {
+                        self.event(Cause::Time)
+                    } else {
+                        self.pass_kink()
+                    };
+                }
+                Ok((Reached::Root, t)) => {
+                    self.t = t;
+                    return self.event(Cause::Root);
+                }
+                Err((failure, t)) => {
+                    self.t = t;
+                    return Err(self.failed(failure));
+                }
+            }
+        }
+    }
+
+    /// Whether other states should be chosen; notes which.
+    pub(super) fn states_fail(&mut self) -> bool {
+        if self.system.dae.selections.is_empty() || self.control.reselect.is_none() {
+            return false;
+        }
+        let t = self.t;
+        self.choice = self.with_model(|driver, model, y, yp| {
+            model.observe(t, y, yp);
+            selection::better_choice(driver.system, &driver.scales, &model.values)
+        });
+        self.choice.is_some()
+    }
+
+    /// At a bend of an input, or at the end.
+    pub(super) fn pass_kink(&mut self) -> Flow {
+        let t = self.t;
+        let row = self.grid.next();
+        if row <= t || same_time(row, t) {
+            self.output()?;
+        }
+        let (model, ..) = self.ida().parts();
+        let Model { playback, values, .. } = model;
+        playback.seek(t, values);
+        Ok(())
+    }
+
+    /// A row on the grid.
+    pub(super) fn output(&mut self) -> Flow {
+        let t = self.t;
+        self.with_model(|driver, model, y, yp| {
+            model.load(t, y, yp);
+            driver.program.run(&mut model.values);
+            driver.write_row(model)?;
+            driver.check_asserts(model)
+        })?;
+        self.grid.pass(t);
+        self.look_outside()
+    }
+
+    /// Interruption and progress.
+    pub(super) fn look_outside(&mut self) -> Flow {
+        if self.control.interrupt.is_some_and(|flag| flag.load(std::sync::atomic::Ordering::Relaxed)) {
+            return Err(self.interrupted());
+        }
+        let progress = Progress { time: self.t, events: self.statistics.events };
+        let go_on = self.control.progress.as_mut().is_none_or(|report| report(&progress));
+        if go_on { Ok(()) } else { Err(self.interrupted()) }
+    }
+}

@@ -1,0 +1,103 @@
+//! What a run costs, and that its error follows the tolerance: on shipped models, over four decades of it.
+
+#![allow(clippy::disallowed_methods, reason = "tests read their own files")]
+
+use bramah::results::Trajectory;
+use bramah::solve::{End, Statistics};
+use bramah::world::World;
+use bramah::{Request, Simulation};
+use std::path::{Path, PathBuf};
+
+struct Disk;
+
+impl World for Disk {
+    fn read(&self, path: &Path) -> Result<String, String> {
+        std::fs::read_to_string(path).map_err(|e| e.to_string())
+    }
+
+    fn list(&self, path: &Path) -> Option<Vec<(String, bool)>> {
+        let entries = std::fs::read_dir(path).ok()?.flatten();
+        Some(entries.map(|e| (e.file_name().to_string_lossy().into_owned(), e.path().is_dir())).collect())
+    }
+}
+
+/// A shipped class, or a file of `models/`.
+fn compiled(source: &str) -> Simulation {
+    let path = if source.ends_with(".mo") {
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("models").join(source)
+    } else {
+        PathBuf::from(source)
+    };
+    let request = Request { source: path, ..Request::default() };
+    Simulation::compile(&Disk, &request).unwrap_or_else(|e| panic!("{source}: {e}"))
+}
+
+fn run(simulation: &mut Simulation, tolerance: f64) -> (Trajectory, Statistics) {
+    simulation.settings().tolerance = tolerance;
+    let outcome = simulation.run().unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(outcome.end, End::Reached);
+    (outcome.trajectory, outcome.statistics)
+}
+
+/// Evaluations of residual and Jacobian and the number of events at tolerance 1e-6, as they were when last looked at.
+/// The first two may differ by a tenth from machine to machine, for its exponentials may round differently.
+const WORK: [(&str, u64, u64, u64); 8] = [
+    ("ServoPump.DeadZone", 402, 47, 1),
+    ("ServoPump.System", 11715, 496, 2),
+    ("ClosedCircuit.Case1", 821, 100, 2),
+    ("ClosedCircuit.Case2", 587, 87, 4),
+    ("Belt", 6041, 1051, 79),
+    ("stiff/Robertson.mo", 309, 25, 0),
+    ("stiff/AkzoNobel.mo", 342, 19, 0),
+    ("stiff/TransistorAmplifier.mo", 13652, 3616, 0),
+];
+
+#[test]
+fn work_stays_what_it_was() {
+    let near = |now: u64, then: u64| now.abs_diff(then) * 10 <= then + 20;
+    let mut moved = Vec::new();
+    for (source, residuals, jacobians, events) in WORK {
+        let (_, s) = run(&mut compiled(source), 1e-6);
+        let (r, j, e) = (s.residual_evaluations, s.jacobian_evaluations, s.events);
+        if !near(r, residuals) || !near(j, jacobians) || e != events {
+            moved.push(format!("    (\"{source}\", {r}, {j}, {e}),  // was {residuals}, {jacobians}, {events}"));
+        }
+    }
+    assert!(moved.is_empty(), "less is better, more needs a reason:\n{}", moved.join("\n"));
+}
+
+/// The largest difference of the signals over the grid, each as a part of its largest value.
+fn difference(a: &Trajectory, b: &Trajectory, signals: &[&str]) -> f64 {
+    let mut worst = 0.0_f64;
+    for name in signals {
+        let (i, y) = (a.index(name).expect("recorded"), b.index(name).expect("recorded"));
+        let size = b.columns[y].iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        for (k, &t) in b.times.iter().enumerate() {
+            let v = a.value(i, t).expect("equal grids");
+            worst = worst.max((v - b.columns[y][k]).abs() / size);
+        }
+    }
+    worst
+}
+
+/// Errors at 1e-4, 1e-6 and 1e-8 against a run at 1e-10. With variable order the error of a long run falls like a power
+/// of the tolerance somewhat below one: two decades gain a factor of 9 to 60 in these models, 6 at least is asked for.
+#[test]
+fn the_error_follows_the_tolerance() {
+    let models: [(&str, &[&str]); 5] = [
+        ("ServoPump.DeadZone", &["p_A", "p_B"]),
+        ("ClosedCircuit.Case1", &["p", "n_m"]),
+        ("stiff/Robertson.mo", &["y_1", "y_2", "y_3"]),
+        ("stiff/AkzoNobel.mo", &["y_1", "y_2", "y_6"]),
+        ("stiff/TransistorAmplifier.mo", &["y[5]", "y[8]"]),
+    ];
+    for (source, signals) in models {
+        let mut simulation = compiled(source);
+        simulation.settings().event_rows = false;
+        let (reference, _) = run(&mut simulation, 1e-10);
+        let errors =
+            [1e-4, 1e-6, 1e-8].map(|tolerance| difference(&run(&mut simulation, tolerance).0, &reference, signals));
+        assert!(errors[0] < 2e-2 && errors[2] < 1e-4, "{source}: {errors:?}");
+        assert!(errors[1] < errors[0] / 6.0 && errors[2] < errors[1] / 6.0, "{source}: {errors:?}");
+    }
+}
