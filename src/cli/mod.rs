@@ -16,6 +16,7 @@ mod gap;
 mod identify;
 mod inputs;
 mod interrupt;
+mod linearize;
 mod messages;
 mod model;
 mod new;
@@ -70,6 +71,7 @@ enum Command {
     Compare(compare::CompareArgs),
     Identify(identify::IdentifyArgs),
     Gap(gap::GapArgs),
+    Linearize(linearize::LinearizeArgs),
     Explain(explain::ExplainArgs),
     Completions(completions::CompletionsArgs),
 }
@@ -146,6 +148,7 @@ fn dispatch(command: Command, messages: &mut Messages) -> Result<Ending, Failure
         Command::Compare(args) => compare::run(&args, messages),
         Command::Identify(args) => identify::run(&args, messages),
         Command::Gap(args) => gap::run(&args, messages),
+        Command::Linearize(args) => linearize::run(&args, messages),
         Command::Explain(args) => explain::run(&args),
         Command::Completions(args) => completions::run(&args),
     }
