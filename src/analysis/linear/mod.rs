@@ -165,6 +165,16 @@ impl Chosen {
         &self.rho
     }
 
+    /// The inputs that were asked for.
+    pub fn asked(&self) -> Vec<VarId> {
+        self.columns.iter().map(|c| c.1).collect()
+    }
+
+    /// Parameters that became inputs.
+    pub fn raised(&self) -> impl Iterator<Item = VarId> {
+        self.parameters.iter().copied()
+    }
+
     /// States, then raised parameters, then inputs.
     pub fn quantities(&self) -> impl Iterator<Item = VarId> {
         self.plan.state_variables().chain(self.parameters.iter().copied()).chain(self.all_inputs.iter().copied())
