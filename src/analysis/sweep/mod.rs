@@ -82,7 +82,7 @@ impl Plan {
         if found.is_empty() { Ok(Plan { varied, variables, samples, results, wanted }) } else { Err(found) }
     }
 
-    /// One run: the results in their order, or why there are none. Each row of `also` is handed on.
+    /// One run: the results in their order and the rows, or why there are none.
     ///
     /// # Errors
     /// What the run said.

@@ -30,7 +30,7 @@ impl Random {
     }
 
     /// The next number, above 0 and below 1.
-    pub fn next(&mut self) -> f64 {
+    pub fn roll(&mut self) -> f64 {
         self.0 ^= self.0 >> 12;
         self.0 ^= self.0 << 25;
         self.0 ^= self.0 >> 27;
@@ -40,7 +40,7 @@ impl Random {
 
     /// A whole number below `n`.
     pub fn below(&mut self, n: usize) -> usize {
-        ((self.next() * n as f64) as usize).min(n - 1)
+        ((self.roll() * n as f64) as usize).min(n - 1)
     }
 }
 
@@ -92,7 +92,7 @@ fn unit_cube(sweep: &Sweep, directions: usize) -> Result<Vec<Vec<f64>>, String> 
     Ok(match sweep.method {
         Sampling::LatinHypercube => latin_hypercube(sweep.count, directions, &mut random),
         Sampling::Sobol => sobol::design(sweep.count, directions)?,
-        _ => (0..sweep.count).map(|_| (0..directions).map(|_| random.next()).collect()).collect(),
+        _ => (0..sweep.count).map(|_| (0..directions).map(|_| random.roll()).collect()).collect(),
     })
 }
 
@@ -104,7 +104,7 @@ fn latin_hypercube(count: usize, directions: usize, random: &mut Random) -> Vec<
             order.swap(i, random.below(i + 1));
         }
         for (row, part) in rows.iter_mut().zip(order) {
-            row[j] = (part as f64 + random.next()) / count as f64;
+            row[j] = (part as f64 + random.roll()) / count as f64;
         }
     }
     rows
