@@ -48,9 +48,11 @@ const MAY_USE: &[(&str, &[&str])] = &[
         &[
             "compile",
             "diag",
+            "experiment",
             "expr",
             "flat",
             "lower",
+            "network",
             "plot",
             "results",
             "solve",

@@ -246,6 +246,11 @@ impl Local {
         &self.plan
     }
 
+    /// Takes over a state of the model itself, as a run left it: discrete values too. Evaluate afterwards.
+    pub fn adopt(&mut self, state: &crate::solve::State) {
+        state.restore(&self.plan.system, &mut self.point.values);
+    }
+
     /// The states at the last point.
     pub fn state(&self) -> Vec<f64> {
         let layout = &self.plan.system.layout;

@@ -1,8 +1,14 @@
 //! What is asked of a model beyond one run: derivatives of its right-hand side, and all that stands on them.
 
+pub mod balance;
+pub mod grid;
 pub mod identify;
 pub mod lift;
+pub mod linear;
 pub mod local;
+pub mod sensitivity;
+pub mod steady;
+pub mod sweep;
 
 pub use lift::{Lifted, lift};
 pub use local::{Local, LocalError};

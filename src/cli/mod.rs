@@ -16,6 +16,7 @@ mod gap;
 mod identify;
 mod inputs;
 mod interrupt;
+mod linearize;
 mod messages;
 mod model;
 mod new;
@@ -23,9 +24,12 @@ mod plot;
 mod progress;
 mod recorder;
 mod request;
+mod sensitivity;
 mod simulate;
 mod statistics;
+mod steady;
 mod study;
+mod sweep;
 mod world;
 
 use std::process::ExitCode;
@@ -67,9 +71,13 @@ enum Command {
     Check(check::CheckArgs),
     Simulate(simulate::SimulateArgs),
     Plot(plot::PlotArgs),
+    Sweep(sweep::SweepArgs),
     Compare(compare::CompareArgs),
     Identify(identify::IdentifyArgs),
     Gap(gap::GapArgs),
+    Steady(steady::SteadyArgs),
+    Linearize(linearize::LinearizeArgs),
+    Sensitivity(sensitivity::SensitivityArgs),
     Explain(explain::ExplainArgs),
     Completions(completions::CompletionsArgs),
 }
@@ -143,9 +151,13 @@ fn dispatch(command: Command, messages: &mut Messages) -> Result<Ending, Failure
         Command::Check(args) => check::run(&args, messages),
         Command::Simulate(args) => simulate::run(&args, messages),
         Command::Plot(args) => plot::run(&args, messages),
+        Command::Sweep(args) => sweep::run(&args, messages),
         Command::Compare(args) => compare::run(&args, messages),
         Command::Identify(args) => identify::run(&args, messages),
         Command::Gap(args) => gap::run(&args, messages),
+        Command::Steady(args) => steady::run(&args, messages),
+        Command::Linearize(args) => linearize::run(&args, messages),
+        Command::Sensitivity(args) => sensitivity::run(&args, messages),
         Command::Explain(args) => explain::run(&args),
         Command::Completions(args) => completions::run(&args),
     }

@@ -15,9 +15,11 @@
 //! ```
 
 mod input;
+mod sweep;
 mod table;
 
 pub use input::{Hold, InputMap};
+pub use sweep::{Sampling, Spread, Sweep};
 pub use table::parse;
 
 /// What is to be run; `None` and empty lists where nothing was said.
@@ -57,6 +59,8 @@ pub struct Experiment {
     pub statistics: Option<String>,
     /// Warnings are errors.
     pub deny_warnings: Option<bool>,
+    /// What `bramah sweep` varies.
+    pub sweep: Option<Sweep>,
 }
 
 impl Experiment {
@@ -88,6 +92,7 @@ impl Experiment {
             library: or(self.library, other.library),
             statistics: self.statistics.or(other.statistics),
             deny_warnings: self.deny_warnings.or(other.deny_warnings),
+            sweep: self.sweep.or(other.sweep),
         }
     }
 }

@@ -28,9 +28,10 @@ const KEYS: &[&str] = &[
     "library",
     "statistics",
     "deny-warnings",
+    "sweep",
 ];
 
-type Value<'a> = Spanned<DeValue<'a>>;
+pub(super) type Value<'a> = Spanned<DeValue<'a>>;
 
 /// Reads an experiment file that was added to `sources`. Paths in it are as written.
 ///
@@ -57,7 +58,8 @@ pub fn parse(sources: &Sources, file: FileId) -> Checked<Experiment> {
     }
 }
 
-struct Reader {
+/// Reads values and collects what is wrong with them.
+pub(super) struct Reader {
     file: FileId,
     experiment: Experiment,
     diagnostics: Vec<Diagnostic>,
@@ -70,12 +72,12 @@ impl Reader {
         Diagnostic::new(Code::BadExperiment, message).at(span, label)
     }
 
-    fn report(&mut self, place: &Range<usize>, message: impl Into<String>, label: impl Into<String>) {
+    pub(super) fn report(&mut self, place: &Range<usize>, message: impl Into<String>, label: impl Into<String>) {
         let diagnostic = self.diagnostic(place, message, label);
         self.diagnostics.push(diagnostic);
     }
 
-    fn wrong_kind(&mut self, key: &str, value: &Value<'_>, expected: &str) {
+    pub(super) fn wrong_kind(&mut self, key: &str, value: &Value<'_>, expected: &str) {
         let found = value.get_ref().type_str();
         self.report(&value.span(), format!("`{key}` is {expected}"), format!("this is a value of type {found}"));
     }
@@ -102,11 +104,12 @@ impl Reader {
                 Some(deny) => self.experiment.deny_warnings = Some(deny),
                 None => self.wrong_kind(key, value, "true or false"),
             },
+            "sweep" => self.experiment.sweep = super::sweep::sweep(self, value),
             _ => self.unknown(key, place, KEYS),
         }
     }
 
-    fn unknown(&mut self, key: &str, place: &Range<usize>, known: &[&str]) {
+    pub(super) fn unknown(&mut self, key: &str, place: &Range<usize>, known: &[&str]) {
         let mut diagnostic = self.diagnostic(place, format!("there is no key `{key}`"), "unknown key");
         let with_dashes = key.replace('_', "-");
         let same = known.iter().copied().find(|k| *k == with_dashes);
@@ -120,7 +123,7 @@ impl Reader {
         self.diagnostics.push(diagnostic);
     }
 
-    fn text(&mut self, key: &str, value: &Value<'_>) -> Option<String> {
+    pub(super) fn text(&mut self, key: &str, value: &Value<'_>) -> Option<String> {
         let text = value.get_ref().as_str().map(str::to_owned);
         if text.is_none() {
             self.wrong_kind(key, value, "a text in quotes");
@@ -236,7 +239,7 @@ fn is_map_key(key: &str) -> bool {
 }
 
 /// A value as Modelica writes it.
-fn scalar(value: &DeValue<'_>) -> Option<String> {
+pub(super) fn scalar(value: &DeValue<'_>) -> Option<String> {
     match value {
         DeValue::String(text) => Some(text.to_string()),
         DeValue::Integer(i) => i64::from_str_radix(i.as_str(), i.radix()).ok().map(|i| i.to_string()),

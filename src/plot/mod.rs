@@ -7,6 +7,7 @@ pub mod figure;
 pub mod html;
 pub mod network;
 pub mod png;
+pub mod sankey;
 pub mod select;
 pub mod svg;
 mod ticks;

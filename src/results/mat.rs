@@ -44,6 +44,15 @@ pub fn write(mut out: impl Write, trajectory: &Trajectory) -> io::Result<()> {
     out.flush()
 }
 
+/// Writes one matrix of numbers; `values` by columns. Several after each other make a file that MATLAB and SciPy read.
+///
+/// # Errors
+/// What `out` reports.
+pub fn write_matrix(out: &mut impl Write, name: &str, rows: usize, values: &[f64]) -> io::Result<()> {
+    header(out, name, DOUBLE, rows, values.len() / rows.max(1))?;
+    values.iter().try_for_each(|v| out.write_all(&v.to_le_bytes()))
+}
+
 /// Where each signal's values go.
 struct Plan {
     /// Per signal: matrix (1 or 2) and row, counted from 1; row 1 is time.

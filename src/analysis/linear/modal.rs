@@ -1,0 +1,162 @@
+//! Poles with the states that take part in them, and zeros.
+
+use super::StateSpace;
+use nalgebra::linalg::{Schur, balancing};
+use nalgebra::{Complex, DMatrix, DVector};
+
+/// An eigenvalue of A; of a conjugate pair only the upper one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pole {
+    /// Real part in 1/s.
+    pub re: f64,
+    /// Imaginary part in 1/s, not negative.
+    pub im: f64,
+    /// Undamped natural frequency in Hz.
+    pub frequency: f64,
+    /// Damping ratio: 1 and more do not oscillate, below 0 it grows.
+    pub damping: f64,
+    /// States by how much they take part, largest first, with shares that add up to 1; those under 2 % are left out.
+    pub participation: Vec<(usize, f64)>,
+}
+
+/// Shares below this are not worth telling.
+const LEAST_SHARE: f64 = 0.02;
+
+/// Poles in the order of their magnitude. Empty where the eigenvalues cannot be found.
+///
+/// Participation of state k in mode i is |w_ki v_ki| with left and right eigenvectors. Source: I. J. Perez-Arriaga,
+/// G. C. Verghese, F. C. Schweppe, IEEE Trans. PAS-101 (1982) 3117.
+pub fn poles(model: &StateSpace) -> Vec<Pole> {
+    let a = scaled(model);
+    let all = eigenvalues(&a);
+    let largest = all.iter().map(|l| l.norm()).fold(0.0, f64::max);
+    let mut found: Vec<Pole> = all
+        .into_iter()
+        .filter(|l| l.im >= 0.0)
+        // rounding of integrators
+        .map(|l| if l.norm() <= 1e-14 * largest { Complex::new(0.0, 0.0) } else { l })
+        .map(|l| {
+            let size = l.norm();
+            Pole {
+                re: l.re,
+                im: l.im,
+                frequency: size / std::f64::consts::TAU,
+                damping: if size > 0.0 { -l.re / size } else { 0.0 },
+                participation: participation(&a, l),
+            }
+        })
+        .collect();
+    found.sort_by(|a, b| a.re.hypot(a.im).total_cmp(&b.re.hypot(b.im)).then(b.re.total_cmp(&a.re)));
+    found
+}
+
+/// A in units of the states' usual sizes.
+fn scaled(model: &StateSpace) -> DMatrix<f64> {
+    let n = model.states.len();
+    DMatrix::from_fn(n, n, |i, j| model.a[(i, j)] * model.states[j].nominal / model.states[i].nominal)
+}
+
+/// Eigenvalues; none where the iteration does not end.
+pub(super) fn eigenvalues(a: &DMatrix<f64>) -> Vec<Complex<f64>> {
+    if a.is_empty() {
+        return Vec::new();
+    }
+    let mut balanced = a.clone();
+    balancing::balance_parlett_reinsch(&mut balanced);
+    let schur = Schur::try_new(balanced, f64::EPSILON, 10_000);
+    schur.map_or_else(Vec::new, |s| s.complex_eigenvalues().iter().copied().collect())
+}
+
+fn participation(a: &DMatrix<f64>, eigenvalue: Complex<f64>) -> Vec<(usize, f64)> {
+    let n = a.nrows();
+    let right = eigenvector(a, eigenvalue);
+    let left = eigenvector(&a.transpose(), eigenvalue);
+    let (Some(right), Some(left)) = (right, left) else { return Vec::new() };
+    let all: Vec<f64> = (0..n).map(|k| (right[k] * left[k]).norm()).collect();
+    let sum: f64 = all.iter().sum();
+    let mut shares: Vec<(usize, f64)> = all.into_iter().map(|s| s / sum).enumerate().collect();
+    shares.retain(|s| s.1 >= LEAST_SHARE);
+    shares.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+    shares
+}
+
+/// By inverse iteration from a vector that favours no state.
+fn eigenvector(a: &DMatrix<f64>, eigenvalue: Complex<f64>) -> Option<DVector<Complex<f64>>> {
+    let n = a.nrows();
+    let size = a.amax().max(eigenvalue.norm()).max(f64::MIN_POSITIVE);
+    let mut shifted = a.map(|v| Complex::new(v, 0.0));
+    let shift = eigenvalue + Complex::new(1e-10 * eigenvalue.norm().max(1e-6 * size), 0.0);
+    (0..n).for_each(|k| shifted[(k, k)] -= shift);
+    let lu = shifted.lu();
+    let mut v = DVector::from_fn(n, |k, _| Complex::new(1.0, 0.1 * (k % 7) as f64));
+    for _ in 0..4 {
+        v = lu.solve(&v)?;
+        let norm = v.norm();
+        if !norm.is_finite() || norm == 0.0 {
+            return None;
+        }
+        v /= Complex::new(norm, 0.0);
+    }
+    Some(v)
+}
+
+/// Zeros of the way from one input to one output, in the order of their magnitude.
+///
+/// With r derivatives of the output free of the input, they are the eigenvalues of A - b c A^r / (c A^(r-1) b) but for r
+/// at zero (the zero dynamics); with a direct path, of A - b c / d.
+pub fn zeros(model: &StateSpace, input: usize, output: usize) -> Vec<Complex<f64>> {
+    let way = between(model, input, output);
+    let n = way.len();
+    let size = |k: usize| model.states[way[k]].nominal;
+    let a = DMatrix::from_fn(n, n, |i, j| model.a[(way[i], way[j])] * size(j) / size(i));
+    // time in units of the fastest rate, so that powers of A stay of the order of 1
+    let rate = if a.is_empty() { 1.0 } else { a.amax().max(f64::MIN_POSITIVE) };
+    let a = a / rate;
+    let b = DVector::from_fn(n, |i, _| model.b[(way[i], input)] / size(i));
+    let mut row = DVector::from_fn(n, |i, _| model.c[(output, way[i])] * size(i)).transpose();
+    let direct = model.d[(output, input)];
+    if n == 0 {
+        return Vec::new();
+    }
+    let mut order = 0;
+    let mut gain = direct;
+    while gain.abs() <= 1e-11 * row.amax() * b.amax() {
+        if order == n {
+            return Vec::new();
+        }
+        if order > 0 {
+            row = &row * &a;
+        }
+        order += 1;
+        gain = (&row * &b)[0];
+    }
+    // without a direct path the row has been multiplied once less than the gain's derivative has an order
+    let next = if order == 0 { row / rate } else { &row * &a };
+    let reduced = &a - &b * next / gain;
+    let mut found = eigenvalues(&reduced);
+    found.sort_by(|x, y| x.norm().total_cmp(&y.norm()));
+    let mut kept: Vec<Complex<f64>> = found.into_iter().skip(order).map(|z| z * rate).collect();
+    kept.retain(|z| z.im >= 0.0);
+    kept
+}
+
+/// The states that lie on a way from the input to the output.
+fn between(model: &StateSpace, input: usize, output: usize) -> Vec<usize> {
+    let n = model.states.len();
+    let spread = |seed: &dyn Fn(usize) -> bool, edge: &dyn Fn(usize, usize) -> bool| {
+        let mut found: Vec<bool> = (0..n).map(seed).collect();
+        let mut ready: Vec<usize> = (0..n).filter(|&k| found[k]).collect();
+        while let Some(from) = ready.pop() {
+            for to in 0..n {
+                if !found[to] && edge(from, to) {
+                    found[to] = true;
+                    ready.push(to);
+                }
+            }
+        }
+        found
+    };
+    let reached = spread(&|k| model.b[(k, input)] != 0.0, &|from, to| model.a[(to, from)] != 0.0);
+    let seen = spread(&|k| model.c[(output, k)] != 0.0, &|from, to| model.a[(from, to)] != 0.0);
+    (0..n).filter(|&k| reached[k] && seen[k]).collect()
+}

@@ -1,0 +1,136 @@
+use super::*;
+use crate::circuit::Simulation;
+use crate::compile::Request;
+use crate::world::MemoryWorld;
+
+fn start(text: &str) -> (Simulation, State) {
+    let world = MemoryWorld::single("m.mo", text);
+    let mut simulation =
+        Simulation::compile(&world, &Request { source: "m.mo".into(), ..Request::default() }).expect("sound");
+    let state = simulation.stop_time(1e-9).run().expect("starts").state;
+    (simulation, state)
+}
+
+fn strings(names: &[&str]) -> Vec<String> {
+    names.iter().map(|n| (*n).to_owned()).collect()
+}
+
+const OSCILLATOR: &str = "model M
+    parameter Real m = 2, d = 0.8, c = 50;
+    input Real F(start = 0); Real x(start = 0, fixed = true), v(start = 0, fixed = true);
+    output Real y, a;
+  equation
+    der(x) = v; m*der(v) = F - d*v - c*x; y = x; a = der(v);
+  end M;";
+
+fn oscillator() -> StateSpace {
+    let (simulation, state) = start(OSCILLATOR);
+    let chosen = Chosen::new(&simulation.model().flat, &Choice::default(), &[]).expect("fits");
+    linearize(simulation.model(), &chosen, &state).expect("has derivatives")
+}
+
+#[test]
+fn matrices_poles_and_zeros_of_an_oscillator() {
+    let model = oscillator();
+    assert_eq!(model.a, DMatrix::from_row_slice(2, 2, &[0.0, 1.0, -25.0, -0.4]));
+    assert_eq!((model.b[(1, 0)], model.c[(0, 0)], model.d[(1, 0)]), (0.5, 1.0, 0.5));
+    let poles = poles(&model);
+    assert_eq!(poles.len(), 1);
+    assert!(
+        (poles[0].frequency - 5.0 / std::f64::consts::TAU).abs() < 1e-12 && (poles[0].damping - 0.04).abs() < 1e-12
+    );
+    let shares: f64 = poles[0].participation.iter().map(|s| s.1).sum();
+    assert!((shares - 1.0).abs() < 1e-9 && (poles[0].participation[0].1 - 0.5).abs() < 1e-6);
+    // force to position has none; force to acceleration has two at zero
+    assert!(zeros(&model, 0, 0).is_empty());
+    let at_zero = zeros(&model, 0, 1);
+    assert!(at_zero.len() == 2 && at_zero.iter().all(|z| z.norm() < 1e-6), "{at_zero:?}");
+    // at resonance the amplitude is 1/(d w)
+    let response = response(&model, 5.0 / std::f64::consts::TAU).expect("damped");
+    assert!((response[(0, 0)].norm() - 1.0 / (0.8 * 5.0)).abs() < 1e-12);
+}
+
+#[test]
+fn zeros_of_a_lead() {
+    // (s + 3)/((s + 1)(s + 10)) with a chain of two lags
+    let text =
+        "model M input Real u(start = 0); Real x(start = 0, fixed = true), z(start = 0, fixed = true); output Real y;
+      equation der(x) = -x + u; der(z) = -10*z + u; y = (2*x + 7*z)/9; end M;";
+    let (simulation, state) = start(text);
+    let chosen = Chosen::new(&simulation.model().flat, &Choice::default(), &[]).expect("fits");
+    let model = linearize(simulation.model(), &chosen, &state).expect("has derivatives");
+    let found = zeros(&model, 0, 0);
+    assert!(found.len() == 1 && (found[0].re + 3.0).abs() < 1e-9, "{found:?}");
+}
+
+#[test]
+fn words_and_files() {
+    let model = oscillator();
+    insta::assert_snapshot!(words(&model));
+    insta::assert_snapshot!(csv(&model));
+    let text = modelica(&model, "Near");
+    insta::assert_snapshot!(text);
+    let world = MemoryWorld::single("n.mo", &text);
+    let simulation = Simulation::compile(&world, &Request { source: "n.mo".into(), ..Request::default() });
+    simulation.unwrap_or_else(|e| panic!("{e}"));
+    assert!(mat(&model).len() > 200);
+    assert_eq!(model.json()["poles"][0]["states"][0]["state"].as_str().map(str::len), Some(1));
+}
+
+#[test]
+fn names_that_do_not_fit() {
+    let (simulation, _) = start(OSCILLATOR);
+    let said = |inputs: &[&str], outputs: &[&str]| {
+        let choice = Choice { inputs: strings(inputs), outputs: strings(outputs) };
+        Chosen::new(&simulation.model().flat, &choice, &[]).expect_err("does not fit")[0].message.clone()
+    };
+    assert_eq!(said(&["v"], &[]), "`v` cannot be used here");
+    assert_eq!(said(&["mm"], &[]), "the model has no variable `mm`");
+    assert_eq!(said(&[], &["m"]), "`m` cannot be used here");
+}
+
+const PUMP: &str = "model M
+    parameter Real f = 30;
+    input Real u(start = 1);
+    Real w(start = 20, fixed = true), p(start = 5, fixed = true), n;
+  equation
+    der(w) = 3*(f - w) - (0.1 + 0.01*tanh(w))*p; der(p) = w*sqrt(1 + p^2/100) - 0.2*p*abs(w) - u*p; n = 60*w;
+  end M;";
+
+fn quasi_linear(rho: &[&str]) -> Schedule {
+    let (simulation, state) = start(PUMP);
+    let model = simulation.model();
+    let chosen = Chosen::scheduled(&model.flat, &strings(&["f", "u"]), &strings(rho)).expect("fits");
+    let ranges = [(-40.0, 40.0), (0.0, 20.0), (10.0, 40.0), (0.0, 3.0)];
+    let grid: Vec<Option<Vec<f64>>> = rho.iter().map(|_| Some(vec![1.0, 10.0])).collect();
+    schedule(&chosen, &state, &grid, &ranges).expect("has values")
+}
+
+#[test]
+fn the_quasi_linear_form_is_exact_where_the_rest_is_linear() {
+    let exact = quasi_linear(&["p", "n"]);
+    assert_eq!(exact.inputs, ["f", "u", "1"]);
+    assert_eq!((exact.points.len(), exact.is_exact()), (4, true), "{:?}", exact.error);
+    let short = quasi_linear(&["p"]);
+    assert!(!short.is_exact() && short.error[1] > 1e-3, "{:?}", short.error);
+    assert!(short.words().contains("not exact"));
+    assert_eq!(exact.csv().lines().count(), 5);
+}
+
+/// P2's circuit without the low side: exact with all that it schedules; the paper's shorter list misses friction's part.
+#[test]
+fn the_closed_circuit_is_quasi_linear() {
+    let request = Request { source: "ClosedCircuit.Reduced".into(), ..Request::default() };
+    let simulation = Simulation::compile(&MemoryWorld::default(), &request).expect("ships");
+    let state = simulation.run().expect("runs").state;
+    let model = simulation.model();
+    let error = |rho: &[&str]| {
+        let chosen = Chosen::scheduled(&model.flat, &strings(&["f", "u"]), &strings(rho)).expect("fits");
+        let around = chosen.quantities().map(|v| (0.8 * state.values[v.index()], 1.2 * state.values[v.index()]));
+        let found = schedule(&chosen, &state, &vec![None; rho.len()], &around.collect::<Vec<_>>()).expect("has values");
+        found.error.iter().fold(0.0f64, |m, e| m.max(*e))
+    };
+    assert!(error(&["p", "n_p", "n_m", "f"]) < 1e-14);
+    let short = error(&["p", "n_p"]);
+    assert!((1e-3..0.2).contains(&short), "{short}");
+}

@@ -1,0 +1,174 @@
+//! Trajectory sensitivities: how the course of variables moves with parameters and start values.
+//!
+//! By central differences of tight runs, which hold across events: the run itself finds the moved event times. Where a
+//! jump moves in time, the difference between the two events is the jump over the step, as it must be.
+
+use crate::Model;
+use crate::expr::VarId;
+use crate::results::Trajectory;
+use crate::solve::{Control, Settings, signals, simulate};
+use crate::structure::StateChoice;
+use rayon::prelude::*;
+use std::sync::atomic::AtomicBool;
+
+/// The course of variables and how it moves.
+#[derive(Clone, Debug)]
+pub struct Sensitivity {
+    /// The plain run.
+    pub plain: Trajectory,
+    /// The parameters, by name, with the size of the change that the columns refer to.
+    pub parameters: Vec<(String, f64)>,
+    /// By parameter: one column a variable, the change of the variable per change of the parameter by its size.
+    pub columns: Vec<Vec<Vec<f64>>>,
+}
+
+/// A parameter that is moved.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Moved {
+    /// The parameter.
+    pub variable: VarId,
+    /// Its name.
+    pub name: String,
+    /// Its value.
+    pub value: f64,
+    /// Its own size: its value, or where that is zero its nominal value.
+    pub size: f64,
+}
+
+/// Step of the differences as a part of a parameter's size.
+const STEP: f64 = 1e-4;
+
+/// Sensitivities to `moved`, each with respect to a relative change.
+///
+/// # Errors
+/// What the first run that failed said.
+pub fn sensitivity(
+    model: &Model,
+    settings: &Settings,
+    moved: &[Moved],
+    interrupt: &AtomicBool,
+) -> Result<Sensitivity, String> {
+    let settings = Settings { event_rows: false, ..settings.clone() };
+    let plain = run(model, &settings, None, interrupt)?;
+    let columns: Result<Vec<Vec<Vec<f64>>>, String> = moved
+        .par_iter()
+        .map(|m| {
+            let at = |sign: f64| run(model, &settings, Some((m.variable, m.value + sign * STEP * m.size)), interrupt);
+            let (up, down) = (at(1.0)?, at(-1.0)?);
+            let difference =
+                |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(a, b)| (a - b) / (2.0 * STEP)).collect();
+            Ok(up.columns.iter().zip(&down.columns).map(difference).collect())
+        })
+        .collect();
+    let parameters = moved.iter().map(|m| (m.name.clone(), m.size)).collect();
+    Ok(Sensitivity { plain, parameters, columns: columns? })
+}
+
+fn run(
+    model: &Model,
+    settings: &Settings,
+    change: Option<(VarId, f64)>,
+    interrupt: &AtomicBool,
+) -> Result<Trajectory, String> {
+    let mut settings = settings.clone();
+    settings.parameters.extend(change);
+    let mut rows = Trajectory::new(signals(&model.dae, &settings.wanted));
+    let mut reselect = |choice: &StateChoice| model.with_states(choice);
+    let mut control = Control { interrupt: Some(interrupt), reselect: Some(&mut reselect), ..Control::default() };
+    let run = simulate(&model.system, &settings, &[], None, &mut rows, &mut control);
+    if run.end.is_success() {
+        return Ok(rows);
+    }
+    let said = run.diagnostics.iter().find(|d| d.is_error()).map(|d| d.message.clone());
+    Err(said.unwrap_or_else(|| run.end.word().to_owned()))
+}
+
+impl Sensitivity {
+    /// How much a variable moves with a parameter: the root mean square over the rows, over the variable's range (or its
+    /// size, where it does not vary). A change of the parameter by 1 % moves the variable by this many per cent of it.
+    pub fn weight(&self, parameter: usize, variable: usize) -> f64 {
+        let moved = &self.columns[parameter][variable];
+        let plain = &self.plain.columns[variable];
+        let rms = (moved.iter().map(|v| v * v).sum::<f64>() / moved.len().max(1) as f64).sqrt();
+        let low = plain.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = plain.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let size = low.abs().max(high.abs());
+        let scale = if high - low > 1e-9 * size { high - low } else { size };
+        if scale > 0.0 { rms / scale } else { 0.0 }
+    }
+
+    /// Parameters by the sum of their weights over all variables, strongest first.
+    pub fn ranking(&self) -> Vec<usize> {
+        let sum = |p: usize| (0..self.plain.columns.len()).map(|v| self.weight(p, v)).sum::<f64>();
+        let mut order: Vec<(usize, f64)> = (0..self.parameters.len()).map(|p| (p, sum(p))).collect();
+        order.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+        order.into_iter().map(|o| o.0).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::MemoryWorld;
+
+    fn found(text: &str, parameters: &[&str], variable: &str, stop: f64) -> Sensitivity {
+        let world = MemoryWorld::single("m.mo", text);
+        let request = crate::Request { source: "m.mo".into(), ..crate::Request::default() };
+        let model = crate::compile(&world, &request, &crate::lower::Options { native: false }).value.expect("sound");
+        let id = |n: &str| {
+            let i = model.flat.variables.iter().position(|v| v.name == n).expect("there");
+            VarId(u32::try_from(i).expect("small"))
+        };
+        let mut values = model.system.layout.values();
+        model.system.evaluate_parameters(&mut values, &[]);
+        let moved: Vec<Moved> = parameters
+            .iter()
+            .map(|n| {
+                let value = values[model.system.layout.var(id(n))];
+                Moved { variable: id(n), name: (*n).to_owned(), value, size: value.abs() }
+            })
+            .collect();
+        let settings = Settings {
+            stop_time: stop,
+            interval: stop / 50.0,
+            tolerance: 1e-9,
+            wanted: vec![id(variable)],
+            ..Settings::default()
+        };
+        sensitivity(&model, &settings, &moved, &AtomicBool::new(false)).expect("runs")
+    }
+
+    #[test]
+    fn a_decay_and_its_ranking() {
+        let text = "model M parameter Real k = 2, x0 = 3, idle = 1; Real x(start = x0, fixed = true);
+            equation der(x) = -k*x; end M;";
+        let s = found(text, &["idle", "k", "x0"], "x", 1.0);
+        for (row, &t) in s.plain.times.iter().enumerate() {
+            let x = 3.0 * (-2.0 * t).exp();
+            assert!((s.columns[1][0][row] + 2.0 * t * x).abs() < 3e-4, "{t}");
+            assert!((s.columns[2][0][row] - x).abs() < 3e-4, "{t}");
+        }
+        assert_eq!(s.ranking(), [2, 1, 0]);
+        assert_eq!(s.weight(0, 0), 0.0);
+    }
+
+    /// The height of a bouncing ball after its first bounce, exact: h = v1 s - g s^2/2 with s since the bounce.
+    #[test]
+    fn across_events() {
+        let text =
+            "model M parameter Real g = 9.81, e = 0.7; Real h(start = 1, fixed = true), v(start = 0, fixed = true);
+            equation der(h) = v; der(v) = -g; when h < 0 then reinit(v, -e*pre(v)); end when; end M;";
+        let s = found(text, &["g", "e"], "h", 0.8);
+        let height = |g: f64, e: f64, t: f64| {
+            let fall = (2.0 / g).sqrt();
+            if t < fall { 1.0 - g * t * t / 2.0 } else { e * g * fall * (t - fall) - g * (t - fall).powi(2) / 2.0 }
+        };
+        for (row, &t) in s.plain.times.iter().enumerate() {
+            let d = 1e-6;
+            let by_g = 9.81 * (height(9.81 + d, 0.7, t) - height(9.81 - d, 0.7, t)) / (2.0 * d);
+            let by_e = 0.7 * (height(9.81, 0.7 + d, t) - height(9.81, 0.7 - d, t)) / (2.0 * d);
+            assert!((s.columns[0][0][row] - by_g).abs() < 1e-3, "g at {t}: {} {by_g}", s.columns[0][0][row]);
+            assert!((s.columns[1][0][row] - by_e).abs() < 1e-3, "e at {t}: {} {by_e}", s.columns[1][0][row]);
+        }
+    }
+}

@@ -1,0 +1,39 @@
+//! The results of a sweep over its parameters, one panel a pair.
+
+use super::Table;
+use crate::plot::{Figure, Panel, Series};
+
+/// Panels drawn at most.
+const PANELS: usize = 12;
+
+/// One panel for each parameter and result, with a cross a run.
+pub fn scatter(table: &Table, parameters: usize, title: &str) -> Figure {
+    let results = parameters..table.columns.len();
+    let pairs = results.flat_map(|r| (0..parameters).map(move |p| (p, r))).take(PANELS);
+    let panels = pairs.map(|(p, r)| {
+        let series = crosses(&table.column(p), &table.column(r), &table.columns[r]);
+        Panel {
+            x_label: table.columns[p].clone(),
+            y_label: table.columns[r].clone(),
+            series: vec![series],
+            ..Panel::default()
+        }
+    });
+    Figure { title: title.to_owned(), panels: panels.collect(), shared_x: false }
+}
+
+/// Points as small crosses.
+fn crosses(x: &[f64], y: &[f64], name: &str) -> Series {
+    let arm = |values: &[f64]| {
+        let finite = || values.iter().copied().filter(|v| v.is_finite());
+        let range = finite().fold(f64::NEG_INFINITY, f64::max) - finite().fold(f64::INFINITY, f64::min);
+        if range > 0.0 { 0.004 * range } else { 1e-9 }
+    };
+    let (wide, high) = (arm(x), arm(y));
+    let mut series = Series { name: name.to_owned(), ..Series::default() };
+    for (&x, &y) in x.iter().zip(y).filter(|(x, y)| x.is_finite() && y.is_finite()) {
+        series.x.extend([x - wide, x + wide, f64::NAN, x, x, f64::NAN]);
+        series.y.extend([y, y, f64::NAN, y - high, y + high, f64::NAN]);
+    }
+    series
+}

@@ -1,0 +1,241 @@
+//! `bramah linearize`
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::messages::Messages;
+use super::recorder::write_text;
+use super::request::ModelArgs;
+use super::{Ending, Failure, files, interrupt, model, plot};
+use crate::analysis::linear::{self, Choice, Chosen, StateSpace};
+use crate::analysis::steady;
+use crate::compile::Model;
+use crate::diag::{Code, Diagnostic};
+use crate::experiment::seconds;
+use crate::expr::VarId;
+use crate::plot::Figure;
+use crate::results::glob::split_list;
+use crate::results::{Trajectory, number};
+use crate::solve::{Control, Settings, State, signals, simulate};
+use crate::structure::StateChoice;
+
+/// A model near an operating point: A, B, C, D, poles and zeros; or its quasi-linear form over operating points
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Inputs are top-level inputs or parameters. With --schedule the model becomes x' = A(rho) x + B(rho) (u, 1) over a grid of
+scheduling quantities, each a multiple of one state or input: exact where the model is affine in the rest, and said so.
+
+Examples:
+  bramah linearize Axis.mo --at 0.5 --inputs u --outputs cyl.x --bode bode.svg
+  bramah linearize Press.mo --steady -o press.json
+  bramah linearize ClosedCircuit.Reduced --inputs f,u --schedule p,n_p,n_m,f --grid p=10:150:8bar --grid f=10,20,30
+
+Exit status: 0 fine; 1 the model is wrong, or has no values or no steady state there; 2 bad arguments or files.")]
+pub(super) struct LinearizeArgs {
+    #[command(flatten)]
+    model: ModelArgs,
+    /// The operating point: a time of the run, as `2`, `t=2` or `500 ms` [default: the start]
+    #[arg(long, value_name = "TIME", value_parser = time, conflicts_with = "steady", allow_hyphen_values = true)]
+    at: Option<f64>,
+    /// The operating point: the steady state reached from the start, or from --at
+    #[arg(long)]
+    steady: bool,
+    /// Inputs: top-level inputs or parameters [default: all top-level inputs]; may be repeated
+    #[arg(long, value_name = "NAME,...")]
+    inputs: Vec<String>,
+    /// Outputs: any variables [default: top-level outputs, else the states]; may be repeated
+    #[arg(long, value_name = "NAME,...")]
+    outputs: Vec<String>,
+    /// Scheduling quantities of the quasi-linear form
+    #[arg(long, value_name = "NAME,...")]
+    schedule: Vec<String>,
+    /// Values of a scheduling quantity, in its unit or with one: `p=1e6,2e6` or `n_p=200:1000:5` (from, to, count)
+    #[arg(long, value_name = "NAME=VALUES")]
+    grid: Vec<String>,
+    /// Where to write: .json, .csv, .mat or .mo; `-` for JSON on stdout
+    #[arg(short, long, value_name = "FILE")]
+    output_file: Option<String>,
+    /// A picture of the frequency responses: .svg, .png or .html
+    #[arg(long, value_name = "FILE")]
+    bode: Option<PathBuf>,
+    /// A picture of the poles: .svg, .png or .html
+    #[arg(long, value_name = "FILE")]
+    poles: Option<PathBuf>,
+}
+
+fn time(text: &str) -> Result<f64, String> {
+    let text = text.trim();
+    seconds(text.strip_prefix("t=").or_else(|| text.strip_prefix("time=")).unwrap_or(text))
+}
+
+pub(super) fn run(args: &LinearizeArgs, messages: &mut Messages) -> Result<Ending, Failure> {
+    let experiment = args.model.experiment(None, messages)?;
+    let model = model::compile(&experiment, messages)?;
+    if args.schedule.is_empty() {
+        return linear_model(args, &model, messages);
+    }
+    quasi_linear(args, &model, messages)
+}
+
+fn list(flags: &[String]) -> Vec<String> {
+    flags.iter().flat_map(|f| split_list(f)).collect()
+}
+
+fn linear_model(args: &LinearizeArgs, model: &Model, messages: &Messages) -> Result<Ending, Failure> {
+    let choice = Choice { inputs: list(&args.inputs), outputs: list(&args.outputs) };
+    let chosen = Chosen::new(&model.flat, &choice, &[]).map_err(|diagnostics| Failure { diagnostics })?;
+    let state = operating_point(args, model, &chosen)?;
+    let linear = linear::linearize(model, &chosen, &state).map_err(|e| no_values(&e.to_string()))?;
+    let words = linear::words(&linear);
+    match &args.output_file {
+        Some(path) => {
+            write(&linear, path, messages)?;
+            messages.remark(words.trim_end());
+        }
+        None => files::print(&words)?,
+    }
+    let poles = linear::poles(&linear);
+    let picture = |figure: &Figure, path: &Path| {
+        plot::write(figure, &[("model".to_owned(), linear.class.clone())], path, messages)
+    };
+    if let Some(path) = &args.bode {
+        picture(&linear::bode(&linear, &poles), path)?;
+    }
+    if let Some(path) = &args.poles {
+        picture(&linear::plane(&linear, &poles), path)?;
+    }
+    Ok(Ending::Fine)
+}
+
+fn write(linear: &StateSpace, path: &str, messages: &Messages) -> Result<(), Failure> {
+    let extension = Path::new(path).extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+    match extension.as_str() {
+        "csv" => write_text(path, &linear::csv(linear))?,
+        "mo" => write_text(path, &linear::modelica(linear, &plot::stem(Path::new(path))))?,
+        "mat" => files::write(Path::new(path), &linear::mat(linear))?,
+        _ if path == "-" || extension == "json" => write_text(path, &pretty(&linear.json()))?,
+        _ => {
+            let text = format!("a linear model is written as .json, .csv, .mat or .mo, not as `{path}`");
+            return Err(Failure::new(Code::BadArgument, text));
+        }
+    }
+    if path != "-" {
+        messages.remark(&format!("wrote {path}"));
+    }
+    Ok(())
+}
+
+fn pretty(value: &serde_json::Value) -> String {
+    let text = serde_json::to_string_pretty(value).expect("numbers and texts always serialize");
+    format!("{text}\n")
+}
+
+/// The state at the time asked for, or the steady state reached from there.
+fn operating_point(args: &LinearizeArgs, model: &Model, chosen: &Chosen) -> Result<State, Failure> {
+    let mut state = state_at(model, args.at)?.0;
+    if args.steady {
+        let found = steady::steady(chosen, &state);
+        let (found, _) = found.map_err(|e| restless(&e, chosen))?;
+        put(chosen, &found.x, &mut state);
+    }
+    Ok(state)
+}
+
+/// Writes values of the states into a state of the model.
+pub(super) fn put(chosen: &Chosen, x: &[f64], state: &mut State) {
+    for (v, &x) in chosen.plan.state_variables().zip(x) {
+        state.values[v.index()] = x;
+    }
+}
+
+/// Why there is no steady state, in words.
+pub(super) fn restless(why: &steady::Unsteady, chosen: &Chosen) -> Failure {
+    let d = Diagnostic::new(Code::InitialFailed, format!("no steady state was found: {why}"));
+    match why {
+        steady::Unsteady::Restless { state, rate } => {
+            let v = chosen.plan.state_variables().nth(*state);
+            let name = v.map_or_else(String::new, |v| chosen.plan.system.dae.variables[v.index()].name.clone());
+            let rate = number::rounded(*rate, 3);
+            d.note(format!("`{name}` still moves by {rate} of its usual size a second")).help(
+                "give start values nearer to it, or look at a run: it may oscillate, or rest on a command in time",
+            )
+        }
+        steady::Unsteady::Local(_) => d.help("give start values nearer to it"),
+    }
+    .into()
+}
+
+fn no_values(why: &str) -> Failure {
+    Failure::new(Code::NonFinite, format!("the model has no derivatives at this point: {why}"))
+}
+
+/// A run up to a time, or to no time at all, with the rows it made.
+pub(super) fn state_at(model: &Model, time: Option<f64>) -> Result<(State, Trajectory), Failure> {
+    let mut settings = Settings::from_experiment(&model.dae.experiment);
+    settings.stop_time = time.unwrap_or(settings.start_time);
+    settings.interval = (settings.stop_time - settings.start_time) / 200.0;
+    run_to(model, &settings)
+}
+
+/// A run, with its rows.
+pub(super) fn run_to(model: &Model, settings: &Settings) -> Result<(State, Trajectory), Failure> {
+    let mut rows = Trajectory::new(signals(&model.dae, &settings.wanted));
+    let mut reselect = |choice: &StateChoice| model.with_states(choice);
+    let mut control =
+        Control { interrupt: Some(interrupt::flag()), reselect: Some(&mut reselect), ..Control::default() };
+    let run = simulate(&model.system, settings, &[], None, &mut rows, &mut control);
+    if run.end.is_success() { Ok((run.state, rows)) } else { Err(Failure { diagnostics: run.diagnostics }) }
+}
+
+fn quasi_linear(args: &LinearizeArgs, model: &Model, messages: &Messages) -> Result<Ending, Failure> {
+    let rho = list(&args.schedule);
+    let chosen =
+        Chosen::scheduled(&model.flat, &list(&args.inputs), &rho).map_err(|diagnostics| Failure { diagnostics })?;
+    let state = operating_point(args, model, &chosen)?;
+    let ranges = ranges(model, &chosen, &state)?;
+    let grid = grid(args, &chosen)?;
+    let found = linear::schedule(&chosen, &state, &grid, &ranges)?;
+    let words = found.words();
+    let Some(path) = &args.output_file else {
+        files::print(&words)?;
+        return Ok(Ending::Fine);
+    };
+    if Path::new(path).extension().is_some_and(|e| e.eq_ignore_ascii_case("csv")) {
+        write_text(path, &found.csv())?;
+    } else {
+        write_text(path, &pretty(&found.json()))?;
+    }
+    messages.remark(words.trim_end());
+    Ok(Ending::Fine)
+}
+
+/// Smallest and largest values of states and inputs: those of a run, widened by a tenth; of quantities that do not move
+/// a fifth of their value to both sides.
+fn ranges(model: &Model, chosen: &Chosen, state: &State) -> Result<Vec<(f64, f64)>, Failure> {
+    let mut settings = Settings::from_experiment(&model.dae.experiment);
+    let all: Vec<VarId> = chosen.quantities().collect();
+    settings.wanted = all.iter().copied().filter(|v| v.index() < model.dae.variables.len()).collect();
+    let (_, rows) = run_to(model, &settings)?;
+    let range = |k: usize, v: VarId| {
+        let column = rows.columns.get(k).map_or(&[] as &[f64], Vec::as_slice);
+        let now = state.values[v.index()];
+        let (low, high) = column.iter().fold((now, now), |(l, h), x| (l.min(*x), h.max(*x)));
+        let margin = if high > low { 0.1 * (high - low) } else { 0.2 * now.abs() };
+        (low - margin, high + margin)
+    };
+    Ok(all.iter().enumerate().map(|(k, &v)| range(k, v)).collect())
+}
+
+/// The values asked for each scheduling quantity.
+fn grid(args: &LinearizeArgs, chosen: &Chosen) -> Result<Vec<Option<Vec<f64>>>, Failure> {
+    let mut all: Vec<Option<Vec<f64>>> = vec![None; chosen.rho().len()];
+    for entry in &args.grid {
+        let wrong = |why: &str| Failure::new(Code::BadArgument, format!("`--grid {entry}`: {why}"));
+        let (name, values) = entry.split_once('=').ok_or_else(|| wrong("NAME=VALUES is expected"))?;
+        let k = chosen.rho().iter().position(|r| r.name == name.trim());
+        let k = k.ok_or_else(|| wrong("it is not a scheduling quantity"))?;
+        all[k] = Some(crate::analysis::grid::values(values, &chosen.rho()[k].unit).map_err(|e| wrong(&e))?);
+    }
+    Ok(all)
+}

@@ -1,0 +1,175 @@
+//! `bramah sensitivity`
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::messages::Messages;
+use super::recorder::{Target, write_text};
+use super::request::ModelArgs;
+use super::{Ending, Failure, columns, files, interrupt, model, plot};
+use crate::analysis::lift::is_root;
+use crate::analysis::sensitivity::{Moved, Sensitivity, sensitivity};
+use crate::compile::Model;
+use crate::diag::{Code, Diagnostic};
+use crate::experiment::seconds;
+use crate::expr::VarId;
+use crate::flat::{Type, Variability};
+use crate::plot::{Figure, Panel, Series};
+use crate::results::{CsvWriter, Globs, Signal, number};
+use crate::solve::Settings;
+
+/// How the course of variables moves with parameters
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Each number belongs to a relative change: the variable's change over the parameter's, times the parameter's own size. The
+ranking on stdout tells by how many per cent of its range a variable moves (root mean square) when a parameter moves by
+1 %. Central differences of runs with a tolerance of 1e-9, also across events.
+
+Examples:
+  bramah sensitivity Press.mo --variables cyl.v,pump.b.p
+  bramah sensitivity Press.mo --parameters 'pump.*' --variables cyl.x --plot cyl.svg -o cyl.csv
+
+Exit status: 0 fine; 1 the model is wrong or a run failed; 2 bad arguments or files.")]
+pub(super) struct SensitivityArgs {
+    #[command(flatten)]
+    model: ModelArgs,
+    /// Parameters, such as 'pump.*' [default: all that no other parameter decides]; may be repeated
+    #[arg(short, long, value_name = "GLOB,...")]
+    parameters: Vec<String>,
+    /// Variables, such as 'cyl.*' [default: top-level outputs, else states]; may be repeated
+    #[arg(long, value_name = "GLOB,...")]
+    variables: Vec<String>,
+    /// Seconds, or a time with a unit
+    #[arg(long, value_name = "TIME", value_parser = seconds, allow_hyphen_values = true)]
+    stop_time: Option<f64>,
+    /// Where to write the courses, one column a variable and parameter: CSV, `-` for stdout
+    #[arg(short, long, value_name = "CSV")]
+    output_file: Option<PathBuf>,
+    /// A picture of the strongest: .svg, .png or .html
+    #[arg(long, value_name = "FILE")]
+    plot: Option<PathBuf>,
+}
+
+/// Curves in a panel, and lines of the ranking.
+const SHOWN: usize = 6;
+const RANKED: usize = 20;
+
+pub(super) fn run(args: &SensitivityArgs, messages: &mut Messages) -> Result<Ending, Failure> {
+    let experiment = args.model.experiment(None, messages)?;
+    let model = model::compile(&experiment, messages)?;
+    let wanted = variables(args, &model)?;
+    let moved = parameters(args, &model)?;
+    let mut settings = Settings { wanted, ..Settings::from_experiment(&model.dae.experiment) };
+    if let Some(stop) = args.stop_time {
+        settings.stop_time = stop;
+        settings.interval = (stop - settings.start_time) / 500.0;
+    }
+    settings.tolerance = settings.tolerance.min(1e-9);
+    let found = sensitivity(&model, &settings, &moved, interrupt::flag())
+        .map_err(|why| Failure::new(Code::StepTooSmall, format!("a run failed: {why}")))?;
+    match &args.output_file {
+        Some(path) => write_text(&path.display().to_string(), &csv(&found)?)?,
+        None => files::print(&words(&found))?,
+    }
+    if let Some(path) = &args.plot {
+        plot::write(&picture(&found, &model.dae.class), &[], path, messages)?;
+    }
+    Ok(Ending::Fine)
+}
+
+fn variables(args: &SensitivityArgs, model: &Model) -> Result<Vec<VarId>, Failure> {
+    if !args.variables.is_empty() {
+        return columns::choose(&model.dae, &args.variables, &Target::Stdout);
+    }
+    let all = || (0..).map(VarId).zip(&model.flat.variables);
+    let outputs: Vec<VarId> = all().filter(|(_, v)| v.output && v.ty == Type::Real).map(|(v, _)| v).collect();
+    let states = || model.dae.states.iter().copied().filter(|v| v.index() < model.flat.variables.len());
+    Ok(if outputs.is_empty() { states().collect() } else { outputs })
+}
+
+fn parameters(args: &SensitivityArgs, model: &Model) -> Result<Vec<Moved>, Failure> {
+    let system = &model.system;
+    let mut values = system.layout.values();
+    system.evaluate_parameters(&mut values, &[]);
+    let globs = Globs::new(&args.parameters);
+    let flat = &model.flat;
+    let fits = |v: VarId| {
+        let variable = &flat.variables[v.index()];
+        let real = variable.variability == Variability::Parameter && variable.ty == Type::Real;
+        let named = if globs.is_empty() { !variable.hidden && is_root(flat, v) } else { globs.matches(&variable.name) };
+        real && named
+    };
+    let all = (0..u32::try_from(flat.variables.len()).expect("fewer than 2^32 variables")).map(VarId);
+    let moved: Vec<Moved> = all
+        .filter(|v| fits(*v))
+        .map(|v| {
+            let value = values[system.layout.var(v)];
+            let size = if value == 0.0 { system.nominal(v, &values) } else { value.abs() };
+            Moved { variable: v, name: flat.variables[v.index()].name.clone(), value, size }
+        })
+        .filter(|m| m.size.is_finite() && m.size < 1e30)
+        .collect();
+    if moved.is_empty() {
+        let d = Diagnostic::new(Code::BadArgument, "there is no such parameter that can move during runs");
+        return Err(d.help("`bramah check FILE --emit flat` lists all parameters").into());
+    }
+    Ok(moved)
+}
+
+fn words(found: &Sensitivity) -> String {
+    let names: Vec<&str> = found.plain.signals.iter().map(|s| s.name.as_str()).collect();
+    let mut out = format!("per cent of the range for 1 % of the parameter: {}\n", names.join(", "));
+    let width = found.parameters.iter().map(|p| p.0.len()).max().unwrap_or(0);
+    let order = found.ranking();
+    for &p in order.iter().take(RANKED) {
+        let weights: Vec<String> =
+            (0..names.len()).map(|v| format!("{:>9}", number::rounded(found.weight(p, v), 3))).collect();
+        out += &format!("  {:width$} {}\n", found.parameters[p].0, weights.join(" "));
+    }
+    if order.len() > RANKED {
+        out += &format!("  and {} weaker ones\n", order.len() - RANKED);
+    }
+    out
+}
+
+fn csv(found: &Sensitivity) -> Result<String, Failure> {
+    let mut out = Vec::new();
+    let pairs: Vec<(usize, usize)> =
+        (0..found.parameters.len()).flat_map(|p| (0..found.plain.signals.len()).map(move |v| (p, v))).collect();
+    let name = |&(p, v): &(usize, usize)| {
+        Signal::new(format!("d {} / d ln {}", found.plain.signals[v].name, found.parameters[p].0))
+    };
+    let signals: Vec<Signal> = pairs.iter().map(name).collect();
+    let io = |e: std::io::Error| Failure::new(Code::FileAccess, e.to_string());
+    let mut writer = CsvWriter::new(&mut out, &signals).map_err(io)?;
+    for (row, &time) in found.plain.times.iter().enumerate() {
+        writer.row(time, pairs.iter().map(|&(p, v)| found.columns[p][v][row])).map_err(io)?;
+    }
+    writer.finish().map_err(io)?;
+    Ok(String::from_utf8_lossy(&out).into_owned())
+}
+
+/// One panel a variable, with the parameters that move it most.
+fn picture(found: &Sensitivity, class: &str) -> Figure {
+    let panels = (0..found.plain.signals.len()).map(|v| {
+        let mut order: Vec<usize> = (0..found.parameters.len()).collect();
+        order.sort_by(|&a, &b| found.weight(b, v).total_cmp(&found.weight(a, v)));
+        let curves = order.iter().take(SHOWN).enumerate().map(|(colour, &p)| Series {
+            name: found.parameters[p].0.clone(),
+            x: found.plain.times.clone(),
+            y: found.columns[p][v].clone(),
+            colour,
+            ..Series::default()
+        });
+        let signal = &found.plain.signals[v];
+        let unit = if signal.unit.is_empty() { String::new() } else { format!(" in {}", signal.unit) };
+        Panel {
+            x_label: "time in s".to_owned(),
+            y_label: format!("{} per relative change{unit}", signal.name),
+            series: curves.collect(),
+            ..Panel::default()
+        }
+    });
+    Figure { title: format!("Sensitivities of {class}"), panels: panels.collect(), shared_x: true }
+}

@@ -1,0 +1,255 @@
+//! `bramah steady`
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::linearize::{put, restless, run_to, state_at};
+use super::messages::Messages;
+use super::recorder::write_text;
+use super::request::ModelArgs;
+use super::{Ending, Failure, columns, files, interrupt, model, plot};
+use crate::analysis::balance::{self, Budget};
+use crate::analysis::grid;
+use crate::analysis::linear::{Choice, Chosen};
+use crate::analysis::steady;
+use crate::compile::Model;
+use crate::diag::{Code, Diagnostic};
+use crate::experiment::seconds;
+use crate::expr::VarId;
+use crate::plot::{png, sankey};
+use crate::results::{CsvWriter, Signal, Trajectory, number};
+use crate::solve::{Control, Settings, State, signals, simulate};
+use crate::structure::StateChoice;
+
+/// Operating points: where nothing changes any more, and where the power goes there
+#[derive(Args, Debug)]
+#[command(after_help = "\
+With --over the operating point is followed from value to value of an input or parameter, each from the one before: the
+way to points that cannot be reached from the start at once. Power balances count what flows into each top-level component
+through its ports: positive is lost (or stored), negative comes from a source.
+
+Examples:
+  bramah steady Press.mo --variables 'pump.*,relief.q'
+  bramah steady ClosedCircuit.Reduced --over u=0:8:17 -o points.csv
+  bramah steady Press.mo --balance --sankey power.svg
+  bramah steady Press.mo --transient --balance         mean powers over the whole run instead
+
+Exit status: 0 fine; 1 the model is wrong or has no steady state there (points found are written); 2 bad arguments or
+files.")]
+pub(super) struct SteadyArgs {
+    #[command(flatten)]
+    model: ModelArgs,
+    /// Begin the search at this time of a run [default: the start]
+    #[arg(long, value_name = "TIME", value_parser = seconds, allow_hyphen_values = true)]
+    from: Option<f64>,
+    /// Follow the point over values of an input or parameter, in its unit or with one: `u=0:8:17`
+    #[arg(long, value_name = "NAME=VALUES", conflicts_with = "transient")]
+    over: Option<String>,
+    /// Variables to tell, such as 'cyl.*' [default: states and top-level outputs]; may be repeated
+    #[arg(long, value_name = "GLOB,...")]
+    variables: Vec<String>,
+    /// Where to write the points as CSV, `-` for stdout [default: a table on stdout]
+    #[arg(short, long, value_name = "CSV")]
+    output_file: Option<PathBuf>,
+    /// Tell the power into each component
+    #[arg(long)]
+    balance: bool,
+    /// A picture of the power from component to component: .svg or .png
+    #[arg(long, value_name = "FILE")]
+    sankey: Option<PathBuf>,
+    /// Power over the whole run instead of at a steady state
+    #[arg(long)]
+    transient: bool,
+}
+
+pub(super) fn run(args: &SteadyArgs, messages: &mut Messages) -> Result<Ending, Failure> {
+    let experiment = args.model.experiment(None, messages)?;
+    let model = model::compile(&experiment, messages)?;
+    if args.transient {
+        let ports = balance::ports(&model.flat);
+        let settings = Settings { wanted: balance::wanted(&ports), ..Settings::from_experiment(&model.dae.experiment) };
+        let (_, rows) = run_to(&model, &settings)?;
+        power(args, &model, &ports, &rows, messages)?;
+        return Ok(Ending::Fine);
+    }
+    let (over, values) = over(args, &model)?;
+    let chosen = Chosen::new(&model.flat, &Choice { inputs: over.clone(), outputs: Vec::new() }, &[]);
+    let chosen = chosen.map_err(|diagnostics| Failure { diagnostics })?;
+    let wanted = wanted(args, &model, &chosen)?;
+    let mut table = Trajectory::new(signals(&model.dae, &wanted));
+    let moved = chosen.asked();
+    let mut state = state_at(&model, args.from)?.0;
+    let mut failed = None;
+    for &value in &values {
+        if let Some(&v) = moved.first().filter(|_| !over.is_empty()) {
+            state.values[v.index()] = value;
+        }
+        match steady::steady(&chosen, &state) {
+            Ok((found, _)) => {
+                put(&chosen, &found.x, &mut state);
+                let (rows, after) = settled(&model, &chosen, &state, &wanted)?;
+                table.push(value, &rows);
+                state = after;
+            }
+            Err(why) => {
+                failed = Some(why);
+                break;
+            }
+        }
+    }
+    tell(args, &over, &table)?;
+    if let Some(why) = failed {
+        let mut failure = restless(&why, &chosen);
+        if let (Some(d), false) = (failure.diagnostics.first_mut(), over.is_empty()) {
+            let value = values.get(table.len()).copied().unwrap_or(f64::NAN);
+            d.notes.push(format!("at {} = {}", over[0], number::rounded(value, 6)));
+        }
+        return Err(failure);
+    }
+    if args.balance || args.sankey.is_some() {
+        let ports = balance::ports(&model.flat);
+        let rows = moment(&model, &chosen, &state, &balance::wanted(&ports))?.0;
+        power(args, &model, &ports, &rows, messages)?;
+    }
+    Ok(Ending::Fine)
+}
+
+/// What is moved, and its values; one point without a name where nothing is.
+fn over(args: &SteadyArgs, model: &Model) -> Result<(Vec<String>, Vec<f64>), Failure> {
+    let Some(entry) = &args.over else { return Ok((Vec::new(), vec![0.0])) };
+    let wrong = |why: String| Failure::new(Code::BadArgument, format!("`--over {entry}`: {why}"));
+    let (name, text) = entry.split_once('=').ok_or_else(|| wrong("NAME=VALUES is expected".to_owned()))?;
+    let name = name.trim();
+    let unit = model.flat.variables.iter().find(|v| v.name == name).and_then(|v| v.unit.as_deref()).unwrap_or("");
+    let values = grid::values(text, unit).map_err(wrong)?;
+    Ok((vec![name.to_owned()], values))
+}
+
+fn wanted(args: &SteadyArgs, model: &Model, chosen: &Chosen) -> Result<Vec<VarId>, Failure> {
+    if !args.variables.is_empty() {
+        return columns::choose(&model.dae, &args.variables, &super::recorder::Target::Stdout);
+    }
+    let outputs = (0..).map(VarId).zip(&model.flat.variables).filter(|(_, v)| v.output).map(|(v, _)| v);
+    let states = chosen.plan.state_variables().filter(|v| v.index() < model.flat.variables.len());
+    let mut all: Vec<VarId> = states.chain(outputs).collect();
+    all.sort();
+    all.dedup();
+    Ok(all)
+}
+
+/// Seconds over which a steady state is watched, to see how fast positions move.
+const MOMENT: f64 = 1e-3;
+
+/// A short run from a state, with the values of the raised parameters in it.
+fn moment(model: &Model, chosen: &Chosen, state: &State, wanted: &[VarId]) -> Result<(Trajectory, State), Failure> {
+    let settings = Settings {
+        start_time: state.time,
+        stop_time: state.time + MOMENT,
+        interval: MOMENT,
+        tolerance: 1e-8,
+        parameters: chosen.raised().map(|v| (v, state.values[v.index()])).collect(),
+        wanted: wanted.to_vec(),
+        event_rows: false,
+        ..Settings::from_experiment(&model.dae.experiment)
+    };
+    let mut rows = Trajectory::new(signals(&model.dae, wanted));
+    let mut reselect = |choice: &StateChoice| model.with_states(choice);
+    let mut control =
+        Control { interrupt: Some(interrupt::flag()), reselect: Some(&mut reselect), ..Control::default() };
+    let run = simulate(&model.system, &settings, &[], Some(state), &mut rows, &mut control);
+    if run.end.is_success() { Ok((rows, run.state)) } else { Err(Failure { diagnostics: run.diagnostics }) }
+}
+
+/// The values at a steady state, and the state with everything that follows from it.
+fn settled(model: &Model, chosen: &Chosen, state: &State, wanted: &[VarId]) -> Result<(Vec<f64>, State), Failure> {
+    let (rows, mut after) = moment(model, chosen, state, wanted)?;
+    after.time = state.time;
+    Ok((rows.columns.iter().map(|c| c[0]).collect(), after))
+}
+
+fn tell(args: &SteadyArgs, over: &[String], table: &Trajectory) -> Result<(), Failure> {
+    if let Some(path) = &args.output_file {
+        let mut out = Vec::new();
+        let io = |e: std::io::Error| files::access(path, "written", &e);
+        let mut all: Vec<Signal> = over.iter().map(Signal::new).collect();
+        all.extend(table.signals.iter().cloned());
+        let mut writer = CsvWriter::new(&mut out, &all).map_err(io)?;
+        for (i, &value) in table.times.iter().enumerate() {
+            let row = over.iter().map(|_| value).chain(table.columns.iter().map(|c| c[i]));
+            writer.row(i as f64, row).map_err(io)?;
+        }
+        writer.finish().map_err(io)?;
+        let text = String::from_utf8_lossy(&out).replacen("time", "point", 1);
+        return write_text(&path.display().to_string(), &text);
+    }
+    let mut out = String::new();
+    for (i, value) in table.times.iter().enumerate() {
+        if let Some(name) = over.first() {
+            out += &format!("{name} = {}\n", number::rounded(*value, 6));
+        }
+        for (signal, column) in table.signals.iter().zip(&table.columns) {
+            out += &format!("  {} = {} {}\n", signal.name, number::rounded(column[i], 7), signal.unit);
+        }
+    }
+    files::print(&out)
+}
+
+/// The power balance in words, and its picture.
+fn power(
+    args: &SteadyArgs,
+    model: &Model,
+    ports: &[balance::Port],
+    rows: &Trajectory,
+    messages: &Messages,
+) -> Result<(), Failure> {
+    let powers = balance::powers(ports, rows);
+    files::print(&balance_words(&balance::budgets(ports, &powers, &model.graph)))?;
+    let Some(path) = &args.sankey else { return Ok(()) };
+    let streams = balance::streams(ports, &powers, &model.graph);
+    let most = streams.iter().map(|s| s.power).fold(0.0, f64::max);
+    let flows: Vec<sankey::Flow> = streams
+        .into_iter()
+        .filter(|s| s.power > 1e-4 * most)
+        .map(|s| sankey::Flow { label: watts(s.power), from: s.from, to: s.to, size: s.power })
+        .collect();
+    draw(&sankey::svg(&format!("{}: power", model.dae.class), &flows), path, messages)
+}
+
+fn draw(svg: &str, path: &Path, messages: &Messages) -> Result<(), Failure> {
+    match path.extension().map(|e| e.to_string_lossy().to_lowercase()).as_deref() {
+        Some("svg") => files::write(path, svg.as_bytes())?,
+        Some("png") => {
+            let bytes = png::write(svg).map_err(|e| Failure::new(Code::BadArgument, e))?;
+            files::write(path, &bytes)?;
+        }
+        _ => {
+            let text = format!("this picture is written as .svg or .png, not as `{}`", path.display());
+            return Err(Diagnostic::new(Code::BadArgument, text).into());
+        }
+    }
+    messages.remark(&format!("wrote {}", plot::stem(path)));
+    Ok(())
+}
+
+fn watts(power: f64) -> String {
+    if power.abs() >= 1e4 {
+        format!("{} kW", number::rounded(power / 1e3, 4))
+    } else {
+        format!("{} W", number::rounded(power, 4))
+    }
+}
+
+fn balance_words(budgets: &[Budget]) -> String {
+    let mut out = String::from("power into components, positive is lost or stored\n");
+    let most = budgets.iter().map(|b| b.net.abs()).fold(0.0, f64::max);
+    let width = budgets.iter().map(|b| b.component.len()).max().unwrap_or(0);
+    for b in budgets.iter().filter(|b| b.ports.iter().any(|p| p.1.abs() > 1e-9 * most)) {
+        let ports: Vec<String> = b.ports.iter().map(|(n, p)| format!("{n} {}", watts(*p))).collect();
+        out += &format!("  {:width$}  {:>12}   ({})\n", b.component, watts(b.net), ports.join(", "));
+    }
+    let sources: f64 = budgets.iter().map(|b| b.net.min(0.0)).sum();
+    let rest: f64 = budgets.iter().map(|b| b.net).sum();
+    out += &format!("  sources give {}, the balance closes to {}\n", watts(-sources), watts(rest));
+    out
+}

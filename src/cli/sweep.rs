@@ -1,0 +1,296 @@
+//! `bramah sweep`
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::Ordering;
+
+use clap::Args;
+use rayon::prelude::*;
+
+use super::files::{self, access};
+use super::messages::Messages;
+use super::request::ModelArgs;
+use super::{Ending, Failure, columns, interrupt, model, plot};
+use crate::analysis::sweep::{Plan, Table, fingerprint, indices, scatter};
+use crate::compile::Model;
+use crate::diag::{Code, Diagnostic};
+use crate::experiment::{Experiment, Sampling, Sweep};
+use crate::flat;
+use crate::results::{CsvWriter, Trajectory, number};
+use crate::solve::{Settings, signals};
+
+/// Many runs of one model, on all cores, into one table
+#[derive(Args, Debug)]
+#[command(after_help = "\
+The experiment file says in [sweep] which parameters vary how, and which results are kept (docs/sweep.md). Each finished
+run is a line of the table at once: after an interruption the same command goes on where it stopped. A run that fails is a
+line with its reason.
+
+Examples:
+  bramah sweep press.toml -o press.csv --plot press.svg
+  bramah sweep press.toml --part 3/10          one share, into press.3-of-10.csv
+  bramah sweep --merge -o all.csv press.*-of-10.csv
+
+Exit status: 0 all runs are in the table, failed ones among them; 1 the model is wrong or the sweep was interrupted;
+2 bad arguments or files.")]
+pub(super) struct SweepArgs {
+    /// The experiment file; with --merge the tables to join
+    #[arg(required = true, value_name = "EXPERIMENT.toml")]
+    files: Vec<String>,
+    /// Value of a parameter for all runs; may be repeated
+    #[arg(short, long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    set: Vec<String>,
+    /// The table [default: the experiment's name with .csv]
+    #[arg(short, long, value_name = "CSV")]
+    output_file: Option<PathBuf>,
+    /// A picture of the results over the parameters: .svg, .png or .html
+    #[arg(long, value_name = "FILE")]
+    plot: Option<PathBuf>,
+    /// Also write the rows of each run into this folder, as run_N.csv
+    #[arg(long, value_name = "DIR")]
+    trajectories: Option<PathBuf>,
+    /// Only the K-th of N shares of the runs
+    #[arg(long, value_name = "K/N", value_parser = part)]
+    part: Option<(usize, usize)>,
+    /// Join tables of parts
+    #[arg(long, conflicts_with_all = ["part", "trajectories", "set"])]
+    merge: bool,
+    /// Runs at the same time [default: as many as there are cores]
+    #[arg(short, long, value_name = "N")]
+    jobs: Option<usize>,
+}
+
+fn part(text: &str) -> Result<(usize, usize), String> {
+    let both = text.split_once('/').and_then(|(k, n)| Some((k.trim().parse().ok()?, n.trim().parse().ok()?)));
+    both.filter(|&(k, n): &(usize, usize)| k >= 1 && k <= n)
+        .ok_or_else(|| "K/N is expected, with 1 <= K <= N".to_owned())
+}
+
+pub(super) fn run(args: &SweepArgs, messages: &mut Messages) -> Result<Ending, Failure> {
+    if args.merge {
+        return merge(args, messages);
+    }
+    let [file] = &args.files[..] else {
+        return Err(Failure::new(Code::BadArgument, "one experiment file is expected; several tables need --merge"));
+    };
+    let model_args = ModelArgs {
+        file: file.clone(),
+        model: None,
+        set: args.set.iter().map(|s| assignment(s)).collect::<Result<_, _>>()?,
+        library: Vec::new(),
+        deny_warnings: false,
+    };
+    let experiment = model_args.experiment(None, messages)?;
+    let Some(sweep) = experiment.sweep.clone() else {
+        let d = Diagnostic::new(Code::BadExperiment, format!("`{file}` has no section `[sweep]`"));
+        return Err(d.help("say there which parameters vary; docs/sweep.md shows how").into());
+    };
+    let model = model::compile(&experiment, messages)?;
+    let plan = Plan::new(&model, &sweep).map_err(|diagnostics| Failure { diagnostics })?;
+    let settings = settings(args, &experiment, &model, &plan)?;
+    let output = output(args, file);
+    let table = execute(args, &model, &plan, &settings, &output, messages)?;
+    report(args, &sweep, &plan, &table, &output, messages)
+}
+
+fn assignment(text: &str) -> Result<(String, String), Failure> {
+    let wrong = || Failure::new(Code::BadArgument, format!("`--set {text}`: NAME=VALUE is expected"));
+    let (name, value) = text.split_once('=').ok_or_else(wrong)?;
+    Ok((name.trim().to_owned(), value.trim().to_owned()))
+}
+
+fn output(args: &SweepArgs, file: &str) -> PathBuf {
+    let whole = args.output_file.clone().unwrap_or_else(|| Path::new(file).with_extension("csv"));
+    match args.part {
+        Some((k, n)) if args.output_file.is_none() => whole.with_extension(format!("{k}-of-{n}.csv")),
+        _ => whole,
+    }
+}
+
+fn settings(args: &SweepArgs, experiment: &Experiment, model: &Model, plan: &Plan) -> Result<Settings, Failure> {
+    let annotation = &model.dae.experiment;
+    let mut settings = Settings::from_experiment(&flat::Experiment {
+        start_time: experiment.start_time.or(annotation.start_time),
+        stop_time: experiment.stop_time.or(annotation.stop_time),
+        interval: experiment.output_interval.or(annotation.interval),
+        tolerance: experiment.relative_tolerance.or(annotation.tolerance),
+    });
+    settings.wanted.clone_from(&plan.wanted);
+    if args.trajectories.is_some() {
+        let target = super::recorder::Target::Stdout;
+        let more = columns::choose(&model.dae, &experiment.variables, &target)?;
+        settings.wanted.extend(more.into_iter().filter(|v| !plan.wanted.contains(v)));
+    }
+    Ok(settings)
+}
+
+/// The table as far as an earlier start of the same sweep made it.
+fn resumed(path: &Path, empty: Table) -> Result<Table, Failure> {
+    let Ok(text) = std::fs::read_to_string(path) else { return Ok(empty) };
+    let other = |why: &str| {
+        let d = Diagnostic::new(Code::FileAccess, format!("`{}` exists, and {why}", path.display()));
+        Failure::from(d.help("remove it, or choose another name with --output-file"))
+    };
+    let table = Table::read(&text).map_err(|e| other(&e))?;
+    let mut whole = empty;
+    whole.merge(table).map_err(|e| other(&e))?;
+    Ok(whole)
+}
+
+fn execute(
+    args: &SweepArgs,
+    model: &Model,
+    plan: &Plan,
+    settings: &Settings,
+    output: &Path,
+    messages: &Messages,
+) -> Result<Table, Failure> {
+    let names: Vec<String> =
+        plan.varied.iter().map(|v| v.name.clone()).chain(plan.results.iter().map(|r| r.0.clone())).collect();
+    let mut words = names.clone();
+    words.push(model.dae.class.clone());
+    words.extend(plan.results.iter().map(|r| format!("{:?}", r.1)));
+    words.push(format!("{} {} {}", settings.start_time, settings.stop_time, settings.tolerance));
+    words.extend(args.set.iter().cloned());
+    let empty = Table::new(fingerprint(&words, &plan.samples), plan.samples.len(), names);
+    let mut table = resumed(output, empty)?;
+    let (k, n) = args.part.unwrap_or((1, 1));
+    let all: Vec<usize> = (1..=plan.samples.len()).filter(|run| (run - 1) % n == k - 1).collect();
+    let open: Vec<usize> = all.iter().copied().filter(|run| !table.rows.contains_key(run)).collect();
+    if open.len() < all.len() {
+        messages.remark(&format!(
+            "{} of {} runs are in {} already",
+            all.len() - open.len(),
+            all.len(),
+            output.display()
+        ));
+    }
+    if let Some(folder) = &args.trajectories {
+        std::fs::create_dir_all(folder).map_err(|e| access(folder, "made", &e))?;
+    }
+    // what was torn at the end of an interrupted table goes
+    files::write(output, table.text().as_bytes())?;
+    let appending = std::fs::OpenOptions::new().append(true).open(output).map_err(|e| access(output, "written", &e))?;
+    let shared = Mutex::new((appending, Vec::new(), None));
+    let work = || open.par_iter().for_each(|&run| one(args, model, plan, settings, run, &shared));
+    match args.jobs {
+        Some(jobs) => rayon::ThreadPoolBuilder::new()
+            .num_threads(jobs.max(1))
+            .build()
+            .map_err(|e| Failure::new(Code::BadArgument, e.to_string()))?
+            .install(work),
+        None => work(),
+    }
+    let (_, rows, failed) = shared.into_inner().expect("no run panics while it holds the table");
+    table.rows.extend(rows);
+    if let Some(error) = failed {
+        return Err(access(output, "written", &error));
+    }
+    if interrupt::flag().load(Ordering::Relaxed) {
+        let text = format!("interrupted after {} of {} runs", table.rows.len(), all.len());
+        return Err(Diagnostic::new(Code::Interrupted, text).help("the same command goes on from here").into());
+    }
+    files::write(output, table.text().as_bytes())?;
+    Ok(table)
+}
+
+type Shared = Mutex<(std::fs::File, Vec<(usize, (Vec<f64>, String))>, Option<std::io::Error>)>;
+
+/// One run, and its line in the table.
+fn one(args: &SweepArgs, model: &Model, plan: &Plan, settings: &Settings, run: usize, shared: &Shared) {
+    let stop = interrupt::flag();
+    if stop.load(Ordering::Relaxed) {
+        return;
+    }
+    let outcome = plan.run(model, settings, run - 1, stop);
+    if stop.load(Ordering::Relaxed) {
+        return;
+    }
+    let (results, status) = match outcome {
+        Ok((results, rows)) => {
+            let written = args.trajectories.as_ref().map(|folder| trajectory(folder, run, model, settings, &rows));
+            (results, written.and_then(Result::err).map_or_else(|| "ok".to_owned(), |e| e.to_string()))
+        }
+        Err(why) => (vec![f64::NAN; plan.results.len()], why),
+    };
+    let values: Vec<f64> = plan.samples[run - 1].iter().copied().chain(results).collect();
+    let mut shared = shared.lock().expect("no run panics while it holds the table");
+    if let Err(e) = shared.0.write_all(Table::line(run, &values, &status).as_bytes()) {
+        shared.2.get_or_insert(e);
+    }
+    shared.1.push((run, (values, status)));
+}
+
+fn trajectory(folder: &Path, run: usize, model: &Model, settings: &Settings, rows: &Trajectory) -> std::io::Result<()> {
+    let file = std::io::BufWriter::new(std::fs::File::create(folder.join(format!("run_{run}.csv")))?);
+    let mut writer = CsvWriter::new(file, &signals(&model.dae, &settings.wanted))?;
+    for (i, &time) in rows.times.iter().enumerate() {
+        writer.row(time, rows.columns.iter().map(|c| c[i]))?;
+    }
+    writer.finish().map(|_| ())
+}
+
+fn report(
+    args: &SweepArgs,
+    sweep: &Sweep,
+    plan: &Plan,
+    table: &Table,
+    output: &Path,
+    messages: &Messages,
+) -> Result<Ending, Failure> {
+    let failed = table.rows.values().filter(|r| r.1 != "ok").count();
+    let bad = if failed > 0 { format!(", {failed} failed (see the column `status`)") } else { String::new() };
+    messages.remark(&format!("{} runs in {}{bad}", table.rows.len(), output.display()));
+    if sweep.method == Sampling::Sobol && table.rows.len() == table.runs {
+        files::print(&sobol_words(sweep, plan, table))?;
+    }
+    if let Some(path) = &args.plot {
+        let title = format!("{} runs", table.rows.len());
+        plot::write(&scatter(table, plan.varied.len(), &title), &[], path, messages)?;
+    }
+    Ok(Ending::Fine)
+}
+
+/// First-order and total indices of each result.
+fn sobol_words(sweep: &Sweep, plan: &Plan, table: &Table) -> String {
+    let d = plan.varied.len();
+    let mut out = String::new();
+    for (r, (name, _)) in plan.results.iter().enumerate() {
+        out += &format!("{name}: share of the variance, alone and in all, with the 95 % confidence\n");
+        match indices(&table.column(d + r), d, sweep.seed) {
+            None => out += "  not told: it does not vary, or too few runs succeeded\n",
+            Some(found) => {
+                for (v, i) in plan.varied.iter().zip(found) {
+                    let shown = |x: f64| number::rounded(x, 3);
+                    let (first, total) = (shown(i.first), shown(i.total));
+                    let (fc, tc) = (number::rounded(i.first_confidence, 2), number::rounded(i.total_confidence, 2));
+                    out += &format!("  {}: {first} +- {fc}, {total} +- {tc}\n", v.name);
+                }
+            }
+        }
+    }
+    out
+}
+
+fn merge(args: &SweepArgs, messages: &Messages) -> Result<Ending, Failure> {
+    let Some(output) = &args.output_file else {
+        return Err(Failure::new(Code::BadArgument, "--merge needs --output-file for the joined table"));
+    };
+    let mut whole: Option<Table> = None;
+    for file in &args.files {
+        let path = Path::new(file);
+        let text = std::fs::read_to_string(path).map_err(|e| access(path, "read", &e))?;
+        let wrong = |e: String| Failure::new(Code::BadData, format!("`{file}` cannot be joined: {e}"));
+        let table = Table::read(&text).map_err(wrong)?;
+        match &mut whole {
+            None => whole = Some(table),
+            Some(whole) => whole.merge(table).map_err(wrong)?,
+        }
+    }
+    let Some(whole) = whole else { return Ok(Ending::Fine) };
+    files::write(output, whole.text().as_bytes())?;
+    let missing = whole.runs - whole.rows.len().min(whole.runs);
+    messages.remark(&format!("{} runs in {}, {missing} missing", whole.rows.len(), output.display()));
+    Ok(Ending::Fine)
+}

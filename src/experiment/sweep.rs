@@ -1,0 +1,183 @@
+//! The section `[sweep]` of an experiment file: which parameters vary how, and what is kept of each run.
+//!
+//! ```toml
+//! [sweep]
+//! method = "grid"                       # list, latin-hypercube, sobol, monte-carlo
+//! count = 100                           # for the last three
+//! seed = 1
+//!
+//! [sweep.parameters]
+//! "relief.p_set" = "150:200:6 bar"      # grid, list: values, or FROM:TO:COUNT
+//! "pump.D" = { min = "1 ml", max = "2 ml" }
+//! "cyl.m" = { sigma = "3 %" }           # monte-carlo: around the model's value
+//!
+//! [sweep.results]
+//! peak = "max(cyl.v)"
+//! ```
+
+use toml::de::DeValue;
+
+use super::table::{Reader, Value, scalar};
+
+/// How samples are chosen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Sampling {
+    /// All combinations of values.
+    #[default]
+    Grid,
+    /// The first values of all parameters, then the second ones, and so on.
+    List,
+    /// Each parameter's range in as many equal parts as samples, one sample in each.
+    LatinHypercube,
+    /// A Sobol' sequence in the design that gives sensitivity indices.
+    Sobol,
+    /// Independent random numbers.
+    MonteCarlo,
+}
+
+const METHODS: &[(&str, Sampling)] = &[
+    ("grid", Sampling::Grid),
+    ("list", Sampling::List),
+    ("latin-hypercube", Sampling::LatinHypercube),
+    ("sobol", Sampling::Sobol),
+    ("monte-carlo", Sampling::MonteCarlo),
+];
+
+/// How one parameter varies. Values are as written, in the parameter's unit or with one.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Spread {
+    /// `1,2,5` or `FROM:TO:COUNT`, with a unit at the end for all.
+    Values(String),
+    /// Evenly between two values.
+    Range {
+        /// The smallest.
+        min: String,
+        /// The largest.
+        max: String,
+        /// Evenly over the logarithm.
+        logarithmic: bool,
+    },
+    /// Normally around the model's value, log-normally where that is positive and the deviation relative.
+    Sigma(String),
+}
+
+/// A sweep.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Sweep {
+    /// How samples are chosen.
+    pub method: Sampling,
+    /// How many, where values do not say.
+    pub count: usize,
+    /// Of the random numbers.
+    pub seed: u64,
+    /// Parameters and how they vary.
+    pub parameters: Vec<(String, Spread)>,
+    /// Names of results and their expressions.
+    pub results: Vec<(String, String)>,
+}
+
+const KEYS: &[&str] = &["method", "count", "seed", "parameters", "results"];
+const SPREAD_KEYS: &[&str] = &["min", "max", "log", "sigma"];
+
+/// Reads the section.
+pub(super) fn sweep(reader: &mut Reader, value: &Value<'_>) -> Option<Sweep> {
+    let DeValue::Table(table) = value.get_ref() else {
+        reader.wrong_kind("sweep", value, "a table");
+        return None;
+    };
+    let mut sweep = Sweep { count: 100, seed: 1, ..Sweep::default() };
+    for (key, value) in table {
+        match key.get_ref().as_ref() {
+            "method" => sweep.method = method(reader, value),
+            "count" => sweep.count = whole(reader, "count", value) as usize,
+            "seed" => sweep.seed = whole(reader, "seed", value),
+            "parameters" => parameters(reader, "", value, &mut sweep.parameters),
+            "results" => results(reader, value, &mut sweep.results),
+            other => reader.unknown(other, &key.span(), KEYS),
+        }
+    }
+    if sweep.parameters.is_empty() {
+        reader.report(&value.span(), "the sweep varies no parameter", "add them below `[sweep.parameters]`");
+    }
+    Some(sweep)
+}
+
+fn method(reader: &mut Reader, value: &Value<'_>) -> Sampling {
+    let text = value.get_ref().as_str().unwrap_or("");
+    match METHODS.iter().find(|m| m.0 == text) {
+        Some(m) => m.1,
+        None => {
+            let known: Vec<String> = METHODS.iter().map(|m| format!("`{}`", m.0)).collect();
+            reader.report(&value.span(), format!("`method` is one of {}", known.join(", ")), "this is none of them");
+            Sampling::Grid
+        }
+    }
+}
+
+fn whole(reader: &mut Reader, key: &str, value: &Value<'_>) -> u64 {
+    let number = scalar(value.get_ref()).and_then(|t| t.parse::<u64>().ok()).filter(|n| *n <= 100_000_000);
+    if number.is_none() {
+        reader.wrong_kind(key, value, "a whole number that is not negative");
+    }
+    number.unwrap_or(1)
+}
+
+/// Dotted keys arrive as tables inside tables.
+fn parameters(reader: &mut Reader, prefix: &str, value: &Value<'_>, out: &mut Vec<(String, Spread)>) {
+    let DeValue::Table(table) = value.get_ref() else {
+        reader.wrong_kind("parameters", value, "a table of parameters");
+        return;
+    };
+    for (key, value) in table {
+        let name = if prefix.is_empty() { key.get_ref().to_string() } else { format!("{prefix}.{}", key.get_ref()) };
+        match value.get_ref() {
+            DeValue::Table(inner) if inner.iter().all(|(_, v)| v.get_ref().is_table()) && !inner.is_empty() => {
+                parameters(reader, &name, value, out);
+            }
+            DeValue::Table(_) => out.extend(spread(reader, value).map(|s| (name, s))),
+            DeValue::Array(items) => {
+                let all: Option<Vec<String>> = items.iter().map(|v| scalar(v.get_ref())).collect();
+                match all {
+                    Some(all) => out.push((name, Spread::Values(all.join(",")))),
+                    None => reader.wrong_kind(&name, value, "a list of numbers"),
+                }
+            }
+            other => match scalar(other) {
+                Some(text) => out.push((name, Spread::Values(text))),
+                None => reader.wrong_kind(&name, value, "values, or a table with `min` and `max`, or `sigma`"),
+            },
+        }
+    }
+}
+
+fn spread(reader: &mut Reader, value: &Value<'_>) -> Option<Spread> {
+    let table = value.get_ref().as_table()?;
+    let (mut min, mut max, mut sigma, mut logarithmic) = (None, None, None, false);
+    for (key, value) in table {
+        match key.get_ref().as_ref() {
+            "min" => min = scalar(value.get_ref()),
+            "max" => max = scalar(value.get_ref()),
+            "sigma" => sigma = scalar(value.get_ref()),
+            "log" => logarithmic = value.get_ref().as_bool().unwrap_or(false),
+            other => reader.unknown(other, &key.span(), SPREAD_KEYS),
+        }
+    }
+    match (min, max, sigma) {
+        (Some(min), Some(max), None) => Some(Spread::Range { min, max, logarithmic }),
+        (None, None, Some(sigma)) => Some(Spread::Sigma(sigma)),
+        _ => {
+            reader.report(&value.span(), "a parameter varies by `min` and `max`, or by `sigma`", "this one");
+            None
+        }
+    }
+}
+
+fn results(reader: &mut Reader, value: &Value<'_>, out: &mut Vec<(String, String)>) {
+    let DeValue::Table(table) = value.get_ref() else {
+        reader.wrong_kind("results", value, "a table of names and expressions");
+        return;
+    };
+    for (key, value) in table {
+        out.extend(reader.text(key.get_ref(), value).map(|t| (key.get_ref().to_string(), t)));
+    }
+}
