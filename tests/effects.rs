@@ -155,8 +155,8 @@ fn run(world: &dyn World, source: &str, class: &str) -> Trajectory {
     let times: Vec<f64> = (0..400).map(|k| f64::from(k) * 0.005).collect();
     let u: Vec<f64> = times.iter().map(|t| 60.0 * (7.0 * t).sin() + 20.0 * (31.0 * t).sin()).collect();
     let oil: Vec<f64> = times.iter().map(|t| 30.0 + 10.0 * t).collect();
-    simulation.input("u", &times, &u, Interpolation::Linear).unwrap();
-    simulation.input("T_oil", &times, &oil, Interpolation::Linear).unwrap();
+    simulation.input("u", &times, &u, Interpolation::Linear).expect("an input of the model");
+    simulation.input("T_oil", &times, &oil, Interpolation::Linear).expect("an input of the model");
     simulation.settings().tolerance = 1e-9;
     simulation.stop_time(1.5);
     simulation.run().unwrap_or_else(|e| panic!("{e}")).trajectory

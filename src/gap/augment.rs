@@ -386,7 +386,7 @@ impl<'a> Writer<'a> {
         let drifts = if drifts.is_empty() { String::new() } else { format!("({})", drifts.join(", ")) };
         let _ = writeln!(text, "  Plant {PLANT}{drifts};");
         let _ = write!(text, "{}equation\n{}", self.around.declarations, self.around.equations);
-        let _ = write!(text, "{}end {};\n", self.form.annotation, self.form.class);
+        let _ = writeln!(text, "{}end {};", self.form.annotation, self.form.class);
         text
     }
 }

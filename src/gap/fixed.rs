@@ -131,7 +131,7 @@ impl Classes {
         }
         let bases: Vec<String> = body.elements.iter().filter_map(base).collect();
         bases.into_iter().any(|base| {
-            let outer = (0..path.len()).rev().map(|n| [&path[..n], &[base.clone()]].concat().join("."));
+            let outer = (0..path.len()).rev().map(|n| [&path[..n], std::slice::from_ref(&base)].concat().join("."));
             outer.collect::<Vec<_>>().into_iter().any(|name| self.disconnect(&name, ends))
         })
     }
