@@ -3,7 +3,7 @@
 use crate::compile::{Outcome, Request, inspect};
 use crate::expr::eval::Evaluation;
 use crate::expr::{ExprId, Exprs, Node as Term, VarId};
-use crate::flat::{FlatModel, Type, Variability};
+use crate::flat::{Experiment, FlatModel, Type, Variability};
 use crate::instance::{ElementState, Instance, Node, ScopeId};
 use crate::network::Network;
 use crate::syntax::ast::ClassKind;
@@ -42,7 +42,7 @@ pub struct Port {
 pub struct NodeSet {
     /// Its ports in declaration order.
     pub ports: Vec<usize>,
-    /// Its potential depends on parameters only: a reservoir, a frame, a ground.
+    /// Its potential, or the rate of it, is given by parameters, time and inputs: a reservoir, a frame, a driven belt.
     pub fixed: bool,
     /// The model already contains the time derivative of its potential.
     pub has_rate: bool,
@@ -88,6 +88,8 @@ pub struct ModelInput {
 pub struct Circuit {
     /// Full name of the class.
     pub class: String,
+    /// The model's `experiment` annotation.
+    pub experiment: Experiment,
     /// Components, parents before children.
     pub components: Vec<Component>,
     /// Physical ports in declaration order.
@@ -117,6 +119,7 @@ struct Reader {
 impl Reader {
     fn read(mut self, instance: &mut Instance<'_, '_>, network: &Network, flat: &FlatModel) -> Circuit {
         self.circuit.class.clone_from(&flat.class);
+        self.circuit.experiment = flat.experiment;
         self.components(instance);
         self.nodes(instance, network);
         let rates = Rates::of(flat);
@@ -288,6 +291,8 @@ struct Rates<'a> {
     root: Vec<u32>,
     differentiated: BTreeSet<u32>,
     accelerated: BTreeSet<u32>,
+    /// Variables whose derivative parameters give.
+    steady: BTreeSet<u32>,
     fixed: BTreeSet<u32>,
     index: BTreeMap<&'a str, u32>,
 }
@@ -297,8 +302,9 @@ impl<'a> Rates<'a> {
         let count = u32::try_from(flat.variables.len()).expect("fewer than 2^32 variables");
         let index = (0u32..).zip(&flat.variables).map(|(i, v)| (v.name.as_str(), i)).collect();
         let root = (0..count).collect();
-        let (differentiated, accelerated, fixed) = (BTreeSet::new(), BTreeSet::new(), BTreeSet::new());
-        let mut rates = Rates { flat, root, differentiated, accelerated, fixed, index };
+        let none = BTreeSet::new;
+        let (differentiated, accelerated, steady, fixed) = (none(), none(), none(), none());
+        let mut rates = Rates { flat, root, differentiated, accelerated, steady, fixed, index };
         rates.unite();
         for e in &flat.equations {
             for side in [e.lhs, e.rhs] {
@@ -326,15 +332,18 @@ impl<'a> Rates<'a> {
         }
     }
 
-    /// A variable whose derivative is a variable that is itself differentiated.
+    /// Variables whose derivative is itself differentiated, or given by parameters.
     fn accelerations(&mut self) {
         for e in &self.flat.equations {
             for (one, other) in [(e.lhs, e.rhs), (e.rhs, e.lhs)] {
-                if let (Some(rate), Term::Der(x)) = (self.variable(one), self.flat.exprs.node(other))
-                    && self.differentiated.contains(&self.find(rate))
-                {
-                    let root = self.find(x.0);
+                let Term::Der(x) = self.flat.exprs.node(other) else { continue };
+                let root = self.find(x.0);
+                let rate = self.variable(one).map(|v| self.find(v));
+                if rate.is_some_and(|r| self.differentiated.contains(&r)) {
                     self.accelerated.insert(root);
+                }
+                if rate.is_some_and(|r| self.fixed.contains(&r)) || self.constant(one) {
+                    self.steady.insert(root);
                 }
             }
         }
@@ -348,10 +357,14 @@ impl<'a> Rates<'a> {
         }
     }
 
+    /// Given from outside: by parameters, time and inputs.
     fn constant(&self, e: ExprId) -> bool {
         let leaves = self.flat.exprs.dependencies(&[e]);
-        let steady = |v: &VarId| self.flat.variables[v.index()].variability <= Variability::Parameter;
-        leaves.ders.is_empty() && leaves.pres.is_empty() && !leaves.time && leaves.vars.iter().all(steady)
+        let given = |v: &VarId| {
+            let v = &self.flat.variables[v.index()];
+            v.input || v.variability <= Variability::Parameter
+        };
+        leaves.ders.is_empty() && leaves.pres.is_empty() && leaves.vars.iter().all(given)
     }
 
     fn find(&self, mut i: u32) -> u32 {
@@ -381,7 +394,7 @@ impl<'a> Rates<'a> {
         for name in potentials {
             let Some(&i) = self.index.get(name.as_str()) else { continue };
             let root = self.find(i);
-            node.fixed |= self.fixed.contains(&root);
+            node.fixed |= self.fixed.contains(&root) || self.steady.contains(&root);
             node.has_rate |= self.differentiated.contains(&root);
             node.has_acceleration |= self.accelerated.contains(&root);
         }

@@ -21,8 +21,6 @@ pub enum Attach {
     Bridge,
     /// From a node to one of fixed potential.
     Drain,
-    /// From any node to any other of its kind.
-    Transfer,
     /// Into a connection.
     Series,
     /// Between a variable and its recording.
@@ -80,6 +78,9 @@ pub struct Shape {
     pub grid: Vec<f64>,
     /// Counts in the unit of the signal, `grid` in its full scales.
     pub relative: bool,
+    /// Compared with the potential of the site, or with the difference of its two: values beyond the range that occurs
+    /// make no difference.
+    pub threshold: bool,
 }
 
 /// One effect model.
@@ -387,7 +388,6 @@ fn attach(name: &str) -> Option<Attach> {
         "Shunt" => Attach::Shunt,
         "Bridge" => Attach::Bridge,
         "Drain" => Attach::Drain,
-        "Transfer" => Attach::Transfer,
         "Series" => Attach::Series,
         "Sensor" => Attach::Sensor,
         "Command" => Attach::Command,
@@ -443,7 +443,8 @@ fn shapes(
         let grid =
             grid.filter(|g| !g.is_empty()).ok_or_else(|| format!("the grid of `{name}` is no list of numbers"))?;
         let unit = read.quantity(number, &name)?.unit;
-        Ok(Shape { unit, grid, relative: relative.contains(&name), name })
+        let threshold = texts(own, "threshold").contains(&name);
+        Ok(Shape { unit, grid, relative: relative.contains(&name), threshold, name })
     };
     list.arguments.iter().map(one).collect()
 }

@@ -253,16 +253,6 @@ fn at_component(circuit: &Circuit, effect: &Arc<Effect>, component: usize) -> Ve
             let one = |p: usize| low.iter().map(move |&l| (Site::Across(p, l), vec![p])).collect::<Vec<_>>();
             fitting.iter().copied().filter(|p| free(p)).flat_map(one).collect()
         }
-        Attach::Transfer => {
-            let others = circuit.nodes.iter().filter(|n| !n.fixed).map(|n| n.ports[0]);
-            let others: Vec<usize> = others.filter(|&p| fits(effect, &circuit.ports[p])).collect();
-            let other = |p: usize, o: &usize| circuit.rigid(*o) != circuit.rigid(p);
-            let one = |p: usize| {
-                let to = others.iter().copied().filter(|o| other(p, o));
-                to.map(|o| (Site::Across(p, o), vec![p])).collect::<Vec<_>>()
-            };
-            fitting.iter().copied().filter(|p| free(p)).flat_map(one).collect()
-        }
         Attach::Series => {
             fitting.iter().copied().filter(|&p| joined(circuit, p)).map(|p| (Site::Into(p), vec![p])).collect()
         }
@@ -422,7 +412,7 @@ fn identity(circuit: &Circuit, a: &Attachment) -> Identity {
 }
 
 fn directed(a: &Attachment) -> bool {
-    a.effect.as_ref().is_some_and(|e| e.directed || matches!(e.interface.attach, Attach::Transfer))
+    a.effect.as_ref().is_some_and(|e| e.directed)
 }
 
 /// One attachment for all that are the same; parallel bridges are listed in its place.
