@@ -20,6 +20,12 @@ use std::path::{Path, PathBuf};
 /// The instance of the nominal model inside the augmented one: `pump.w` becomes `plant.pump.w`.
 pub const PLANT: &str = "plant";
 
+/// The path under which the text is compiled.
+pub(super) const SOURCE: &str = "(gap)/Augmented.mo";
+
+/// The most terms in one sum: the parser limits the height of expressions.
+const LONGEST_SUM: usize = 100;
+
 /// A hypothesis with a name and values.
 #[derive(Clone, Debug)]
 pub struct Attached<'a> {
@@ -43,10 +49,29 @@ pub struct Augmented {
     pub signals: Vec<String>,
 }
 
+/// How the model is written.
+#[derive(Clone, Debug)]
+pub(super) struct Form<'a> {
+    /// Its name.
+    pub class: &'a str,
+    /// The nominal class is a copy from which connections cut by Series elements are already gone.
+    pub cut: bool,
+    /// Parameters of the nominal model with other values.
+    pub drifts: &'a [(String, f64)],
+    /// What stands before `end`.
+    pub annotation: String,
+}
+
 /// Writes the nominal model with effects attached.
 pub fn augment(circuit: &Circuit, attached: &[Attached<'_>], signals: &[Signal]) -> Augmented {
+    written(circuit, attached, signals, Form { class: "Augmented", cut: false, drifts: &[], annotation: String::new() })
+}
+
+/// Writes it in the form wanted.
+pub(super) fn written(circuit: &Circuit, attached: &[Attached<'_>], signals: &[Signal], form: Form<'_>) -> Augmented {
     Writer {
         circuit,
+        form,
         plant: Body::default(),
         around: Body::default(),
         taps: BTreeMap::new(),
@@ -65,12 +90,24 @@ pub fn compile(
     augmented: &Augmented,
     options: &lower::Options,
 ) -> Outcome<Model> {
-    let source = PathBuf::from("(gap)/Augmented.mo");
-    let overlay = Overlay { base: world, files: MemoryWorld::single(&source, augmented.text.clone()) };
+    let (overlay, request) = request(world, nominal, folder, &augmented.text, "Augmented");
+    crate::compile::compile(&overlay, &request, options)
+}
+
+/// A world with the text in it, and how to ask for its class.
+pub(super) fn request<'a>(
+    world: &'a dyn World,
+    nominal: &Request,
+    folder: Option<&Path>,
+    text: &str,
+    class: &str,
+) -> (Overlay<'a>, Request) {
+    let source = PathBuf::from(SOURCE);
+    let overlay = Overlay { base: world, files: MemoryWorld::single(&source, text) };
     let inner = |o: &Override| Override { name: format!("{PLANT}.{}", o.name), value: o.value.clone() };
     let mut request = Request {
         source,
-        model: Some("Augmented".into()),
+        model: Some(class.into()),
         overrides: nominal.overrides.iter().map(inner).collect(),
         libraries: nominal.libraries.clone(),
         beside: nominal.beside.clone(),
@@ -79,7 +116,7 @@ pub fn compile(
         request.beside.push(nominal.source.clone());
     }
     own_classes(world, folder, &mut request);
-    crate::compile::compile(&overlay, &request, options)
+    (overlay, request)
 }
 
 /// Declarations and equations of one class.
@@ -91,6 +128,7 @@ struct Body {
 
 struct Writer<'a> {
     circuit: &'a Circuit,
+    form: Form<'a>,
     plant: Body,
     around: Body,
     /// What is drawn from the nodes that have a tap.
@@ -104,8 +142,7 @@ struct Writer<'a> {
 impl<'a> Writer<'a> {
     fn write(mut self, attached: &[Attached<'_>], signals: &[Signal]) -> Augmented {
         let parameters = attached.iter().map(|a| self.parameters(a)).collect();
-        let places = attached.iter().flat_map(|a| &a.hypothesis.attachments);
-        self.cut = places.filter_map(|at| if let Site::Into(p) = at.site { Some(p) } else { None }).collect();
+        self.cut = cut(attached);
         self.rejoin();
         for a in attached {
             for (i, at) in a.hypothesis.attachments.iter().enumerate() {
@@ -220,10 +257,8 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Connections that a cut removes.
     fn broken(&self) -> impl Iterator<Item = (usize, usize)> {
-        let touches = |(a, b, _): &&(usize, usize, usize)| self.cut.contains(a) || self.cut.contains(b);
-        self.circuit.connections.iter().filter(touches).map(|&(a, b, _)| (a, b))
+        broken(self.circuit, &self.cut)
     }
 
     /// Gives an effect the potential of a port, in SI units.
@@ -261,13 +296,14 @@ impl<'a> Writer<'a> {
     /// The sum of all that is drawn from each node.
     fn draw(&mut self) {
         for (node, drawn) in &self.taps {
-            let sum = match &drawn[..] {
-                [] => "0".to_string(),
-                [first, rest @ ..] => rest.iter().fold(first.clone(), |sum, t| match t.strip_prefix('-') {
-                    Some(t) => format!("{sum} - {t}"),
-                    None => format!("{sum} + {t}"),
-                }),
-            };
+            let mut terms = vec![String::from("0")];
+            for (i, part) in drawn.chunks(LONGEST_SUM).enumerate() {
+                let name = format!("gap_tap_{}_{}", node + 1, i + 1);
+                let _ = writeln!(self.plant.declarations, "    Real {name};");
+                let _ = writeln!(self.plant.equations, "    {name} = {};", sum(part));
+                terms.push(name);
+            }
+            let sum = sum(&terms);
             let _ = writeln!(self.plant.equations, "    gap_tap_{}.drawn = {sum};", node + 1);
         }
     }
@@ -330,7 +366,7 @@ impl<'a> Writer<'a> {
     }
 
     fn text(&self) -> String {
-        let mut text = String::from("model Augmented\n");
+        let mut text = format!("model {}\n", self.form.class);
         for (i, (class, port)) in self.classes.iter().enumerate() {
             let through = &self.circuit.ports[*port].through.name;
             let _ = write!(
@@ -342,13 +378,42 @@ impl<'a> Writer<'a> {
         let name = |p: usize| &self.circuit.ports[p].name;
         let broken: Vec<String> =
             self.broken().map(|(a, b)| format!("break connect({}, {})", name(a), name(b))).collect();
-        let broken = if broken.is_empty() { String::new() } else { format!("({})", broken.join(", ")) };
+        let broken =
+            if broken.is_empty() || self.form.cut { String::new() } else { format!("({})", broken.join(", ")) };
         let _ = writeln!(text, "  model Plant\n    extends .{}{broken};", self.circuit.class);
         let _ = write!(text, "{}  equation\n{}  end Plant;\n", self.plant.declarations, self.plant.equations);
-        let _ = writeln!(text, "  Plant {PLANT};");
-        let _ = write!(text, "{}equation\n{}end Augmented;\n", self.around.declarations, self.around.equations);
+        let drifts: Vec<String> = self.form.drifts.iter().map(|(n, v)| format!("{n} = {v:e}")).collect();
+        let drifts = if drifts.is_empty() { String::new() } else { format!("({})", drifts.join(", ")) };
+        let _ = writeln!(text, "  Plant {PLANT}{drifts};");
+        let _ = write!(text, "{}equation\n{}", self.around.declarations, self.around.equations);
+        let _ = writeln!(text, "{}end {};", self.form.annotation, self.form.class);
         text
     }
+}
+
+/// Ports that Series elements take out of their nodes.
+pub(super) fn cut(attached: &[Attached<'_>]) -> BTreeSet<usize> {
+    let places = attached.iter().flat_map(|a| &a.hypothesis.attachments);
+    places.filter_map(|at| if let Site::Into(p) = at.site { Some(p) } else { None }).collect()
+}
+
+/// Connections that touch a port taken out.
+pub(super) fn broken(circuit: &Circuit, cut: &BTreeSet<usize>) -> impl Iterator<Item = (usize, usize)> {
+    let touches = |(a, b, _): &&(usize, usize, usize)| cut.contains(a) || cut.contains(b);
+    circuit.connections.iter().filter(touches).map(|&(a, b, _)| (a, b))
+}
+
+/// Terms with their signs in a row.
+fn sum(terms: &[String]) -> String {
+    let mut text = String::new();
+    for t in terms {
+        match t.strip_prefix('-') {
+            Some(rest) => text.push_str(&format!(" - {rest}")),
+            None if text.is_empty() => text.push_str(t),
+            None => text.push_str(&format!(" + {t}")),
+        }
+    }
+    text.trim_start().to_string()
 }
 
 /// The port of a node that lies least deep in the hierarchy.

@@ -3,7 +3,7 @@
 use crate::compile::{Outcome, Request, inspect};
 use crate::expr::eval::Evaluation;
 use crate::expr::{ExprId, Exprs, Node as Term, VarId};
-use crate::flat::{FlatModel, Type, Variability};
+use crate::flat::{Experiment, FlatModel, Type, Variability};
 use crate::instance::{ElementState, Instance, Node, ScopeId};
 use crate::network::Network;
 use crate::syntax::ast::ClassKind;
@@ -88,6 +88,8 @@ pub struct ModelInput {
 pub struct Circuit {
     /// Full name of the class.
     pub class: String,
+    /// The model's `experiment` annotation.
+    pub experiment: Experiment,
     /// Components, parents before children.
     pub components: Vec<Component>,
     /// Physical ports in declaration order.
@@ -117,6 +119,7 @@ struct Reader {
 impl Reader {
     fn read(mut self, instance: &mut Instance<'_, '_>, network: &Network, flat: &FlatModel) -> Circuit {
         self.circuit.class.clone_from(&flat.class);
+        self.circuit.experiment = flat.experiment;
         self.components(instance);
         self.nodes(instance, network);
         let rates = Rates::of(flat);

@@ -3,7 +3,8 @@
 //! [`effects`] reads the effect models, [`circuit`] the places of the nominal model, [`hypotheses`] puts every effect at
 //! every place where it fits, and [`augment`] writes the nominal model with effects attached. [`problem`] makes of it
 //! what the [`filter`] runs over the recordings; [`fit`], [`screen`] and [`locate`] weigh parameters, effects and places
-//! by their [`evidence`]; [`diagnose`] puts all together into a [`verdict`].
+//! by their [`evidence`]; [`diagnose`] puts all together into a [`verdict`], and [`fixed`]
+//! writes the corrected model into one file.
 
 pub mod augment;
 pub mod circuit;
@@ -13,6 +14,7 @@ pub mod effects;
 pub mod evidence;
 pub mod filter;
 pub mod fit;
+pub mod fixed;
 pub mod held;
 pub mod hypotheses;
 pub mod levels;
