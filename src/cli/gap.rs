@@ -10,6 +10,7 @@ use crate::diag::{Checked, Code, Diagnostic};
 use crate::gap::circuit::circuit;
 use crate::gap::diagnose::{Stage, Trouble, search};
 use crate::gap::effects::catalogue;
+use crate::gap::fixed::corrected;
 use crate::gap::hypotheses::{self, Free, Hypothesis, Signal};
 use crate::gap::study::question;
 use crate::gap::words::words;
@@ -24,6 +25,7 @@ last, when everything has been decided, and say how far the gap shrinks.
 Examples:
   bramah gap study.toml --data bench/                       the diagnosis
   bramah gap study.toml --data bench/ -o verdict.json
+  bramah gap study.toml --data bench/ --write-model fixed.mo
   bramah gap study.toml --list      what the network of the study's model could lack, and where
 
 Exit status: 0 whatever the verdict, 1 the nominal model is wrong, 2 a study, file or column that cannot be used.")]
@@ -37,6 +39,9 @@ pub(super) struct GapArgs {
     /// The verdict as JSON, `-` for stdout
     #[arg(short, long, visible_alias = "output-file", default_value = "-", value_name = "FILE")]
     output: String,
+    /// The corrected model, class `Fixed`, with every class it needs in one Modelica file, `-` for stdout
+    #[arg(long, value_name = "FILE")]
+    write_model: Option<String>,
     /// List every effect at every place where it fits, and stop
     #[arg(long)]
     list: bool,
@@ -73,6 +78,9 @@ fn diagnose(args: &GapArgs, study: &Study, messages: &mut Messages) -> Result<En
     messages.remark(words(&verdict).trim_end());
     let text = serde_json::to_string_pretty(&verdict).expect("numbers and texts always serialize");
     write_text(&args.output, &format!("{text}\n"))?;
+    if let Some(file) = &args.write_model {
+        write_text(file, &said(corrected(&question.problem, &search), messages)?)?;
+    }
     Ok(Ending::Fine)
 }
 

@@ -5,7 +5,9 @@
 
 use super::augment::{Attached, Form, SOURCE, broken, cut, request, written};
 use super::circuit::Circuit;
+use super::diagnose::Search;
 use super::hypotheses::{Signal, Site};
+use super::problem::{Chosen, Problem};
 use crate::compile::{Request, flatten};
 use crate::diag::{Checked, Code, Diagnostic, FileId, Sources};
 use crate::flat::Experiment;
@@ -32,9 +34,46 @@ pub fn fixed(
     attached: &[Attached<'_>],
     signals: &[Signal],
 ) -> Checked<String> {
-    let drifts = drifts(attached);
+    write(world, nominal, folder, circuit, attached, signals, &drifts(attached))
+}
+
+/// Writes the model at which a search ended: the accepted effects and the parameters within their tolerances, both
+/// with their fitted values. It starts as the nominal model does.
+///
+/// Elements of an array are set only all together; others keep the nominal value, with a warning.
+///
+/// # Errors
+/// As [`fixed`].
+pub fn corrected(problem: &Problem<'_>, search: &Search) -> Checked<String> {
+    let (fit, model) = search.last();
+    let theta = &fit.setting.theta;
+    let mut attached = Vec::new();
+    for (i, (accepted, places)) in search.accepted().iter().zip(&model.attached).enumerate() {
+        let values = places.iter().map(|&p| theta[p]).collect();
+        attached.push((format!("e{i}"), Chosen { hypothesis: accepted.chosen.hypothesis, values }));
+    }
+    let attached: Vec<Attached<'_>> = attached.iter().map(|(name, c)| problem.attached(c, name)).collect();
+    let mut values = drifts(&attached);
+    for (t, value) in problem.tolerances.iter().zip(theta) {
+        if *value != t.nominal && !values.iter().any(|(n, _)| *n == t.name) {
+            values.push((t.name.clone(), *value));
+        }
+    }
+    let (request, folder) = (&problem.request, problem.folder.as_deref());
+    write(problem.world, request, folder, &problem.circuit, &attached, &problem.signals, &values)
+}
+
+fn write(
+    world: &dyn World,
+    nominal: &Request,
+    folder: Option<&Path>,
+    circuit: &Circuit,
+    attached: &[Attached<'_>],
+    signals: &[Signal],
+    drifts: &[(String, f64)],
+) -> Checked<String> {
     let annotation = experiment(&circuit.experiment);
-    let form = |cut| Form { class: CLASS, cut, drifts: &drifts, annotation: annotation.clone() };
+    let form = |cut| Form { class: CLASS, cut, drifts, annotation: annotation.clone() };
     let with_breaks = written(circuit, attached, signals, form(false));
     let (overlay, request) = request(world, nominal, folder, &with_breaks.text, CLASS);
     let outcome = flatten(&overlay, &request);
