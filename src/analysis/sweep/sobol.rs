@@ -103,7 +103,7 @@ pub struct Index {
 /// Resamplings for the confidence.
 const RESAMPLINGS: usize = 200;
 
-/// Indices from the results of a [`design`], in its order; groups with a failed run (NaN) are left out. `None` where
+/// Indices from the results of a `design`, in its order; groups with a failed run (NaN) are left out. `None` where
 /// fewer than eight are left or nothing varies.
 ///
 /// Source: A. Saltelli et al., Comput. Phys. Commun. 181 (2010) 259, table 2 (b) and (f).
