@@ -4,6 +4,9 @@
 
 use bramah::diag::Sources;
 use bramah::gap::diagnose::search;
+use bramah::gap::fixed::corrected;
+use bramah::gap::held::from_start;
+use bramah::gap::report::report;
 use bramah::gap::study::question;
 use bramah::gap::verdict::Verdict;
 use bramah::solve::Interpolation;
@@ -171,4 +174,47 @@ fn a_sound_plant_lacks_nothing() {
     let verdict = diagnosed(0.0, 12);
     assert!(verdict.effects.is_empty(), "{:?}", verdict.effects);
     assert_eq!(verdict.verdict, "nothing_found");
+}
+
+/// The corrected model needs nothing beside it and runs as the model that was fitted; the page holds everything itself.
+#[test]
+fn the_corrected_model_stands_alone_and_so_does_the_page() {
+    let mut world = MemoryWorld::single("Slide.mo", MODEL);
+    let (train, held) = (recording(&world, 3.0, 11), recording(&world, 3.0, 12));
+    world.add("train.csv", train);
+    world.add("held.csv", held);
+    world.add("study.toml", STUDY);
+    let mut sources = Sources::default();
+    let study = Study::read(&world, Path::new("study.toml"), &mut sources).value.unwrap();
+    let question = question(&world, &study, None, &mut sources).ok().unwrap();
+    let problem = &question.problem;
+    let found = search(problem, &mut |_| ()).ok().unwrap();
+    let held = question.held(None, &mut sources).unwrap();
+    let verdict = found.verdict(problem, &held, 0.0);
+
+    let text = corrected(problem, &found).value.unwrap();
+    let alone = MemoryWorld::single("fixed.mo", text);
+    let request = Request { source: "fixed.mo".into(), model: Some("Fixed".into()), ..Request::default() };
+    let mut fixed = Simulation::compile(&alone, &request).unwrap();
+    let input = &held[0].inputs[0];
+    fixed.input("u", &held[0].times, input, Interpolation::Held).unwrap();
+    fixed.stop_time(held[0].times[held[0].len() - 1]);
+    let settings = fixed.settings();
+    settings.interval = 0.004;
+    settings.event_rows = false;
+    settings.tolerance = 1e-8;
+    let run = fixed.run().unwrap().trajectory;
+    let fitted = from_start(&found.last().0.setting, &held[0]).unwrap();
+    for (name, wanted) in ["s", "v"].into_iter().zip(&fitted) {
+        let column = run.column(name).unwrap();
+        let largest = wanted.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        let apart = column.iter().zip(wanted).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(apart < 0.01 * largest, "{name}: {apart} of {largest}");
+    }
+
+    let page = report(problem, &found, &verdict, &held);
+    assert!(!page.replace("http://www.w3.org/2000/svg", "").contains("http"));
+    for part in ["dry friction", "mass.flange", "spring.d", "v in m/s", "a held recording", "corrected"] {
+        assert!(page.contains(part), "{part}");
+    }
 }

@@ -12,6 +12,7 @@ use crate::gap::diagnose::{Stage, Trouble, search};
 use crate::gap::effects::catalogue;
 use crate::gap::fixed::corrected;
 use crate::gap::hypotheses::{self, Free, Hypothesis, Signal};
+use crate::gap::report::report;
 use crate::gap::study::question;
 use crate::gap::words::words;
 use crate::study::{Knowledge, Study};
@@ -25,7 +26,7 @@ last, when everything has been decided, and say how far the gap shrinks.
 Examples:
   bramah gap study.toml --data bench/                       the diagnosis
   bramah gap study.toml --data bench/ -o verdict.json
-  bramah gap study.toml --data bench/ --write-model fixed.mo
+  bramah gap study.toml --data bench/ --write-model fixed.mo --report report.html
   bramah gap study.toml --list      what the network of the study's model could lack, and where
 
 Exit status: 0 whatever the verdict, 1 the nominal model is wrong, 2 a study, file or column that cannot be used.")]
@@ -42,6 +43,9 @@ pub(super) struct GapArgs {
     /// The corrected model, class `Fixed`, with every class it needs in one Modelica file, `-` for stdout
     #[arg(long, value_name = "FILE")]
     write_model: Option<String>,
+    /// What was found as one HTML page, `-` for stdout
+    #[arg(long, value_name = "FILE")]
+    report: Option<String>,
     /// List every effect at every place where it fits, and stop
     #[arg(long)]
     list: bool,
@@ -80,6 +84,9 @@ fn diagnose(args: &GapArgs, study: &Study, messages: &mut Messages) -> Result<En
     write_text(&args.output, &format!("{text}\n"))?;
     if let Some(file) = &args.write_model {
         write_text(file, &said(corrected(&question.problem, &search), messages)?)?;
+    }
+    if let Some(file) = &args.report {
+        write_text(file, &report(&question.problem, &search, &verdict, &held))?;
     }
     Ok(Ending::Fine)
 }

@@ -406,6 +406,11 @@ impl Search {
         &self.trials
     }
 
+    /// The model as the study gives it.
+    pub fn nominal(&self, problem: &Problem<'_>) -> super::filter::Setting {
+        Finish { problem, search: self }.nominal()
+    }
+
     /// The final fit and its model.
     pub fn last(&self) -> (&Fit, &Assembled) {
         (&self.last, &self.last_model)

@@ -40,7 +40,8 @@ pub fn fixed(
 /// Writes the model at which a search ended: the accepted effects and the parameters within their tolerances, both
 /// with their fitted values. It starts as the nominal model does.
 ///
-/// Elements of an array are set only all together; others keep the nominal value, with a warning.
+/// A parameter inside an array of components cannot be set by name in Modelica and keeps its nominal value; a comment at
+/// the head of the file names it.
 ///
 /// # Errors
 /// As [`fixed`].
@@ -54,13 +55,17 @@ pub fn corrected(problem: &Problem<'_>, search: &Search) -> Checked<String> {
     }
     let attached: Vec<Attached<'_>> = attached.iter().map(|(name, c)| problem.attached(c, name)).collect();
     let mut values = drifts(&attached);
-    for (t, value) in problem.tolerances.iter().zip(theta) {
-        if *value != t.nominal && !values.iter().any(|(n, _)| *n == t.name) {
+    let mut left = String::new();
+    for (t, value) in problem.tolerances.iter().zip(theta).filter(|(t, value)| **value != t.nominal) {
+        if t.name.contains('[') {
+            left.push_str(&format!("// not set, inside an array: {} = {value:e}\n", t.name));
+        } else if !values.iter().any(|(n, _)| *n == t.name) {
             values.push((t.name.clone(), *value));
         }
     }
     let (request, folder) = (&problem.request, problem.folder.as_deref());
-    write(problem.world, request, folder, &problem.circuit, &attached, &problem.signals, &values)
+    let file = write(problem.world, request, folder, &problem.circuit, &attached, &problem.signals, &values);
+    Checked { value: file.value.map(|text| format!("{left}{text}")), diagnostics: file.diagnostics }
 }
 
 fn write(

@@ -4,7 +4,7 @@
 //! every place where it fits, and [`augment`] writes the nominal model with effects attached. [`problem`] makes of it
 //! what the [`filter`] runs over the recordings; [`fit`], [`screen`] and [`locate`] weigh parameters, effects and places
 //! by their [`evidence`]; [`diagnose`] puts all together into a [`verdict`]. [`fixed`] writes the corrected model into one
-//! file.
+//! file, [`report`] the page.
 
 pub mod augment;
 pub mod circuit;
@@ -22,6 +22,7 @@ pub mod locate;
 pub mod noise;
 pub mod problem;
 pub mod recording;
+pub mod report;
 pub mod screen;
 pub mod step;
 pub mod study;

@@ -100,10 +100,10 @@ fn effect(i: usize, e: &Effect) -> String {
     text
 }
 
-fn number(v: f64) -> String {
+pub(super) fn number(v: f64) -> String {
     if v == 0.0 || (1e-3..1e5).contains(&v.abs()) { format!("{v:.4}") } else { format!("{v:.3e}") }
 }
 
-fn percent(v: f64) -> String {
+pub(super) fn percent(v: f64) -> String {
     format!("{:.1} %", 100.0 * v)
 }

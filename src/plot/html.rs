@@ -29,6 +29,11 @@ struct PanelHead<'a> {
 
 /// Writes the page. `facts` are pairs of name and value shown below the picture: model, command, statistics.
 pub fn write(figure: &Figure, facts: &[(String, String)]) -> String {
+    write_around(figure, facts, "")
+}
+
+/// The same with HTML between the title and the curves.
+pub fn write_around(figure: &Figure, facts: &[(String, String)], before: &str) -> String {
     let title = if figure.title.is_empty() { "bramah" } else { &figure.title };
     let mut rows = String::new();
     for (name, value) in facts {
@@ -36,6 +41,7 @@ pub fn write(figure: &Figure, facts: &[(String, String)]) -> String {
     }
     let parts = [
         ("{{title}}", svg::escape(title)),
+        ("{{before}}", before.to_owned()),
         ("{{picture}}", svg::write(figure)),
         ("{{facts}}", rows),
         ("{{head}}", in_script(&head(figure))),

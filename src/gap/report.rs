@@ -1,0 +1,187 @@
+//! The diagnosis as one HTML page: words, the network with the places of the gap, tables, and curves of every signal.
+//!
+//! The page needs no network and no other file; the curves can be zoomed like those of `bramah plot`.
+
+use super::data::Recording;
+use super::diagnose::Search;
+use super::held;
+use super::problem::Problem;
+use super::verdict::{Columns, Effect, Maybe, Side, Verdict};
+use super::words::{number, percent, words};
+use crate::compile::flatten;
+use crate::plot::network::{self, Mark};
+use crate::plot::svg::escape;
+use crate::plot::{Figure, Panel, Series, html};
+use std::fmt::Write;
+
+/// Deviations of so many tolerances are set off in the table.
+const FAR: f64 = 2.0;
+
+/// Writes the page. `held` are the recordings that were not used; of these and of those that were used the first is
+/// drawn.
+pub fn report(problem: &Problem<'_>, search: &Search, verdict: &Verdict, held: &[Recording]) -> String {
+    let mut panels = panels(problem, search, &problem.train, "a recording that was used");
+    panels.extend(self::panels(problem, search, held, "a held recording"));
+    let title = format!("Gap of {}", problem.circuit.class);
+    let figure = Figure { title, panels, shared_x: false };
+    let facts = [
+        ("verdict".to_string(), verdict.verdict.replace('_', " ")),
+        ("recordings used".to_string(), problem.files.join(", ")),
+        ("held recordings".to_string(), held.len().to_string()),
+        ("hypotheses".to_string(), problem.hypotheses.len().to_string()),
+        ("bramah".to_string(), env!("CARGO_PKG_VERSION").to_string()),
+    ];
+    html::write_around(&figure, &facts, &before(problem, verdict))
+}
+
+/// Everything above the curves.
+fn before(problem: &Problem<'_>, v: &Verdict) -> String {
+    let mut out = format!("<pre class=\"words\">{}</pre>\n", escape(words(v).trim_end()));
+    out.push_str(&picture(problem, v));
+    out.push_str(&table("Effects", EFFECTS, &effects(v)));
+    out.push_str(&table("Gap in parts of full scale", GAPS, &gaps(v)));
+    out.push_str(&table("Parameters against their tolerances", DRIFTS, &drifts(v)));
+    out.push_str(&table("Places where model and bench part", PLACES, &places(v)));
+    out.push_str("<h2>Measured and simulated</h2>\n");
+    out
+}
+
+/// The network; the more certain a gap at a place, the deeper its colour.
+fn picture(problem: &Problem<'_>, v: &Verdict) -> String {
+    let Some(flattened) = flatten(problem.world, &problem.request).value else { return String::new() };
+    let most = v.places.iter().map(|p| p.evidence).fold(0.0, f64::max);
+    let mut marks = Vec::new();
+    for p in v.places.iter().filter(|p| p.evidence > 0.0) {
+        let heat = (p.evidence / most).sqrt();
+        let note = format!("{} ({}): {:.0} nats", p.place, p.kind, p.evidence);
+        let sensed = problem.signals.iter().find(|s| p.kind == "sensor" && s.name == p.place);
+        let names = p.node.iter().chain(sensed.map(|s| &s.variable));
+        marks.extend(names.map(|name| Mark { name: name.clone(), heat, note: note.clone() }));
+    }
+    let drawn = network::write_marked(&flattened.graph, &problem.circuit.class, &marks);
+    format!("<div class=\"network\">{drawn}</div>\n")
+}
+
+const EFFECTS: &[&str] = &[
+    "effect",
+    "class",
+    "places",
+    "parameters",
+    "evidence in nats",
+    "t",
+    "closes alone",
+    "closes last",
+    "cannot be told from",
+];
+const GAPS: &[&str] = &["recordings", "signal", "nominal", "within tolerances", "with effects"];
+const DRIFTS: &[&str] = &["parameter", "nominal", "fitted", "std", "tolerances"];
+const PLACES: &[&str] = &["place", "kind", "evidence in nats", "share", "the same place"];
+
+/// A table of cells that are HTML already; nothing without rows.
+fn table(title: &str, heads: &[&str], rows: &[Vec<String>]) -> String {
+    if rows.is_empty() {
+        return String::new();
+    }
+    let mut out = format!("<h2>{title}</h2>\n<table class=\"rows\"><tr>");
+    for h in heads {
+        let _ = write!(out, "<th>{h}</th>");
+    }
+    for row in rows {
+        out.push_str("</tr>\n<tr>");
+        for cell in row {
+            let _ = write!(out, "<td>{cell}</td>");
+        }
+    }
+    out.push_str("</tr></table>\n");
+    out
+}
+
+fn effects(v: &Verdict) -> Vec<Vec<String>> {
+    let row = |e: &Effect| {
+        let parameters: Vec<String> = e
+            .parameters
+            .iter()
+            .map(|(n, p)| escape(format!("{n} = {} ± {} {}", number(p.value), number(p.std), p.unit).trim_end()))
+            .collect();
+        let others: Vec<String> = e
+            .indistinguishable
+            .iter()
+            .map(|a| {
+                let at: Vec<&str> = a.places.iter().map(|p| p.place.as_str()).collect();
+                escape(&format!("{} at {} ({:.1} nats behind)", a.effect, at.join(", "), a.behind))
+            })
+            .collect();
+        let at: Vec<String> = e.places.iter().map(|p| escape(&p.place)).collect();
+        vec![
+            escape(&e.family.replace('_', " ")),
+            escape(&e.effect),
+            at.join("<br>"),
+            parameters.join("<br>"),
+            format!("{:.1}", e.evidence),
+            format!("{:.1}", e.t),
+            share(e.closes_alone),
+            share(e.closes_last),
+            others.join("<br>"),
+        ]
+    };
+    v.effects.iter().map(row).collect()
+}
+
+fn share(v: Maybe) -> String {
+    v.map_or_else(|| "unknown".to_string(), percent)
+}
+
+fn gaps(v: &Verdict) -> Vec<Vec<String>> {
+    let row = |which: &str, name: &str, c: &Columns| {
+        vec![which.to_string(), name.to_string(), share(c.nominal), share(c.tolerances), share(c.effects)]
+    };
+    let rows = |which: &str, side: &Side| -> Vec<Vec<String>> {
+        let signals = side.signals.iter().map(|(n, c)| row(which, &escape(n), c));
+        signals.chain([row(which, "<b>all</b>", &side.total)]).collect()
+    };
+    [rows("held", &v.gap.held), rows("used", &v.gap.train)].concat()
+}
+
+fn drifts(v: &Verdict) -> Vec<Vec<String>> {
+    let row = |d: &super::verdict::Drift| {
+        let deviation = format!("{:+.2}", d.tolerances);
+        let far = d.tolerances.abs() >= FAR;
+        let deviation = if far { format!("<b class=\"far\">{deviation}</b>") } else { deviation };
+        vec![escape(&d.parameter), number(d.nominal), number(d.value), number(d.std), deviation]
+    };
+    v.drifts.iter().map(row).collect()
+}
+
+fn places(v: &Verdict) -> Vec<Vec<String>> {
+    let row = |p: &super::verdict::Located| {
+        let node = escape(&p.node.join(", "));
+        vec![escape(&p.place), p.kind.to_string(), format!("{:.1}", p.evidence), percent(p.share), node]
+    };
+    v.places.iter().map(row).collect()
+}
+
+/// Per signal the first of the recordings against the nominal model and the corrected one.
+fn panels(problem: &Problem<'_>, search: &Search, recordings: &[Recording], what: &str) -> Vec<Panel> {
+    let Some(recording) = recordings.first() else { return Vec::new() };
+    let settings = [search.nominal(problem), search.last().0.setting.clone()];
+    let runs = settings.map(|s| held::simulate(&s, recording));
+    let panel = |(i, signal): (usize, &super::hypotheses::Signal)| {
+        let unit = problem.circuit.units.get(&signal.variable).map_or("", String::as_str);
+        let mut series = vec![curve("measured", &recording.times, &recording.signals[i], 6)];
+        for ((name, colour), run) in [("nominal", 1), ("corrected", 0)].into_iter().zip(&runs) {
+            let Some(run) = run else { continue };
+            series.push(curve(name, &recording.times[run.from..], &run.simulated[i], colour));
+        }
+        Panel {
+            x_label: format!("time in s, {what}"),
+            y_label: if unit.is_empty() { signal.name.clone() } else { format!("{} in {unit}", signal.name) },
+            series,
+            ..Panel::default()
+        }
+    };
+    problem.signals.iter().enumerate().map(panel).collect()
+}
+
+fn curve(name: &str, x: &[f64], y: &[f64], colour: usize) -> Series {
+    Series { name: name.into(), x: x.to_vec(), y: y.to_vec(), colour, ..Series::default() }
+}
