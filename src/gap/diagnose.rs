@@ -484,7 +484,7 @@ impl Finish<'_> {
                 "more excitation: steps of the inputs over their whole range, then slow triangles through zero".into(),
             ),
             "effects" if ambiguous => {
-                Some("the other excitation of the list that --plan gives for these alternatives".into())
+                Some("slow triangles through zero, steps and a chirp over the whole range: what moves alike here may part there".into())
             }
             _ => None,
         }
