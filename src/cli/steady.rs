@@ -8,7 +8,7 @@ use super::linearize::{put, restless, run_to, state_at};
 use super::messages::Messages;
 use super::recorder::write_text;
 use super::request::ModelArgs;
-use super::{Ending, Failure, columns, files, interrupt, model, plot};
+use super::{Ending, Failure, columns, files, interrupt, model};
 use crate::analysis::balance::{self, Budget};
 use crate::analysis::grid;
 use crate::analysis::linear::{Choice, Chosen};
@@ -228,7 +228,7 @@ fn draw(svg: &str, path: &Path, messages: &Messages) -> Result<(), Failure> {
             return Err(Diagnostic::new(Code::BadArgument, text).into());
         }
     }
-    messages.remark(&format!("wrote {}", plot::stem(path)));
+    messages.remark(&format!("wrote {}", path.display()));
     Ok(())
 }
 
