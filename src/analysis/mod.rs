@@ -6,6 +6,7 @@ pub mod identify;
 pub mod lift;
 pub mod linear;
 pub mod local;
+pub mod noise;
 pub mod sensitivity;
 pub mod steady;
 pub mod sweep;

@@ -7,15 +7,13 @@ use super::messages::Messages;
 use super::recorder::write_text;
 use super::{DiskWorld, Ending, Failure, files};
 use crate::diag::{Checked, Code, Diagnostic};
-use crate::gap::circuit::circuit;
 use crate::gap::diagnose::{Stage, Trouble, search};
-use crate::gap::effects::catalogue;
 use crate::gap::fixed::corrected;
-use crate::gap::hypotheses::{self, Free, Hypothesis, Signal};
+use crate::gap::hypotheses::Hypothesis;
 use crate::gap::report::report;
-use crate::gap::study::question;
+use crate::gap::study::{Unusable, proposed, question};
 use crate::gap::words::words;
-use crate::study::{Knowledge, Study};
+use crate::study::Study;
 
 /// Find where model and bench part, and which missing effect explains it
 #[derive(Args, Debug)]
@@ -52,9 +50,11 @@ pub(super) struct GapArgs {
 }
 
 pub(super) fn run(args: &GapArgs, messages: &mut Messages) -> Result<Ending, Failure> {
-    let study = said(Study::read(&DiskWorld, &args.study, &mut messages.sources), messages)?;
+    let read = Study::read(&DiskWorld, &args.study, &mut messages.sources);
+    let study = messages.value(read)?;
     if args.list {
-        files::print(&listed(&proposed(&study, messages)?))?;
+        let (all, warnings) = proposed(&DiskWorld, &study).map_err(|why| unusable(why, messages))?;
+        files::print(&listed(&messages.value(Checked::new(all, warnings))?))?;
         return Ok(Ending::Fine);
     }
     diagnose(args, &study, messages)
@@ -63,12 +63,7 @@ pub(super) fn run(args: &GapArgs, messages: &mut Messages) -> Result<Ending, Fai
 fn diagnose(args: &GapArgs, study: &Study, messages: &mut Messages) -> Result<Ending, Failure> {
     let begun = std::time::Instant::now();
     let data = args.data.as_deref();
-    let question = question(&DiskWorld, study, data, &mut messages.sources).map_err(|u| {
-        if let Some(sources) = u.sources {
-            messages.sources = sources;
-        }
-        Failure { diagnostics: u.diagnostics }
-    })?;
+    let question = question(&DiskWorld, study, data, &mut messages.sources).map_err(|why| unusable(why, messages))?;
     messages.say(&question.diagnostics);
     let stages = Stages::new();
     let search = search(&question.problem, &mut |stage| stages.show(stage)).map_err(|t| trouble(&t))?;
@@ -83,7 +78,7 @@ fn diagnose(args: &GapArgs, study: &Study, messages: &mut Messages) -> Result<En
     let text = serde_json::to_string_pretty(&verdict).expect("numbers and texts always serialize");
     write_text(&args.output, &format!("{text}\n"))?;
     if let Some(file) = &args.write_model {
-        write_text(file, &said(corrected(&question.problem, &search), messages)?)?;
+        write_text(file, &messages.value(corrected(&question.problem, &search))?)?;
     }
     if let Some(file) = &args.report {
         write_text(file, &report(&question.problem, &search, &verdict, &held))?;
@@ -137,63 +132,12 @@ impl Stages {
     }
 }
 
-/// The value of a stage; its warnings are said, its errors end the command.
-fn said<T>(checked: Checked<T>, messages: &Messages) -> Result<T, Failure> {
-    match checked.value {
-        Some(value) if !checked.diagnostics.iter().any(Diagnostic::is_error) => {
-            messages.say(&checked.diagnostics);
-            Ok(value)
-        }
-        _ => Err(Failure { diagnostics: checked.diagnostics }),
+/// What stops a study: its own mistakes, or those of its model with the texts they point into.
+fn unusable(why: Unusable, messages: &mut Messages) -> Failure {
+    if let Some(sources) = why.sources {
+        messages.sources = sources;
     }
-}
-
-/// All hypotheses that the study leaves in.
-fn proposed(study: &Study, messages: &mut Messages) -> Result<Vec<Hypothesis>, Failure> {
-    let request = study.request();
-    let flattened = taken(crate::flatten(&DiskWorld, &request), messages)?;
-    let bound = said(study.bind(&flattened.flat), messages)?;
-    let scale = |s: &crate::study::BoundSignal| s.full_scale.unwrap_or(1.0);
-    let signals: Vec<Signal> = bound
-        .signals
-        .iter()
-        .map(|s| Signal { name: s.name.clone(), variable: variable(&flattened.flat, s.variable), scale: scale(s) })
-        .collect();
-    let free: Vec<Free> = bound.parameters.iter().filter_map(|p| drifting(&flattened.flat, p)).collect();
-    let places = taken(circuit(&DiskWorld, &request), messages)?;
-    let folder = study.effects.folder.as_ref().map(|f| study.folder.join(f));
-    let effects = said(catalogue(&DiskWorld, folder.as_deref()), messages)?;
-    let mut all = hypotheses::hypotheses(&places, &effects, &signals, &free);
-    hypotheses::narrow(&mut all, &study.effects);
-    Ok(all)
-}
-
-fn variable(flat: &crate::flat::FlatModel, v: crate::expr::VarId) -> String {
-    flat.variables[v.index()].name.clone()
-}
-
-fn drifting(flat: &crate::flat::FlatModel, p: &crate::study::BoundParameter) -> Option<Free> {
-    let v = &flat.variables[p.variable.index()];
-    let nominal = v.binding.and_then(|b| flat.exprs.as_num(b)).unwrap_or(0.0);
-    let sigma = match p.knowledge {
-        Knowledge::Exact => return None,
-        Knowledge::Relative(part) => part * nominal.abs(),
-        Knowledge::Absolute(value) => value,
-        Knowledge::Free => nominal.abs(),
-    };
-    Some(Free { name: p.name.clone(), nominal, sigma })
-}
-
-/// What a stage of the compiler gave; its errors end the command, with the texts they point into.
-fn taken<T>(outcome: crate::Outcome<T>, messages: &mut Messages) -> Result<T, Failure> {
-    let failed = outcome.diagnostics.iter().any(Diagnostic::is_error);
-    match outcome.value.filter(|_| !failed) {
-        Some(value) => Ok(value),
-        None => {
-            messages.sources = outcome.sources;
-            Err(Failure { diagnostics: outcome.diagnostics })
-        }
-    }
+    Failure { diagnostics: why.diagnostics }
 }
 
 /// One line a hypothesis, and a count.

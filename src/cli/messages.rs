@@ -2,8 +2,9 @@
 
 use std::io::{IsTerminal, Write};
 
+use super::Failure;
 use crate::diag::render::{Format, render};
-use crate::diag::{Diagnostic, Severity, Sources};
+use crate::diag::{Checked, Diagnostic, Severity, Sources};
 
 /// `--message-format`
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
@@ -52,6 +53,21 @@ impl Messages {
         let mut ordered: Vec<Diagnostic> = diagnostics.to_vec();
         ordered.sort_by_key(|d| d.severity == Severity::Error);
         self.write(&render(&self.sources, &ordered, self.format, self.width, self.colour));
+    }
+
+    /// The value of a stage, whose remarks and warnings are said.
+    ///
+    /// # Errors
+    /// Its diagnostics, when there are errors among them or no value.
+    pub fn value<T>(&self, checked: Checked<T>) -> Result<T, Failure> {
+        let failed = checked.diagnostics.iter().any(Diagnostic::is_error);
+        match checked.value {
+            Some(value) if !failed => {
+                self.say(&checked.diagnostics);
+                Ok(value)
+            }
+            _ => Err(Failure { diagnostics: checked.diagnostics }),
+        }
     }
 
     /// A remark for people; scripts that asked for JSON or short messages are not bothered.

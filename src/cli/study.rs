@@ -49,12 +49,5 @@ impl Opened {
 /// Says remarks and warnings about texts of the study and hands out the value, or fails.
 fn said<T>(checked: Checked<T>, sources: &Sources, messages: &mut Messages) -> Result<T, Failure> {
     messages.sources = sources.clone();
-    let failed = checked.diagnostics.iter().any(Diagnostic::is_error);
-    match checked.value {
-        Some(value) if !failed => {
-            messages.say(&checked.diagnostics);
-            Ok(value)
-        }
-        _ => Err(Failure { diagnostics: checked.diagnostics }),
-    }
+    messages.value(checked)
 }

@@ -19,7 +19,6 @@ pub mod held;
 pub mod hypotheses;
 pub mod levels;
 pub mod locate;
-pub mod noise;
 pub mod problem;
 pub mod recording;
 pub mod report;

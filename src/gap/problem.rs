@@ -4,7 +4,6 @@
 use super::augment::{self, Attached, Augmented, PLANT};
 use super::circuit::Circuit;
 use super::data::Recording;
-use super::effects::own_classes;
 use super::filter::{Setting, Source};
 use super::hypotheses::{Hypothesis, Signal, Site};
 use crate::analysis::lift;
@@ -13,18 +12,17 @@ use crate::compile::Request;
 use crate::diag::Diagnostic;
 use crate::expr::VarId;
 use crate::flat::FlatModel;
-use crate::instance::Override;
-use crate::world::{MemoryWorld, Overlay, World};
+use crate::world::World;
 use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Correlation time of disturbances, s: what a bench's torques, flows and forces do beside their laws.
 pub const TAU: f64 = 0.025;
-/// Noise may be so much above what sixth differences show.
-const MOST_NOISE: f64 = 1.1;
 /// The same for sources that locate a gap, s.
 pub const SLOW_TAU: f64 = 0.1;
+/// Noise may be so much above what sixth differences show.
+const MOST_NOISE: f64 = 1.1;
 
 /// A parameter that may be off within its tolerance.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,8 +61,6 @@ pub struct Problem<'a> {
     pub signals: Vec<Signal>,
     /// Full scales of the signals, SI.
     pub full_scale: Vec<f64>,
-    /// Noise that the study states, SI.
-    pub accuracy: Vec<Option<f64>>,
     /// Noise that the samples show, SI: an upper bound where signals move fast.
     pub noise_floor: Vec<f64>,
     /// Parameters with their tolerances.
@@ -148,24 +144,11 @@ impl Problem<'_> {
         self.lifted(flat, augmented, &counts)
     }
 
-    /// The flat model of an augmented text; classes of the nominal model come from where its request finds them.
+    /// The flat model of an augmented text.
     fn flat(&self, augmented: &Augmented) -> Result<FlatModel, Vec<Diagnostic>> {
-        let source = PathBuf::from("(gap)/Augmented.mo");
-        let files = MemoryWorld::single(&source, augmented.text.clone());
-        let nominal = &self.request;
-        let inner = |o: &Override| Override { name: format!("{PLANT}.{}", o.name), value: o.value.clone() };
-        let mut request = Request {
-            source,
-            model: Some("Augmented".into()),
-            overrides: nominal.overrides.iter().map(inner).collect(),
-            libraries: nominal.libraries.clone(),
-            beside: nominal.beside.clone(),
-        };
-        if self.world.list(&nominal.source).is_some() || self.world.read(&nominal.source).is_ok() {
-            request.beside.push(nominal.source.clone());
-        }
-        own_classes(self.world, self.folder.as_deref(), &mut request);
-        let outcome = crate::compile::flatten(&Overlay { base: self.world, files }, &request);
+        let (overlay, request) =
+            augment::request(self.world, &self.request, self.folder.as_deref(), &augmented.text, "Augmented");
+        let outcome = crate::compile::flatten(&overlay, &request);
         outcome.value.map(|f| f.flat).ok_or(outcome.diagnostics)
     }
 

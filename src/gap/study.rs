@@ -1,20 +1,19 @@
 //! From a study to a problem.
 
-use super::circuit;
+use super::circuit::{self, Circuit};
 use super::data::Recording;
 use super::effects;
-use super::hypotheses::{self, Free, Signal};
-use super::noise;
+use super::hypotheses::{self, Free, Hypothesis, Signal};
 use super::problem::{Problem, Tolerance};
-use crate::analysis::lift::is_root;
+use crate::analysis::{lift::is_root, noise};
 use crate::diag::{Diagnostic, Sources};
 use crate::expr::VarId;
 use crate::flat::{FlatModel, Variability};
 use crate::lower::{Options, lower};
 use crate::solve::Interpolation;
-use crate::study::{Bound, Knowledge, Role, Study, full_scales};
+use crate::study::{Bound, BoundSignal, Knowledge, Role, Study, full_scales};
 use crate::world::World;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Standard deviation assumed for a parameter that the study does not speak of, as part of its value.
@@ -26,6 +25,8 @@ pub struct Question<'a> {
     pub problem: Problem<'a>,
     /// The study tied to the model.
     pub bound: Bound,
+    /// The nominal model.
+    flat: FlatModel,
     /// Warnings.
     pub diagnostics: Vec<Diagnostic>,
 }
@@ -70,47 +71,77 @@ pub fn question<'a>(
     let Some(train) = checked.value else { return Err(Unusable::study(checked.diagnostics)) };
     diagnostics.extend(checked.diagnostics);
     let full_scale = full_scales(&bound, &train);
-    let signals: Vec<Signal> = bound
-        .signals
-        .iter()
-        .zip(&full_scale)
-        .map(|(s, &scale)| Signal { name: s.name.clone(), variable: name(&flat, s.variable), scale })
-        .collect();
-    let values = parameter_values(dae);
-    let tolerances = tolerances(&flat, &bound, &values);
-    let outcome = circuit::circuit(world, &request);
-    let Some(circuit) = outcome.value else { return Err(Unusable::model(outcome)) };
-    let folder = study.effects.folder.as_ref().map(|f| study.folder.join(f));
-    let checked = effects::catalogue(world, folder.as_deref());
-    let Some(catalogue) = checked.value else { return Err(Unusable::study(checked.diagnostics)) };
-    diagnostics.extend(checked.diagnostics);
+    let signals = signals(&flat, &bound, &full_scale);
+    let tolerances = tolerances(&flat, &bound, &parameter_values(dae));
+    let offer = offer(world, study, &signals, &free(&tolerances))?;
+    diagnostics.extend(offer.diagnostics);
     let Some(sources) = effects::disturbances(world).value else { return Err(Unusable::study(Vec::new())) };
-    let free: Vec<Free> =
-        tolerances.iter().map(|t| Free { name: t.name.clone(), nominal: t.nominal, sigma: t.sigma }).collect();
-    let mut all = hypotheses::hypotheses(&circuit, &catalogue, &signals, &free);
-    hypotheses::narrow(&mut all, &study.effects);
-    let mut disturbances = hypotheses::hypotheses(&circuit, &sources, &signals, &[]);
+    let mut disturbances = hypotheses::hypotheses(&offer.circuit, &sources, &signals, &[]);
     disturbances.retain(|d| d.attachments.len() == 1);
     let files = train.iter().map(|r| r.file.clone()).collect();
     let train: Vec<Recording> = train.into_iter().map(|r| recording(&flat, &bound, r)).collect();
     let noise_floor = full_scale.iter().enumerate().map(|(i, scale)| floor(&train, i, *scale)).collect();
-    let accuracy = bound.signals.iter().zip(&full_scale).map(|(s, f)| s.deviation(*f)).collect();
     let problem = Problem {
         world,
         request,
-        folder,
-        circuit,
-        hypotheses: all,
+        folder: offer.folder,
+        circuit: offer.circuit,
+        hypotheses: offer.hypotheses,
         disturbances,
         signals,
         full_scale,
-        accuracy,
         noise_floor,
         tolerances,
         files,
         train,
     };
-    Ok(Question { problem, bound, diagnostics })
+    Ok(Question { problem, bound, flat, diagnostics })
+}
+
+/// All hypotheses that a study leaves in, with warnings; recordings are not read. Sensors without a stated range count
+/// with a range of 1.
+///
+/// # Errors
+/// [`Unusable`].
+pub fn proposed(world: &dyn World, study: &Study) -> Result<(Vec<Hypothesis>, Vec<Diagnostic>), Unusable> {
+    let outcome = crate::flatten(world, &study.request());
+    let Some(f) = outcome.value else { return Err(Unusable::model(outcome)) };
+    let checked = study.bind(&f.flat);
+    let Some(bound) = checked.value else { return Err(Unusable::study(checked.diagnostics)) };
+    let ranges: Vec<f64> = bound.signals.iter().map(|s| s.full_scale.unwrap_or(1.0)).collect();
+    let written = |v: VarId| f.flat.variables[v.index()].binding.and_then(|b| f.flat.exprs.as_num(b)).unwrap_or(0.0);
+    let free = free(&stated(&f.flat, &bound, &written));
+    let offer = offer(world, study, &signals(&f.flat, &bound, &ranges), &free)?;
+    Ok((offer.hypotheses, offer.diagnostics))
+}
+
+/// What the network of a study's model offers.
+struct Offer {
+    circuit: Circuit,
+    folder: Option<PathBuf>,
+    hypotheses: Vec<Hypothesis>,
+    diagnostics: Vec<Diagnostic>,
+}
+
+fn offer(world: &dyn World, study: &Study, signals: &[Signal], free: &[Free]) -> Result<Offer, Unusable> {
+    let outcome = circuit::circuit(world, &study.request());
+    let Some(circuit) = outcome.value else { return Err(Unusable::model(outcome)) };
+    let folder = study.effects.folder.as_ref().map(|f| study.folder.join(f));
+    let checked = effects::catalogue(world, folder.as_deref());
+    let Some(catalogue) = checked.value else { return Err(Unusable::study(checked.diagnostics)) };
+    let mut hypotheses = hypotheses::hypotheses(&circuit, &catalogue, signals, free);
+    hypotheses::narrow(&mut hypotheses, &study.effects);
+    Ok(Offer { circuit, folder, hypotheses, diagnostics: checked.diagnostics })
+}
+
+fn signals(flat: &FlatModel, bound: &Bound, ranges: &[f64]) -> Vec<Signal> {
+    let name = |v: VarId| flat.variables[v.index()].name.clone();
+    let signal = |(s, &scale): (&BoundSignal, &f64)| Signal { name: s.name.clone(), variable: name(s.variable), scale };
+    bound.signals.iter().zip(ranges).map(signal).collect()
+}
+
+fn free(tolerances: &[Tolerance]) -> Vec<Free> {
+    tolerances.iter().map(|t| Free { name: t.name.clone(), nominal: t.nominal, sigma: t.sigma }).collect()
 }
 
 impl Question<'_> {
@@ -120,11 +151,8 @@ impl Question<'_> {
     /// What is wrong with them.
     pub fn held(&self, data: Option<&Path>, sources: &mut Sources) -> Result<Vec<Recording>, Vec<Diagnostic>> {
         let checked = self.bound.load(self.problem.world, data, Role::Held, sources);
-        let flat = crate::flatten(self.problem.world, &self.problem.request);
-        match (checked.value, flat.value) {
-            (Some(found), Some(f)) => Ok(found.into_iter().map(|r| recording(&f.flat, &self.bound, r)).collect()),
-            _ => Err(checked.diagnostics),
-        }
+        let found = checked.value.ok_or(checked.diagnostics)?;
+        Ok(found.into_iter().map(|r| recording(&self.flat, &self.bound, r)).collect())
     }
 }
 
@@ -132,10 +160,6 @@ impl Question<'_> {
 fn floor(train: &[Recording], signal: usize, full_scale: f64) -> f64 {
     let samples: Vec<&[f64]> = train.iter().map(|r| &*r.signals[signal]).collect();
     noise::floor(&samples).max(1e-9 * full_scale.abs())
-}
-
-fn name(flat: &FlatModel, v: VarId) -> String {
-    flat.variables[v.index()].name.clone()
 }
 
 fn parameter_values(dae: crate::structure::Dae) -> impl Fn(VarId) -> f64 {
@@ -167,8 +191,8 @@ fn recording(flat: &FlatModel, bound: &Bound, r: crate::study::Recording) -> Rec
     Recording { times: Arc::from(&r.times[..]), inputs, linear, signals }
 }
 
-/// Tolerances of the study, then the assumed ones of all other parameters on which others do not depend.
-fn tolerances(flat: &FlatModel, bound: &Bound, value: &impl Fn(VarId) -> f64) -> Vec<Tolerance> {
+/// Tolerances that the study states.
+fn stated(flat: &FlatModel, bound: &Bound, value: &impl Fn(VarId) -> f64) -> Vec<Tolerance> {
     let mut all = Vec::new();
     for p in &bound.parameters {
         let nominal = value(p.variable);
@@ -180,16 +204,22 @@ fn tolerances(flat: &FlatModel, bound: &Bound, value: &impl Fn(VarId) -> f64) ->
         };
         all.push(tolerance(flat, p.variable, nominal, sigma, (p.min, p.max), false));
     }
+    all
+}
+
+/// Those of the study; where it states none, assumed ones of all parameters on which others do not depend.
+fn tolerances(flat: &FlatModel, bound: &Bound, value: &impl Fn(VarId) -> f64) -> Vec<Tolerance> {
+    if !bound.parameters.is_empty() {
+        return stated(flat, bound, value);
+    }
+    let mut all = Vec::new();
     for (v, variable) in (0..).map(VarId).zip(&flat.variables) {
-        let spoken = bound.parameters.iter().any(|p| p.variable == v);
         let physical = variable.unit.as_deref().is_some_and(|u| !u.is_empty() && u != "1");
-        if spoken || variable.hidden || !physical || variable.variability != Variability::Parameter || !is_root(flat, v)
-        {
+        if variable.hidden || !physical || variable.variability != Variability::Parameter || !is_root(flat, v) {
             continue;
         }
-        // parameters of the model's own level and of its components; not of what these are made of
         let nominal = value(v);
-        if bound.parameters.is_empty() && nominal != 0.0 && nominal.is_finite() {
+        if nominal != 0.0 && nominal.is_finite() {
             all.push(tolerance(flat, v, nominal, ASSUMED * nominal.abs(), (None, None), true));
         }
     }

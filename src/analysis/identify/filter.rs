@@ -96,23 +96,10 @@ pub fn filled(values: &[f64]) -> Vec<f64> {
     out
 }
 
-/// One standard deviation of white noise in a smooth signal: from sixth differences, robust against steps.
-///
-/// Sixth differences of white noise have the variance 924 sigma^2 (sum of the squared binomials).
-pub fn noise(values: &[f64]) -> f64 {
-    const WEIGHTS: [f64; 7] = [1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0];
-    let difference = |w: &[f64]| w.iter().zip(WEIGHTS).map(|(v, b)| v * b).sum::<f64>().abs();
-    let mut all: Vec<f64> = values.windows(7).map(difference).filter(|d| !d.is_nan()).collect();
-    if all.is_empty() {
-        return 0.0;
-    }
-    all.sort_by(f64::total_cmp);
-    1.4826 * all[all.len() / 2] / 924f64.sqrt()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::analysis::noise;
 
     fn wave(frequency: f64) -> Vec<f64> {
         (0..2000).map(|k| (2.0 * PI * frequency * f64::from(k)).sin()).collect()
@@ -146,6 +133,6 @@ mod tests {
             (seed >> 11) as f64 / (1u64 << 53) as f64
         };
         let noisy: Vec<f64> = wave(0.01).iter().map(|v| 10.0 * v + next()).collect();
-        assert!((noise(&noisy) - 0.289).abs() < 0.02, "{}", noise(&noisy));
+        assert!((noise::white(&[&noisy]) - 0.289).abs() < 0.02, "{}", noise::white(&[&noisy]));
     }
 }

@@ -17,6 +17,7 @@ pub use runs::Broken;
 pub use separate::{Blind, Separation};
 
 use crate::Model;
+use crate::analysis::noise;
 use crate::diag::{Code, Diagnostic};
 use crate::study::{Bound, Recording, full_scales};
 use inverse::{Inverse, InverseModel};
@@ -186,7 +187,7 @@ fn mistakes(bound: &Bound, free: &[Free], train: &[Recording]) -> Vec<Diagnostic
 fn noise(bound: &Bound, train: &[Recording], k: usize, full_scale: f64) -> f64 {
     bound.signals[k]
         .deviation(full_scale)
-        .unwrap_or_else(|| train.iter().map(|r| filter::noise(&r.signals[k])).fold(0.0, f64::max))
+        .unwrap_or_else(|| train.iter().map(|r| noise::white(&[&r.signals[k]])).fold(0.0, f64::max))
 }
 
 /// An identification under way: the method chosen, and what can be found.

@@ -8,16 +8,20 @@ const AMPLIFICATION: f64 = 924.0;
 const MAD: f64 = 1.4826;
 
 /// Standard deviation of the white noise in the samples of several recordings, in the signal's unit: robust, from
-/// sixth differences, and never below that of the finest quantisation seen. Gaps (NaN) are left out.
-pub fn floor(recordings: &[&[f64]]) -> f64 {
+/// sixth differences; 0 where there are too few samples. Gaps (NaN) are left out.
+pub fn white(recordings: &[&[f64]]) -> f64 {
     let mut differences: Vec<f64> = recordings.iter().flat_map(|r| sixth_differences(r)).map(f64::abs).collect();
-    let quantisation = step(recordings) / 12.0_f64.sqrt();
     if differences.is_empty() {
-        return quantisation;
+        return 0.0;
     }
     let middle = differences.len() / 2;
     let (_, median, _) = differences.select_nth_unstable_by(middle, f64::total_cmp);
-    (MAD * *median / AMPLIFICATION.sqrt()).max(quantisation)
+    MAD * *median / AMPLIFICATION.sqrt()
+}
+
+/// The same, and never below the noise of the finest quantisation seen.
+pub fn floor(recordings: &[&[f64]]) -> f64 {
+    white(recordings).max(step(recordings) / 12.0_f64.sqrt())
 }
 
 fn sixth_differences(samples: &[f64]) -> Vec<f64> {
