@@ -1,0 +1,10 @@
+model PumpAxis "The pump-controlled cylinder with recorded reference and load force"
+  extends ServoPump.System(
+    break reference, break connect(reference.y, control.x_ref),
+    break loadForce, break connect(loadForce.y, force.f));
+  Interfaces.RealInput r(unit = "m", nominal = 0.1) "Reference of position";
+  Interfaces.RealInput F(unit = "N", nominal = 1e4) "Force on the load";
+equation
+  connect(r, control.x_ref);
+  connect(F, force.f);
+end PumpAxis;

@@ -1,0 +1,60 @@
+model ServoAxis "Electric positioning axis: motor under voltage, gear, elastic shaft, load"
+  parameter Modelica.Units.SI.Resistance R(min = 0) = 0.8 "Resistance of the winding";
+  parameter Modelica.Units.SI.ElectricalTorqueConstant k(min = 0) = 0.25 "Torque constant";
+  parameter Modelica.Units.SI.Inertia J_m(min = 0) = 4e-4 "Inertia of the motor";
+  parameter Modelica.Units.SI.Inertia J_L(min = 0) = 0.3 "Inertia of the load";
+  parameter Modelica.Units.SI.RotationalDampingConstant d_m(min = 0) = 1e-3 "Viscous friction of the motor";
+  parameter Modelica.Units.SI.RotationalDampingConstant d_L(min = 0) = 1.0 "Viscous friction of the load";
+  parameter Modelica.Units.SI.RotationalSpringConstant c(min = 0) = 900 "Stiffness of the shaft behind the gear";
+  Interfaces.RealInput r(unit = "rad", nominal = 1) "Reference of the load's angle";
+  ServoAxisControl control "Position and speed controller";
+  Electrical.SignalVoltage amplifier "Amplifier";
+  Electrical.Ground ground "Ground";
+  Electrical.Machines.DCMotor motor(R = R, L = 2e-3, k = k) "Motor";
+  Mechanical.Rotational.Inertia rotor(J = J_m) "Rotor";
+  Mechanical.Rotational.Damper motorFriction(d = d_m) "Friction of the motor";
+  Mechanical.Rotational.IdealGear gear(ratio = 10) "Gear";
+  Mechanical.Rotational.SpringDamper shaft(c = c, d = 2) "Shaft behind the gear";
+  Mechanical.Rotational.Inertia load(J = J_L) "Load";
+  Mechanical.Rotational.Damper loadFriction(d = d_L) "Friction of the load";
+  Mechanical.Rotational.Fixed housing "Housing";
+  Modelica.Units.SI.Current i(nominal = 5) "Current";
+  Modelica.Units.SI.AngularVelocity w(nominal = 30) "Speed of the motor";
+  Modelica.Units.SI.Angle phi(nominal = 1) "Angle of the load";
+equation
+  connect(r, control.r);
+  connect(control.v, amplifier.v);
+  connect(amplifier.n, ground.p);
+  connect(amplifier.p, motor.p);
+  connect(motor.n, ground.p);
+  connect(motor.flange, rotor.flange_a);
+  connect(rotor.flange_b, motorFriction.flange_a);
+  connect(motorFriction.flange_b, housing.flange);
+  connect(rotor.flange_b, gear.flange_a);
+  connect(gear.flange_b, shaft.flange_a);
+  connect(shaft.flange_b, load.flange_a);
+  connect(load.flange_b, loadFriction.flange_a);
+  connect(loadFriction.flange_b, housing.flange);
+  control.phi = rotor.phi/10;
+  control.w = rotor.w;
+  i = motor.i;
+  w = rotor.w;
+  phi = load.phi;
+end ServoAxis;
+
+block ServoAxisControl "Proportional position loop around a proportional-integral speed loop"
+  parameter Real k_x(unit = "1/s", min = 0) = 12 "Gain of the position loop";
+  parameter Real k_p(unit = "V.s/rad", min = 0) = 0.3 "Gain of the speed loop";
+  parameter Real k_i(unit = "V/rad", min = 0) = 3 "Integral gain";
+  parameter Modelica.Units.SI.Voltage v_max(min = 1) = 48 "Limit of the amplifier";
+  Interfaces.RealInput r(unit = "rad", nominal = 1) "Reference of the angle behind the gear";
+  Interfaces.RealInput phi(unit = "rad", nominal = 1) "Angle of the motor over the ratio of the gear";
+  Interfaces.RealInput w(unit = "rad/s", nominal = 30) "Speed of the motor";
+  Interfaces.RealOutput v(unit = "V", nominal = 10) "Voltage";
+  Modelica.Units.SI.AngularVelocity e(nominal = 10) "Error of the speed";
+  Modelica.Units.SI.Voltage z(start = 0, fixed = true, nominal = 5) "Integral part";
+equation
+  e = 10*k_x*(r - phi) - w;
+  der(z) = k_i*e;
+  v = smooth(0, min(max(k_p*e + z, -v_max), v_max));
+end ServoAxisControl;
