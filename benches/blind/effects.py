@@ -45,8 +45,11 @@ def shunt(node, form):
 
 def across(bridge, form):
     parameters = bridge.parameters.get(form.share, []) if form.share else []
+    families, groups = list(form.families), [g for g in (bridge.names_a, bridge.names_b) if g]
+    if len(groups) == 1 and families == ["internal_leak"]:
+        families.append("external_leak")
     return Effect(
-        form.name, list(form.families), [bridge.names_a, bridge.names_b], parameters,
+        form.name, families, groups, parameters,
         probes=[("bridge", bridge.port_a, bridge.port_b, form)], largest=1.0,
     )
 
@@ -102,7 +105,7 @@ def drift(rng, circuit):
         for family, names in place.parameters.items():
             if name in names:
                 families.append(family)
-                groups = [place.names] if hasattr(place, "names") else [place.names_a, place.names_b]
+                groups = [place.names] if hasattr(place, "names") else [g for g in (place.names_a, place.names_b) if g]
     size = 6 * sigma * rng.choice([-1, 1, 1])
     return Effect(f"drift of {name}", families, groups, [name], size=size, least=4 * sigma, largest=25 * sigma, drift=name)
 

@@ -130,19 +130,28 @@ class Bench:
                 values = self.case.effects[j].sensor[1](values, self.case.circuit.step, size, reach, None)
         return values
 
-    def visible(self, with_, without, names=("train_1", "train_2")):
-        """Change of the signal that changes most, in standard deviations of its noise."""
-        worst = {s: 0.0 for s in self.case.sigma}
-        for name in names:
-            a, b = self.run(name, with_), None
-            closed, self.case.closed = self.case.closed, False
-            try:
-                b = self.run(name, without)
-            finally:
-                self.case.closed = closed
-            for s in worst:
-                worst[s] += sum((x - y) ** 2 for x, y in zip(a[s], b[s])) / len(a[s]) / len(names)
-        return {s: math.sqrt(v) / self.case.sigma[s] for s, v in worst.items()}
+    def again(self, name, chosen, quiet=False):
+        """A recording anew under the commands of its last run, also where a loop makes them."""
+        closed, self.case.closed = self.case.closed, False
+        try:
+            return self.run(name, chosen, quiet)
+        finally:
+            self.case.closed = closed
+
+    def visible(self, chosen):
+        """Change of each signal by effects, in standard deviations of its noise."""
+        return self.changes({n: (self.run(n, chosen), self.again(n, [])) for n in ("train_1", "train_2")})
+
+    def shaken(self):
+        """The same for all disturbances."""
+        return self.changes({"train_1": (self.run("train_1", []), self.again("train_1", [], quiet=True))})
+
+    def changes(self, runs):
+        total = {s: 0.0 for s in self.case.sigma}
+        for a, b in runs.values():
+            for s in total:
+                total[s] += sum((x - y) ** 2 for x, y in zip(a[s], b[s])) / len(a[s]) / len(runs)
+        return {s: math.sqrt(v) / self.case.sigma[s] for s, v in total.items()}
 
     def told_apart(self, j, names=("train_1", "train_2")):
         """Nats by which an effect beats parameters moved within their tolerances, for white noise and no disturbance.
@@ -156,24 +165,20 @@ class Bench:
             x / case.sigma[s] * math.sqrt(points) for r in runs for s in case.sigma for x in r[s][::points]
         ]
         full = stack([self.run(n, [j]) for n in names])
-        closed, case.closed = case.closed, False
-        try:
-            bare = stack([self.run(n, []) for n in names])
-            columns = []
-            for name, (_, sigma) in case.circuit.known().items():
-                kept = case.parameters[name]
-                case.parameters[name] = kept * math.exp(0.5 * sigma)
-                columns.append([2 * (x - y) for x, y in zip(stack([self.run(n, []) for n in names]), bare)])
-                case.parameters[name] = kept
-        finally:
-            case.closed = closed
+        bare = stack([self.again(n, []) for n in names])
+        columns = []
+        for name, (_, sigma) in case.circuit.known().items():
+            kept = case.parameters[name]
+            case.parameters[name] = kept * math.exp(0.5 * sigma)
+            columns.append([2 * (x - y) for x, y in zip(stack([self.again(n, []) for n in names]), bare)])
+            case.parameters[name] = kept
         return 0.5 * ridge(columns, [x - y for x, y in zip(full, bare)])
 
     def fit(self, j):
         """Turns the size of an effect until it is as visible as was drawn, as far as its limits allow."""
         case, effect = self.case, self.case.effects[j]
         for _ in range(5):
-            ratio = max(max(self.visible([j], []).values()) / case.aims[j], 1e-3)
+            ratio = max(max(self.visible([j]).values()) / case.aims[j], 1e-3)
             if 0.75 < ratio < 1.33:
                 break
             factor = ratio**0.1 if effect.falling else min(max(1 / ratio, 0.15), 6)
@@ -181,7 +186,7 @@ class Bench:
             if size == abs(case.sizes[j]):
                 break
             case.sizes[j] = math.copysign(size, case.sizes[j])
-        return self.visible([j], [])
+        return self.visible([j])
 
 
 def ridge(columns, data):
@@ -210,16 +215,17 @@ def make(binary, seed, index, circuit, out):
             bench = Bench(binary, folder, case)
             try:
                 seen = [dict(visible=bench.fit(j), nats=bench.told_apart(j)) for j in range(len(case.effects))]
+                shaken = bench.shaken()
                 recordings = {f: bench.run(f, list(range(len(case.effects)))) for f in FILES}
             except Failed as trouble:
                 troubles.append(dict(effects=[e.name for e in case.effects], why=str(trouble)))
                 continue
-            save(case, f"{index:03d}_{circuit.name}", out, recordings, seen, troubles, seed, os.path.join(folder, "plant.mo"))
+            save(case, f"{index:03d}_{circuit.name}", out, recordings, told(case, seen, shaken, troubles, seed), os.path.join(folder, "plant.mo"))
             return case, seen
     raise SystemExit(f"case {index} ({circuit.name}): no plant runs: {troubles}")
 
 
-def save(case, name, out, recordings, seen, troubles, seed, plant):
+def save(case, name, out, recordings, truth_told, plant):
     circuit = case.circuit
     data, truth = os.path.join(out, "data", name), os.path.join(out, "truth", name)
     os.makedirs(data, exist_ok=True)
@@ -239,11 +245,15 @@ def save(case, name, out, recordings, seen, troubles, seed, plant):
         write(os.path.join(data, f + ".csv"), table)
     shutil.copy(plant, truth)
     with open(os.path.join(truth, "truth.json"), "w") as file:
-        json.dump(told(case, seen, troubles, seed), file, indent=1)
+        json.dump(truth_told, file, indent=1)
 
 
-def told(case, seen, troubles, seed):
+def told(case, seen, shaken, troubles, seed):
     """The truth file."""
+    parameters = dict(case.parameters)
+    for e, size in zip(case.effects, case.sizes):
+        if e.drift:
+            parameters[e.drift] = case.circuit.parameters[e.drift][0] * (1 + size)
     effects = [
         dict(
             name=e.name, families=e.families, outside=e.outside(), groups=e.groups, parameters=e.parameters, size=size,
@@ -251,10 +261,10 @@ def told(case, seen, troubles, seed):
         )
         for e, size, s in zip(case.effects, case.sizes, seen)
     ]
-    deviations = {k: math.log(v / case.circuit.parameters[k][0]) / case.circuit.parameters[k][1] for k, v in case.parameters.items()}
+    deviations = {k: math.log(v / case.circuit.parameters[k][0]) / case.circuit.parameters[k][1] for k, v in parameters.items()}
     return dict(
         circuit=case.circuit.name, seed=seed, effects=effects, closed_loop=case.closed, noise=case.sigma,
-        quantum=case.quantum, parameters=case.parameters, deviations=deviations, redrawn=troubles,
+        quantum=case.quantum, parameters=parameters, shaken=shaken, deviations=deviations, redrawn=troubles,
     )
 
 

@@ -54,7 +54,10 @@ class Node:
 
 @dataclass
 class Bridge:
-    """Two hydraulic ports of one component. `speed` is an expression of the shaft's speed, `turn` of its angle."""
+    """Two hydraulic ports of one component. `speed` is an expression of the shaft's speed, `turn` of its angle.
+
+    Where the second port lies at a constant pressure, `names_b` is empty: a leak across is then a leak to the outside.
+    """
 
     name: str
     port_a: str

@@ -6,7 +6,6 @@ from spec import Bridge, Circuit, Input, Node, Signal, nominal
 SHAFT_1 = ["electricMotor.flange", "shaft_1.flange_a", "shaft_1.flange_b", "bearing_1.flange_a", "pump.flange"]
 SHAFT_2 = ["hydraulicMotor.flange", "shaft_2.flange_a", "shaft_2.flange_b", "load.flange"]
 HIGH = ["pump.port_a", "highSide.port", "hydraulicMotor.port_b"]
-LOW = ["pump.port_b", "lowSide.port", "hydraulicMotor.port_a"]
 
 
 def circuit():
@@ -39,9 +38,9 @@ def circuit():
                  parameters={"extra_compliance": ["V_line"]}),
         ],
         bridges=[
-            Bridge("pump", "pump.port_a", "pump.port_b", HIGH, LOW, through=1e-3, way=8e6, speed="shaft_1.w", rate=80,
+            Bridge("pump", "pump.port_a", "pump.port_b", HIGH, [], through=1e-3, way=8e6, speed="shaft_1.w", rate=80,
                    turn="shaft_1.phi"),
-            Bridge("hydraulic motor", "hydraulicMotor.port_b", "hydraulicMotor.port_a", HIGH, LOW, through=1e-3, way=8e6,
+            Bridge("hydraulic motor", "hydraulicMotor.port_b", "hydraulicMotor.port_a", HIGH, [], through=1e-3, way=8e6,
                    speed="shaft_2.w", rate=80, turn="shaft_2.phi"),
         ],
         settle=2,

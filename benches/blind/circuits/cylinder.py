@@ -5,7 +5,6 @@ from spec import Bridge, Circuit, Cut, Input, Node, Signal, nominal
 
 SIDE_A = ["pump.port_a", "cylinder.port_1", "highPressure_A.port", "relief_A.port_a", "check_A.port_b", "check_B.port_x"]
 SIDE_B = ["pump.port_b", "cylinder.port_2", "highPressure_B.port", "relief_B.port_a", "check_B.port_b", "check_A.port_x"]
-LOW = ["accumulator.port", "lowPressure.port", "relief_A.port_b", "relief_B.port_b", "check_A.port_a", "check_B.port_a"]
 SHAFT = ["drive.flange", "rotor.flange_a", "rotor.flange_b", "pump.flange"]
 ROD = ["cylinder.flange", "positionSensor.flange", "load.flange_a", "load.flange_b", "force.flange"]
 

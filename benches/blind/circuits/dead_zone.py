@@ -5,7 +5,6 @@ from spec import Bridge, Circuit, Input, Node, Signal, nominal
 
 SIDE_A = ["pump.port_a", "volume_A.port", "gauge.port", "flowSensor.port_a", "check_A.port_b"]
 SIDE_B = ["pump.port_b", "volume_B.port", "check_B.port_b"]
-LOW = ["accumulator.port", "check_A.port_a", "check_B.port_a"]
 
 
 def circuit():

@@ -5,7 +5,6 @@ from spec import Bridge, Circuit, Input, Node, Signal, nominal
 
 SIDE_A = ["volume_A.port", "pump.port_a", "leak.port_a", "relief.port_a", "throttle.port_a", "check_A.port_b"]
 SIDE_B = ["volume_B.port", "pump.port_b", "check_B.port_b"]
-LOW = ["accumulator.port", "leak.port_b", "relief.port_b", "throttle.port_b", "check_A.port_a", "check_B.port_a"]
 SHAFT = ["drive.flange", "rotor.flange_a", "rotor.flange_b", "bearing.flange_a", "pump.flange"]
 
 
