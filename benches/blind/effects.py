@@ -39,7 +39,7 @@ def shunt(node, form):
         parameters = node.parameters[form.share]
     return Effect(
         form.name, families, [node.names], parameters, probes=[(node.domain, node.port, None, form)], back=node.back,
-        largest=1.0,
+        largest=0.3 if form.share == "extra_inertia" else 1.0,
     )
 
 

@@ -58,7 +58,7 @@ def mechanical(rng, place):
              f"{F}*{{A}}*{{v}}/{number(V)}*{skew}/(1 + 0.2*({{v}}/{number(V)})^2)", share="viscous_friction"),
         Form("drag", ["quadratic_drag"], f"{F}*{{A}}*{{v}}/{number(V)}*({{v}}^2/{number(V * V)} + 1e-6)^0.4*{skew}"),
         Form("constant load", ["constant_force"], f"{F}*{{A}}*{rng.choice([-1, 1])}"),
-        Form("further inertia", ["extra_inertia"], f"{F}*{{A}}*der({{v}})/{number(V * V / X * rng.uniform(1, 4))}",
+        Form("further inertia", ["extra_inertia"], f"{number(5 * place.inertia)}*{{A}}*der({{v}})", size=(0.01, 0.3),
              share="extra_inertia"),
         wen,
     ]

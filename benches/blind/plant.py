@@ -4,6 +4,9 @@ import csv
 import os
 import subprocess
 
+# Seconds of a run; a plant that takes longer is drawn again.
+LONGEST = 120
+
 PROBES = """
 model BlindRod
   Interfaces.TranslationalFlange flange;
@@ -189,7 +192,10 @@ def simulate(binary, folder, model, table, dt, variables, sets, linear, toleranc
         command += ["--map", ",".join(f"{c}={c}:linear" for c in linear)]
     for name, value in sets.items():
         command += ["--set", f"{name}={value:.12g}"]
-    done = subprocess.run(command, capture_output=True, text=True)
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, timeout=LONGEST)
+    except subprocess.TimeoutExpired as trouble:
+        raise Failed("takes too long") from trouble
     if done.returncode != 0:
         raise Failed(done.stderr.strip()[:600])
     return read(result, variables, n, dt)

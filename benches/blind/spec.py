@@ -45,6 +45,7 @@ class Node:
     way: float
     middle: float = 0.0
     back: str = "1e5"
+    inertia: float = 0.0  # usual mass or inertia there
     turns: bool = False  # a shaft that turns on and on
     pressure: str = ""  # expression of the pressure that loads a friction here
     position: str = ""  # expression of a position on which a flow may depend

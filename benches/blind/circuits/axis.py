@@ -61,9 +61,9 @@ def circuit():
             "tau_i": "exact", "Kp": "exact", "Ki": "exact", "imax": "exact",
         },
         nodes=[
-            Node("shaft", "rotation", SHAFT[2], SHAFT, turns=True, through=3, rate=60, way=6,
+            Node("shaft", "rotation", SHAFT[2], SHAFT, turns=True, inertia=0.004, through=3, rate=60, way=6,
                  pressure="p1 - p2", parameters={"viscous_friction": ["dv"], "extra_inertia": ["J"]}),
-            Node("rod", "translation", ROD[3], ROD, through=2000, rate=0.08, way=0.03,
+            Node("rod", "translation", ROD[3], ROD, inertia=120, through=2000, rate=0.08, way=0.03,
                  pressure="p1 + p2 - 2*p0", parameters={"viscous_friction": ["b"], "extra_inertia": ["M"]}),
             chamber("node 1", "chamber_1.port", NODE_1, 2),
             chamber("node 2", "chamber_2.port", NODE_2, 1),

@@ -29,9 +29,9 @@ def circuit():
             "load.B": (0.1, 0.15), "load.a_2": (0.03, 0.1),
         },
         nodes=[
-            Node("pump shaft", "rotation", "shaft_1.flange_b", SHAFT_1, turns=True, through=120, rate=40, way=40, pressure="p",
+            Node("pump shaft", "rotation", "shaft_1.flange_b", SHAFT_1, turns=True, inertia=0.37, through=120, rate=40, way=40, pressure="p",
                  parameters={"viscous_friction": ["bearing_1.d"], "extra_inertia": ["shaft_1.J"]}),
-            Node("load shaft", "rotation", "shaft_2.flange_b", SHAFT_2, turns=True, through=120, rate=40, way=40, pressure="p",
+            Node("load shaft", "rotation", "shaft_2.flange_b", SHAFT_2, turns=True, inertia=2, through=120, rate=40, way=40, pressure="p",
                  parameters={"viscous_friction": ["load.B", "load.a_2"], "extra_inertia": ["J_L"],
                              "constant_force": ["load.a_0"], "dry_friction": ["load.a_0"]}),
             Node("high side", "hydraulic", "highSide.port", HIGH, through=1e-3, rate=2e7, way=8e6, middle=1e7, back="p_low",

@@ -35,10 +35,10 @@ def circuit():
             "pump.V": (0.8e-6, 0.005), "accumulator.p_pre": (3e5, 0.03), "cylinder.C_i": (1e-13, 0.2),
         },
         nodes=[
-            Node("shaft", "rotation", "rotor.flange_b", SHAFT, turns=True, through=1, rate=120, way=60, pressure="p_A - p_B",
+            Node("shaft", "rotation", "rotor.flange_b", SHAFT, turns=True, inertia=0.00018, through=1, rate=120, way=60, pressure="p_A - p_B",
                  parameters={"viscous_friction": ["pump.b"], "extra_inertia": ["rotor.J"], "dry_friction": ["pump.T_c"],
                              "pressure_friction": ["pump.k_p"]}),
-            Node("rod", "translation", "load.flange_b", ROD, through=2e4, rate=6e-3, way=8e-3, middle=0.054,
+            Node("rod", "translation", "load.flange_b", ROD, inertia=490, through=2e4, rate=6e-3, way=8e-3, middle=0.054,
                  pressure="p_A + p_B", parameters={"extra_inertia": ["m_load"]}),
             side("side A", "pump.port_a", SIDE_A),
             side("side B", "pump.port_b", SIDE_B),

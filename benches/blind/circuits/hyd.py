@@ -63,7 +63,7 @@ def circuit():
             "cyl.Bv": (200, 0.2), "mass.m": (200, 0.03), "mass.F": (-5000, 0.02),
         },
         nodes=[
-            Node("rod", "translation", "mass.a", ROD, through=4000, rate=0.15, way=0.15, middle=0.25,
+            Node("rod", "translation", "mass.a", ROD, inertia=200, through=4000, rate=0.15, way=0.15, middle=0.25,
                  pressure="cyl.pA + cyl.pB",
                  parameters={"viscous_friction": ["cyl.Bv"], "dry_friction": ["cyl.Fc"], "extra_inertia": ["mass.m"],
                              "constant_force": ["mass.F"]}),

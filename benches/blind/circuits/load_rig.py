@@ -29,7 +29,7 @@ def circuit():
             "pump.k_p": (0.06, 0.1), "pump.V": (0.8e-6, 0.005), "throttle.A_max": (4e-7, 0.02), "G_A": (1e-14, 0.2),
         },
         nodes=[
-            Node("shaft", "rotation", "rotor.flange_b", SHAFT, turns=True, through=1, rate=50, way=50, pressure="p_A",
+            Node("shaft", "rotation", "rotor.flange_b", SHAFT, turns=True, inertia=0.00018, through=1, rate=50, way=50, pressure="p_A",
                  parameters={"viscous_friction": ["bearing.d"], "extra_inertia": ["rotor.J"], "dry_friction": ["pump.T_c"],
                              "pressure_friction": ["pump.k_p"], "constant_force": ["pump.T_c"]}),
             Node("side A", "hydraulic", "volume_A.port", SIDE_A, through=1.2e-5, rate=2e7, way=5e6, middle=6e6,

@@ -35,9 +35,9 @@ def circuit():
             "control.k_x": "exact", "control.k_p": "exact", "control.k_i": "exact", "control.v_max": "exact",
         },
         nodes=[
-            Node("motor", "rotation", "rotor.flange_b", MOTOR, through=1, rate=30, way=12,
+            Node("motor", "rotation", "rotor.flange_b", MOTOR, inertia=0.0004, through=1, rate=30, way=12,
                  parameters={"viscous_friction": ["d_m"], "extra_inertia": ["J_m"]}),
-            Node("load", "rotation", "load.flange_b", LOAD, through=8, rate=3, way=1.2,
+            Node("load", "rotation", "load.flange_b", LOAD, inertia=0.3, through=8, rate=3, way=1.2,
                  parameters={"viscous_friction": ["d_L"], "extra_inertia": ["J_L"]}),
         ],
         cuts=[
