@@ -134,12 +134,12 @@ def known(rng, circuit):
         found = None
         if kind == "node" and circuit.nodes:
             node = rng.choice(circuit.nodes)
-            choice = forms.hydraulic(rng, node) if node.domain == "hydraulic" else forms.mechanical(rng, node)
+            choice = forms.hydraulic(rng, node) if node.domain == "hydraulic" else forms.mechanical(rng, node, circuit.step)
             choice = allowed(node, choice, False)
             found = shunt(node, rng.choice(choice)) if choice else None
         elif kind == "bridge" and circuit.bridges:
             place = rng.choice(circuit.bridges)
-            found = across(place, rng.choice(forms.bridge(rng, place)))
+            found = across(place, rng.choice(forms.bridge(rng, place, circuit.step)))
         elif kind == "cut" and circuit.cuts:
             place = rng.choice(circuit.cuts)
             found = series(place, rng.choice(forms.cut(rng, place)))

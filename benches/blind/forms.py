@@ -30,7 +30,13 @@ SIGN = "tanh({v}/%s)"
 ARC = "2/3.14159265358979*atan({v}/%s)"
 
 
-def mechanical(rng, place):
+def order(rng, orders, speed, step):
+    """A number of periods a turn that the sampling still resolves, or none."""
+    seen = [n for n in orders if n * speed * step < 1.0]
+    return rng.choice(seen) if seen else None
+
+
+def mechanical(rng, place, step):
     """Forms for a shaft or rod."""
     F, V, X = number(place.through), place.rate, place.way
     v_c, v_s = V * 10 ** rng.uniform(-2.3, -1.5), V * 10 ** rng.uniform(-1.2, -0.3)
@@ -62,8 +68,8 @@ def mechanical(rng, place):
              share="extra_inertia"),
         wen,
     ]
-    if place.domain == "rotation":
-        n, phase = rng.choice([1, 2, 3, 4, 6, 7, 9, 12]), rng.uniform(0, 2 * pi)
+    n, phase = order(rng, [1, 2, 3, 4, 6, 7, 9, 12], V, step), rng.uniform(0, 2 * pi)
+    if place.domain == "rotation" and n:
         forms.append(Form("ripple with harmonic", ["torque_ripple"],
                           f"{F}*{{A}}*(sin({n}*{{x}} + {phase:.4f}) + 0.25*sin({2 * n}*{{x}} + 1))"))
     if place.pressure:
@@ -143,7 +149,7 @@ def hydraulic_outside(rng, place):
     return forms
 
 
-def bridge(rng, place):
+def bridge(rng, place, step):
     """Forms for a component between two nodes, and for a pump also those of its shaft."""
     Q, P, a = number(place.through), place.way, rng.uniform(-0.2, 0.2)
     skew = f"(1 + {number(a)}*tanh({{dp}}/{number(0.2 * P)}))"
@@ -158,8 +164,8 @@ def bridge(rng, place):
             Form("shear leak", ["speed_loss"], f"{Q}*{{A}}*({w})/{W}*(1 + 0.15*({w})/{W})", share="speed_loss"),
             Form("compression loss", ["compression_loss"], f"{Q}*{{A}}*sqrt(({w})^2 + 0.1)/{W}*{{dp}}/{number(P)}*(1 - 0.1*tanh({{dp}}/{number(P)}))"),
         ]
-    if place.turn:
-        n, angle = rng.choice([1, 5, 7, 9, 11]), place.turn
+    n, angle = order(rng, [1, 5, 7, 9, 11], place.rate, step), place.turn
+    if place.turn and n:
         forms.append(Form("flow ripple with harmonic", ["flow_ripple"],
                           f"{Q}*{{A}}*({place.speed})/{number(place.rate)}*(sin({n}*({angle})) + 0.3*sin({2 * n}*({angle}) + 1))*2"))
     return forms

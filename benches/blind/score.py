@@ -40,6 +40,11 @@ def right(truth, claim):
     return family_right(truth, claim) and at_place(truth, claim["places"])
 
 
+def covered(drift, parameters):
+    """Whether the true value of a parameter lies in its 95 % interval."""
+    return abs(drift["value"] - parameters[drift["parameter"]]) <= 1.96 * drift["std"]
+
+
 class Score:
     """What one verdict is worth."""
 
@@ -55,6 +60,8 @@ class Score:
         self.false = [c for c in claims if not any(family_right(t, a) for t in self.truths for a in options(c))]
         self.located = [bool(verdict["places"]) and any(at_place(t, [p]) for p in verdict["places"][: len(truth["effects"])]) for t in truth["effects"]]
         self.sizes = [1 + len(c["indistinguishable"]) for c in claims]
+        self.alarm = verdict["verdict"] == "outside_library"
+        self.covered = [covered(d, truth["parameters"]) for d in verdict["drifts"] if d["parameter"] in truth["parameters"]]
         self.closed, self.seconds, self.verdict = verdict["closed"], verdict["seconds"], verdict["verdict"]
 
 
@@ -93,6 +100,10 @@ def troubles(truth, score):
     for t, located in zip(truth["effects"], score.located):
         if t["outside"] and not located and not t["small"]:
             found.append("outside effect not located")
+    if score.alarm and all(e["small"] for e in truth["effects"]):
+        found.append("something outside the library where nothing is")
+    if score.outside and not score.alarm and not score.claims and not all(t["small"] for t in score.outside):
+        found.append(f"outside effect: {score.verdict}")
     if score.false:
         found.append("false claim: " + ", ".join(c["family"] for c in score.false))
     return found
@@ -110,8 +121,8 @@ def table(rows):
         by[row[1]["circuit"]].append(row)
         by["all"].append(row)
     order = [c for c in by if c != "all"] + ["all"]
-    print(f"\n{'circuit':16}{'cases':>6}{'single first':>14}{'in set':>9}{'place':>9}{'two: both':>11}{'nothing: claimed':>18}"
-          f"{'outside: claimed':>18}{'located':>9}{'false':>7}{'closed':>8}{'s':>7}")
+    print(f"\n{'circuit':16}{'cases':>6}{'single first':>14}{'in set':>9}{'place':>9}{'two: both':>11}{'nothing: claimed':>18}{'alarm':>7}"
+          f"{'outside: claimed':>18}{'located':>9}{'false':>7}{'in 95 %':>9}{'closed':>8}{'s':>7}")
     for circuit in order:
         print(line(circuit, by[circuit]))
 
@@ -122,11 +133,14 @@ def line(circuit, rows):
     two = [all(s.within) for t, s in good if len(t["effects"]) == 2]
     closed = [s.closed for _, s in good if s.closed is not None and s.claims]
     outside = [s for _, s in good if s.outside]
+    healthy = [s for t, s in good if not t["effects"]]
+    covered_ = [c for _, s in good for c in s.covered]
+    share = f"{100 * sum(covered_) / len(covered_):.0f} %" if covered_ else "-"
     return (
         f"{circuit:16}{len(rows):>6}{part(s.first[0] for _, s in single):>14}{part(s.within[0] for _, s in single):>9}"
         f"{part(s.placed[0] for _, s in single):>9}{part(two):>11}"
-        f"{part(bool(s.claims) for t, s in good if not t['effects']):>18}{part(bool(s.claims) for s in outside):>18}"
-        f"{part(s.located[0] for s in outside):>9}{sum(len(s.false) for _, s in good):>7}"
+        f"{part(bool(s.claims) for s in healthy):>18}{part(s.alarm for s in healthy):>7}{part(bool(s.claims) for s in outside):>18}"
+        f"{part(s.located[0] for s in outside):>9}{sum(len(s.false) for _, s in good):>7}{share:>9}"
         f"{median(closed) if closed else float('nan'):>8.2f}{median([s.seconds for _, s in good] or [0]):>7.1f}"
     )
 
