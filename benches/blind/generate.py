@@ -146,6 +146,29 @@ class Bench:
         """The same for all disturbances."""
         return self.changes({"train_1": (self.run("train_1", []), self.again("train_1", [], quiet=True))})
 
+    def closing(self, recordings):
+        """Held gaps, of full scale and without noise: of the nominal model, and of the true one without disturbances.
+
+        What the true model leaves is the least that any diagnosis can leave.
+        """
+        case, chosen, kept = self.case, list(range(len(self.case.effects))), self.case.parameters
+        held = [f for f in FILES if f.startswith("held")]
+        true = {f: self.again(f, chosen, quiet=True) for f in held}
+        case.parameters = {k: v for k, (v, _) in case.circuit.known().items()}
+        nominal = {f: self.again(f, [], quiet=True) for f in held}
+        case.parameters = kept
+        return dict(nominal=self.gap(recordings, nominal), true=self.gap(recordings, true))
+
+    def gap(self, recordings, others):
+        """Root mean square over recordings, signals and samples, of full scale."""
+        parts = []
+        for f, signals in others.items():
+            skip = self.case.recordings[f].skip
+            for s in self.case.circuit.signals:
+                a, b = recordings[f][s.name][skip:], signals[s.name][skip:]
+                parts.append(sum((x - y) ** 2 for x, y in zip(a, b)) / len(a) / s.range**2)
+        return math.sqrt(sum(parts) / len(parts))
+
     def changes(self, runs):
         total = {s: 0.0 for s in self.case.sigma}
         for a, b in runs.values():
@@ -217,10 +240,11 @@ def make(binary, seed, index, circuit, out):
                 seen = [dict(visible=bench.fit(j), nats=bench.told_apart(j)) for j in range(len(case.effects))]
                 shaken = bench.shaken()
                 recordings = {f: bench.run(f, list(range(len(case.effects)))) for f in FILES}
+                closing = bench.closing(recordings)
             except Failed as trouble:
                 troubles.append(dict(effects=[e.name for e in case.effects], why=str(trouble)))
                 continue
-            save(case, f"{index:03d}_{circuit.name}", out, recordings, told(case, seen, shaken, troubles, seed), os.path.join(folder, "plant.mo"))
+            save(case, f"{index:03d}_{circuit.name}", out, recordings, told(case, seen, shaken, closing, troubles, seed), os.path.join(folder, "plant.mo"))
             return case, seen
     raise SystemExit(f"case {index} ({circuit.name}): no plant runs: {troubles}")
 
@@ -248,7 +272,7 @@ def save(case, name, out, recordings, truth_told, plant):
         json.dump(truth_told, file, indent=1)
 
 
-def told(case, seen, shaken, troubles, seed):
+def told(case, seen, shaken, closing, troubles, seed):
     """The truth file."""
     parameters = dict(case.parameters)
     for e, size in zip(case.effects, case.sizes):
@@ -264,7 +288,7 @@ def told(case, seen, shaken, troubles, seed):
     deviations = {k: math.log(v / case.circuit.parameters[k][0]) / case.circuit.parameters[k][1] for k, v in parameters.items()}
     return dict(
         circuit=case.circuit.name, seed=seed, effects=effects, closed_loop=case.closed, noise=case.sigma,
-        quantum=case.quantum, parameters=parameters, shaken=shaken, deviations=deviations, redrawn=troubles,
+        quantum=case.quantum, parameters=parameters, shaken=shaken, closing=closing, deviations=deviations, redrawn=troubles,
     )
 
 

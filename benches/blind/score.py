@@ -62,6 +62,9 @@ class Score:
         self.sizes = [1 + len(c["indistinguishable"]) for c in claims]
         self.alarm = verdict["verdict"] == "outside_library"
         self.covered = [covered(d, truth["parameters"]) for d in verdict["drifts"] if d["parameter"] in truth["parameters"]]
+        closing = truth.get("closing")
+        # what the true model closes of the held gap; None where there is no gap to speak of
+        self.possible = 1 - closing["true"] / closing["nominal"] if closing and closing["nominal"] > 2e-3 else None
         self.closed, self.seconds, self.verdict = verdict["closed"], verdict["seconds"], verdict["verdict"]
 
 
@@ -115,14 +118,14 @@ def part(values):
 
 
 def table(rows):
-    """The table by circuit."""
+    """The table by circuit; `closing`: median of the held gap closed over what the true model closes, cases with effects."""
     by = defaultdict(list)
     for row in rows:
         by[row[1]["circuit"]].append(row)
         by["all"].append(row)
     order = [c for c in by if c != "all"] + ["all"]
     print(f"\n{'circuit':16}{'cases':>6}{'single first':>14}{'in set':>9}{'place':>9}{'two: both':>11}{'nothing: claimed':>18}{'alarm':>7}"
-          f"{'outside: claimed':>18}{'located':>9}{'false':>7}{'in 95 %':>9}{'closed':>8}{'s':>7}")
+          f"{'outside: claimed':>18}{'located':>9}{'false':>7}{'in 95 %':>9}{'closing':>9}{'s':>7}")
     for circuit in order:
         print(line(circuit, by[circuit]))
 
@@ -131,7 +134,7 @@ def line(circuit, rows):
     good = [(t, s) for _, t, s, _ in rows if s is not None]
     single = [(e, s) for t, s in good if len(t["effects"]) == 1 for e in s.truths if not e["small"]]
     two = [all(s.within) for t, s in good if len(t["effects"]) == 2]
-    closed = [s.closed for _, s in good if s.closed is not None and s.claims]
+    closed = [s.closed / s.possible for t, s in good if s.closed is not None and s.possible and s.possible > 0.1 and t["effects"]]
     outside = [s for _, s in good if s.outside]
     healthy = [s for t, s in good if not t["effects"]]
     covered_ = [c for _, s in good for c in s.covered]
@@ -141,7 +144,7 @@ def line(circuit, rows):
         f"{part(s.placed[0] for _, s in single):>9}{part(two):>11}"
         f"{part(bool(s.claims) for s in healthy):>18}{part(s.alarm for s in healthy):>7}{part(bool(s.claims) for s in outside):>18}"
         f"{part(s.located[0] for s in outside):>9}{sum(len(s.false) for _, s in good):>7}{share:>9}"
-        f"{median(closed) if closed else float('nan'):>8.2f}{median([s.seconds for _, s in good] or [0]):>7.1f}"
+        f"{median(closed) if closed else float('nan'):>9.2f}{median([s.seconds for _, s in good] or [0]):>7.1f}"
     )
 
 
