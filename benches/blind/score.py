@@ -45,6 +45,10 @@ def covered(drift, parameters):
     return abs(drift["value"] - parameters[drift["parameter"]]) <= 1.96 * drift["std"]
 
 
+# What a diagnosis says that ended without a verdict.
+NOTHING = dict(effects=[], places=[], drifts=[], closed=None, seconds=0.0, verdict="none")
+
+
 class Score:
     """What one verdict is worth."""
 
@@ -124,14 +128,16 @@ def table(rows):
         by[row[1]["circuit"]].append(row)
         by["all"].append(row)
     order = [c for c in by if c != "all"] + ["all"]
-    print(f"\n{'circuit':16}{'cases':>6}{'single first':>14}{'in set':>9}{'place':>9}{'two: both':>11}{'nothing: claimed':>18}{'alarm':>7}"
+    print(f"\n{'circuit':16}{'cases':>6}{'no verdict':>12}{'single first':>14}{'in set':>9}{'place':>9}{'two: both':>11}{'nothing: claimed':>18}{'alarm':>7}"
           f"{'outside: claimed':>18}{'located':>9}{'false':>7}{'in 95 %':>9}{'closing':>9}{'s':>7}")
     for circuit in order:
         print(line(circuit, by[circuit]))
 
 
 def line(circuit, rows):
-    good = [(t, s) for _, t, s, _ in rows if s is not None]
+    failed = sum(s is None for _, _, s, _ in rows)
+    # without a verdict nothing is found: such cases count
+    good = [(t, s or Score(t, NOTHING)) for _, t, s, _ in rows]
     single = [(e, s) for t, s in good if len(t["effects"]) == 1 for e in s.truths if not e["small"]]
     two = [all(s.within) for t, s in good if len(t["effects"]) == 2]
     closed = [s.closed / s.possible for t, s in good if s.closed is not None and s.possible and s.possible > 0.1 and t["effects"]]
@@ -140,11 +146,11 @@ def line(circuit, rows):
     covered_ = [c for _, s in good for c in s.covered]
     share = f"{100 * sum(covered_) / len(covered_):.0f} %" if covered_ else "-"
     return (
-        f"{circuit:16}{len(rows):>6}{part(s.first[0] for _, s in single):>14}{part(s.within[0] for _, s in single):>9}"
+        f"{circuit:16}{len(rows):>6}{failed:>12}{part(s.first[0] for _, s in single):>14}{part(s.within[0] for _, s in single):>9}"
         f"{part(s.placed[0] for _, s in single):>9}{part(two):>11}"
         f"{part(bool(s.claims) for s in healthy):>18}{part(s.alarm for s in healthy):>7}{part(bool(s.claims) for s in outside):>18}"
         f"{part(s.located[0] for s in outside):>9}{sum(len(s.false) for _, s in good):>7}{share:>9}"
-        f"{median(closed) if closed else float('nan'):>9.2f}{median([s.seconds for _, s in good] or [0]):>7.1f}"
+        f"{median(closed) if closed else float('nan'):>9.2f}{median([s.seconds for _, _, s, _ in rows if s is not None] or [0]):>7.1f}"
     )
 
 
