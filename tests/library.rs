@@ -88,6 +88,19 @@ fn every_model_and_example_is_silent() {
     assert!(bad.is_empty(), "{}", bad.join("\n\n"));
 }
 
+/// The nominal models of the blind bench that stand beside its generator.
+#[test]
+fn nominal_models_of_the_blind_bench_are_silent() {
+    let mut files = Vec::new();
+    mo_files(&Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/blind/nominal"), &mut files);
+    assert!(!files.is_empty());
+    for file in files {
+        let model = file.file_stem().map(|s| s.to_string_lossy().into_owned());
+        let request = Request { source: file, model, overrides: vec![], libraries: vec![], beside: vec![] };
+        assert_eq!(remarks(&request), "");
+    }
+}
+
 /// One class a file, and the folder's order lists every file.
 #[test]
 fn every_file_is_listed_and_holds_the_class_of_its_name() {
