@@ -310,7 +310,6 @@ impl<'a> Driver<'a, '_> {
         if !self.restart.is_explicit() {
             ida.set_corrector_tolerance(ALGEBRAIC_CORRECTOR);
         }
-        ida.set_shortest_step(1e-15 * span.abs().max(self.t.abs()));
         ida.pause_after(if system.dae.selections.is_empty() { PAUSE } else { PAUSE_WITH_SELECTIONS });
         self.ida = Some(ida);
         self.first_step(Cause::Start);

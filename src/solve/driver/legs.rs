@@ -13,6 +13,10 @@ use crate::solve::selection;
 const CREEPING: f64 = 1e-11;
 const PATIENCE: u32 = 20;
 
+/// The shortest step, as a part of the time: a shorter one would not move it. Not of the length of the run, which says
+/// nothing about how fast things begin.
+const SHORTEST_STEP: f64 = 1e-15;
+
 impl<'a> Driver<'a, '_> {
     pub(super) fn integrate(&mut self) -> Flow {
         let stop = self.settings.stop_time;
@@ -49,6 +53,7 @@ impl<'a> Driver<'a, '_> {
     pub(super) fn leg(&mut self) -> Flow {
         let (event, to) = (self.next_event(), self.next_stop());
         self.ida().set_stop(to);
+        self.bound_steps();
         let span = self.settings.stop_time - self.settings.start_time;
         loop {
             let row = self.grid.next();
@@ -64,6 +69,7 @@ impl<'a> Driver<'a, '_> {
                 Ok((Reached::Pause, t)) => {
                     self.creep = if t - self.t < CREEPING * span { self.creep + 1 } else { 0 };
                     self.t = t;
+                    self.bound_steps();
                     self.look_outside()?;
                     if self.creep >= PATIENCE {
                         return Err(self.failed(Failure::ErrorTest));
@@ -90,6 +96,11 @@ impl<'a> Driver<'a, '_> {
                 }
             }
         }
+    }
+
+    fn bound_steps(&mut self) {
+        let shortest = SHORTEST_STEP * self.t.abs();
+        self.ida().set_shortest_step(shortest);
     }
 
     /// Whether other states should be chosen; notes which.
