@@ -44,7 +44,23 @@
 //! # }
 //! ```
 //!
+//! `examples/` has a program for each use: `simulate`, `build`, `watch` (rows as they come), `cosimulate` (inputs set from
+//! outside at 1 kHz), `trajectories`, `linearize`, `identify`, `diagnose`.
+//!
+//! # Features
+//!
+//! | feature | brings |
+//! |---|---|
+//! | `cli` (default) | the command, with all below |
+//! | `plot` | pictures as PNG; SVG and HTML are always there |
+//! | `gap` | the diagnosis: where model and bench part |
+//! | `analysis` | linear models, identification, sweeps, studies, experiment files |
+//!
+//! Without any, circuits are compiled and run.
+//!
 //! The stages stand here in the order in which a circuit passes through them.
+
+#![deny(missing_docs)]
 
 pub mod diag;
 pub mod units;
@@ -76,16 +92,21 @@ pub mod solve;
 
 pub mod circuit;
 
+#[cfg(feature = "analysis")]
 pub mod analysis;
 
-pub use circuit::{Circuit, Error, Simulation};
+pub use circuit::{Circuit, Error, Simulation, Stepping};
 
 pub mod plot;
 
+#[cfg(feature = "analysis")]
 pub mod experiment;
 
+#[cfg(feature = "analysis")]
 pub mod study;
 
+#[cfg(feature = "gap")]
 pub mod gap;
 
+#[cfg(feature = "cli")]
 pub mod cli;

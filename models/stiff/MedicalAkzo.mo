@@ -2,8 +2,8 @@ model MedicalAkzo "Radioactive antibodies diffuse into tissue hit by a tumour: a
   parameter Integer N = 200 "Grid points";
   constant Real k = 100 "Rate of the reaction";
   constant Real c = 4 "Stretches the coordinate: zeta = x/(x + c)";
-  Real u[N](each start = 0, each fixed = true) "Concentration of the antibodies";
-  Real v[N](each start = 1, each fixed = true) "Concentration of the tissue";
+  Real u[N](each start = 0, each fixed = true, each nominal = 1e-4) "Concentration of the antibodies";
+  Real v[N](each start = 1, each fixed = true, each nominal = 1e-3) "Concentration of the tissue";
   Real phi "Concentration at the edge, cut off after a while";
 protected
   constant Real d = 1/N "Distance of the grid points";

@@ -3,9 +3,12 @@
 //! [`Circuit`] writes the model that its calls describe and hands it to the same pipeline as a file, so that both give
 //! the same instance. [`Simulation`] is a compiled model with the settings of a run; clones share the compiled code.
 
+mod callback;
 mod simulation;
+mod stepping;
 
 pub use simulation::{Error, Outcome, Simulation};
+pub use stepping::{InputPort, Probe, Stepping};
 
 use crate::compile::Request;
 use crate::instance::Override;

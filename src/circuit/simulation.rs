@@ -1,16 +1,19 @@
 //! A compiled model with the settings of a run.
 
+use super::callback::{Conduct, Rows};
+use super::stepping::Stepping;
 use crate::compile::{Model, Request, compile};
 use crate::diag::render::{Format, render};
 use crate::diag::{Code, Diagnostic, Sources};
 use crate::expr::VarId;
 use crate::flat::Variability;
 use crate::lower;
-use crate::results::Trajectory;
-use crate::solve::{self, Control, End, Input, Interpolation, Progress, Settings, State, Statistics};
+use crate::results::{Signal, Trajectory};
+use crate::solve::{self, Control, End, Input, Interpolation, Progress, Run, Settings, Sink, State, Statistics};
 use crate::structure::StateChoice;
-use crate::world::World;
+use crate::world::{MemoryWorld, World};
 use std::fmt;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// What went wrong, with the texts that its places point into. Prints as short messages, one a line.
@@ -45,6 +48,13 @@ pub struct Outcome {
     pub diagnostics: Vec<Diagnostic>,
 }
 
+impl Outcome {
+    fn new(run: Run, trajectory: Trajectory) -> Self {
+        let Run { end, diagnostics, statistics, state, .. } = run;
+        Outcome { trajectory, end, state, statistics, diagnostics }
+    }
+}
+
 /// A compiled model and the settings of its next run. Clones share the compiled code; runs of several clones may go in
 /// parallel.
 #[derive(Clone, Debug)]
@@ -73,6 +83,23 @@ impl Simulation {
             }
             None => Err(Error { diagnostics: outcome.diagnostics, sources }),
         }
+    }
+
+    /// Compiles the last model of a text; classes that ship with bramah are there by name.
+    ///
+    /// # Errors
+    /// As [`Simulation::compile`].
+    pub fn from_text(text: &str) -> Result<Self, Error> {
+        let world = MemoryWorld::single("model.mo", text);
+        Self::compile(&world, &Request { source: "model.mo".into(), ..Request::default() })
+    }
+
+    /// Compiles a model that ships with bramah, such as `ServoPump.DeadZone`.
+    ///
+    /// # Errors
+    /// As [`Simulation::compile`].
+    pub fn shipped(class: &str) -> Result<Self, Error> {
+        Self::compile(&MemoryWorld::default(), &Request { source: class.into(), ..Request::default() })
     }
 
     /// The compiled model.
@@ -128,7 +155,7 @@ impl Simulation {
         let variable = self.variable(name)?;
         let bad = |why: String| Diagnostic::new(Code::BadMap, why);
         if !self.model.dae.inputs.contains(&variable) {
-            return Err(self.error(bad(format!("`{name}` is not an input of the model"))));
+            return Err(self.not_an_input(name));
         }
         if times.len() != values.len() || times.is_empty() || times.windows(2).any(|w| w[1] <= w[0]) {
             return Err(self.error(bad(format!("the samples for `{name}` need growing times, one for each value"))));
@@ -137,6 +164,20 @@ impl Simulation {
         let (times, values) = (Arc::from(times), Arc::from(values));
         self.inputs.push(Input { variable, times, values, interpolation: between });
         Ok(self)
+    }
+
+    /// Chooses what to record, in this order, instead of all visible variables.
+    ///
+    /// # Errors
+    /// `E023` when there is no such variable.
+    pub fn record(&mut self, names: &[&str]) -> Result<&mut Self, Error> {
+        self.settings.wanted = names.iter().map(|name| self.variable(name)).collect::<Result<_, _>>()?;
+        Ok(self)
+    }
+
+    /// What a row holds: names, units and kinds of its values, in order.
+    pub fn columns(&self) -> Vec<Signal> {
+        solve::signals(&self.model.dae, &self.settings.wanted)
     }
 
     /// Runs from the initial values.
@@ -158,27 +199,102 @@ impl Simulation {
     /// Runs under control: with a way to stop it and to watch its progress.
     ///
     /// # Errors
-    /// As [`Simulation::run`].
+    /// As [`Simulation::run`]; `E507` when it was stopped, `E508` when the callback panicked.
     pub fn run_with(&self, from: Option<&State>, control: &mut Control<'_>) -> Result<Outcome, Error> {
-        let mut trajectory = Trajectory::new(solve::signals(&self.model.dae, &self.settings.wanted));
-        let system = &self.model.system;
-        let mut reselect = |choice: &StateChoice| self.model.with_states(choice);
-        let progress = control.progress.as_mut().map(|p| &mut **p as &mut dyn FnMut(&Progress) -> bool);
-        let mut control = Control { interrupt: control.interrupt, progress, reselect: Some(&mut reselect) };
-        let run = solve::simulate(system, &self.settings, &self.inputs, from, &mut trajectory, &mut control);
+        let mut trajectory = Trajectory::new(self.columns());
+        let run = self.run_into(from, control, &mut trajectory)?;
         if !run.end.is_success() {
-            return Err(Error { diagnostics: run.diagnostics, sources: self.sources.clone() });
+            return Err(self.errors(run.diagnostics));
         }
-        Ok(Outcome {
-            trajectory,
-            end: run.end,
-            state: run.state,
-            statistics: run.statistics,
-            diagnostics: run.diagnostics,
-        })
+        Ok(Outcome::new(run, trajectory))
     }
 
-    fn variable(&self, name: &str) -> Result<VarId, Error> {
+    /// Runs, and hands each row to a function as it comes: the time in seconds and the values of
+    /// [`Simulation::columns`]. Nothing is kept, so that memory does not grow with the run. `Break` ends the run, which
+    /// then counts as fine; [`Outcome::state`] is where it stood.
+    ///
+    /// ```
+    /// use std::ops::ControlFlow;
+    /// # fn main() -> Result<(), bramah::Error> {
+    /// let mut fall = bramah::Simulation::from_text(
+    ///     "model Fall Real h(start = 20, fixed = true); Real v(start = 0, fixed = true);
+    ///      equation der(h) = v; der(v) = -9.81; end Fall;",
+    /// )?;
+    /// let end = fall.record(&["h"])?.stop_time(10.0).run_rows(None, |_, row| {
+    ///     if row[0] < 0.0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    /// })?;
+    /// assert!((end.state.time - (40.0_f64 / 9.81).sqrt()).abs() < 0.05);
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Simulation::run`]; `E508` when the function panicked, which leaves the simulation as it was.
+    pub fn run_rows(
+        &self,
+        from: Option<&State>,
+        mut on_row: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
+    ) -> Result<Outcome, Error> {
+        let mut rows = Rows { on_row: &mut on_row, conduct: Conduct::default() };
+        let run = self.run_into(from, &mut Control::default(), &mut rows)?;
+        if let Some(complaint) = rows.conduct.complaint(run.time) {
+            return Err(self.error(complaint));
+        }
+        if !(run.end.is_success() || run.end == End::Interrupted && rows.conduct.stopped) {
+            return Err(self.errors(run.diagnostics));
+        }
+        Ok(Outcome::new(run, Trajectory::new(Vec::new())))
+    }
+
+    /// A run to be taken from step to step from outside, from the initial values.
+    ///
+    /// # Errors
+    /// When there are no consistent initial values.
+    pub fn stepping(&self) -> Result<Stepping<'_>, Error> {
+        Stepping::new(self, None)
+    }
+
+    /// The same from a saved state.
+    ///
+    /// # Errors
+    /// When the state does not fit the model.
+    pub fn stepping_from(&self, state: &State) -> Result<Stepping<'_>, Error> {
+        Stepping::new(self, Some(state))
+    }
+
+    fn run_into(&self, from: Option<&State>, control: &mut Control<'_>, sink: &mut dyn Sink) -> Result<Run, Error> {
+        let mut conduct = Conduct::default();
+        let mut reselect = |choice: &StateChoice| self.model.with_states(choice);
+        let mut watched = control.progress.as_mut().map(|report| {
+            let conduct = &mut conduct;
+            move |now: &Progress| conduct.call(|| report(now))
+        });
+        let progress = watched.as_mut().map(|report| report as &mut dyn FnMut(&Progress) -> bool);
+        let mut control = Control { interrupt: control.interrupt, progress, reselect: Some(&mut reselect) };
+        let run = solve::simulate(&self.model.system, &self.settings, &self.inputs, from, sink, &mut control);
+        match conduct.complaint(run.time) {
+            Some(complaint) => Err(self.error(complaint)),
+            None => Ok(run),
+        }
+    }
+
+    pub(super) fn asked(&self) -> &Settings {
+        &self.settings
+    }
+
+    pub(super) fn inputs(&self) -> &[Input] {
+        &self.inputs
+    }
+
+    pub(super) fn not_an_input(&self, name: &str) -> Error {
+        self.error(Diagnostic::new(Code::BadMap, format!("`{name}` is not an input of the model")))
+    }
+
+    pub(super) fn errors(&self, diagnostics: Vec<Diagnostic>) -> Error {
+        Error { diagnostics, sources: self.sources.clone() }
+    }
+
+    pub(super) fn variable(&self, name: &str) -> Result<VarId, Error> {
         let variables = &self.model.flat.variables;
         if let Some(i) = variables.iter().position(|v| v.name == name) {
             return Ok(VarId(u32::try_from(i).expect("fewer than 2^32 variables")));
@@ -191,7 +307,7 @@ impl Simulation {
     }
 
     fn error(&self, diagnostic: Diagnostic) -> Error {
-        Error { diagnostics: vec![diagnostic], sources: self.sources.clone() }
+        self.errors(vec![diagnostic])
     }
 }
 

@@ -107,6 +107,7 @@ codes! {
     AssertionWarning = "W505", Warning, "an assertion of level warning does not hold";
     EventFailed = "E506", Error, "no consistent state after an event";
     Interrupted = "E507", Error, "the run was interrupted";
+    CallbackPanicked = "E508", Error, "a callback panicked";
     // 6xx data
     BadData = "E601", Error, "a data file cannot be used";
     BadExperiment = "E602", Error, "an experiment file cannot be used";

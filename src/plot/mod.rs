@@ -6,6 +6,7 @@ pub mod decimate;
 pub mod figure;
 pub mod html;
 pub mod network;
+#[cfg(feature = "plot")]
 pub mod png;
 pub mod sankey;
 pub mod select;

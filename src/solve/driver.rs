@@ -3,7 +3,9 @@
 mod event;
 mod failure;
 mod legs;
+mod outside;
 
+use super::algebraic::{self, Algebraic};
 use super::events::{Events, Outcome};
 use super::ida::{Ida, Tolerances};
 use super::linear::Lu;
@@ -21,7 +23,7 @@ use crate::diag::{Code, Diagnostic};
 use crate::lower::{Layout, Pattern, Program, System};
 use crate::structure::StateChoice;
 use std::ops::ControlFlow;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// The clock, for the statistics' seconds alone: nothing else depends on it.
 #[allow(clippy::disallowed_methods, reason = "solve_s and initialize_s are measured where they pass")]
@@ -34,8 +36,8 @@ const PAUSE: u32 = 200;
 /// The same where states may have to be changed in time.
 const PAUSE_WITH_SELECTIONS: u32 = 10;
 
-/// What the corrector may leave, in tolerances, where there are algebraic unknowns: what it leaves in them looks like an
-/// error of integration, and half of all steps fail the error test where they depend strongly on the states.
+/// What the corrector may leave, in tolerances, where there are algebraic unknowns: what it leaves in them goes on into
+/// the derivatives and looks like an error of integration. (A tenth of it changes neither errors nor work.)
 const ALGEBRAIC_CORRECTOR: f64 = 0.1;
 
 /// Why a run ends before its stop time.
@@ -95,8 +97,11 @@ enum Cause {
 pub struct Driver<'a, 'c> {
     system: &'a System,
     settings: &'a Settings,
-    control: &'a mut Control<'c>,
-    sink: &'a mut dyn Sink,
+    /// None when the caller steps from outside.
+    control: Option<&'a mut Control<'c>>,
+    sink: Option<&'a mut dyn Sink>,
+    /// Where the integrator must not pass.
+    until: f64,
     /// Present from the start on; before that the model stands alone.
     ida: Option<Ida<Model<'a>>>,
     scales: Scales,
@@ -114,8 +119,11 @@ pub struct Driver<'a, 'c> {
     slots: Vec<usize>,
     row: Vec<f64>,
     restart: Restart,
+    algebraic: Algebraic,
     chatter: Chatter,
     told: Told,
+    /// Inputs that change at the next event, as slots and values.
+    pending: Vec<(usize, f64)>,
     t: f64,
     /// The next time at which a relation of time changes.
     next_crossing: f64,
@@ -134,6 +142,43 @@ pub fn run<'a>(
     control: &'a mut Control<'_>,
 ) -> Leg {
     let clock = now();
+    let resumed = from.is_some();
+    let (driver, model, solved) = prepare(system, settings, inputs, from, Some(sink), Some(control));
+    driver.complete(model, solved, resumed, clock)
+}
+
+/// A run that stands at its start, to be taken further from outside.
+///
+/// # Errors
+/// As a run that ends there.
+pub fn start<'a>(
+    system: &'a System,
+    settings: &'a Settings,
+    inputs: &[Input],
+    from: Option<&State>,
+) -> Result<Driver<'a, 'a>, Stop> {
+    let resumed = from.is_some();
+    let (mut driver, mut model, solved) = prepare(system, settings, inputs, from.map(From::State), None, None);
+    solved.map_err(stop_at_start)?;
+    driver.begin(&mut model, resumed)?;
+    driver.integrator(model)?;
+    Ok(driver)
+}
+
+fn stop_at_start(diagnostic: Diagnostic) -> Stop {
+    let end = if diagnostic.code == Code::NonFinite { End::NonFinite } else { End::StepTooSmall };
+    Stop::new(end, diagnostic)
+}
+
+/// A driver, its model, and whether the model's values at the start were found.
+fn prepare<'a, 'c>(
+    system: &'a System,
+    settings: &'a Settings,
+    inputs: &[Input],
+    from: Option<From<'_>>,
+    sink: Option<&'a mut dyn Sink>,
+    control: Option<&'a mut Control<'c>>,
+) -> (Driver<'a, 'c>, Model<'a>, Result<(), Diagnostic>) {
     let mut values = initialize::prepare(system, settings);
     let (from, grid) = match from {
         None => (None, None),
@@ -157,9 +202,11 @@ pub fn run<'a>(
             .map_err(|f| report::block_failure(system, Code::InitialFailed, &f, &values, "at the start"))
             .and_then(|()| initialize::check_starts(system, &scales, &values)),
     };
+    let restart = Restart::new(system, &scales, settings.tolerance);
     let driver = Driver {
+        algebraic: Algebraic::new(system, restart.nominal(), settings.tolerance),
+        restart,
         events: Events::new(system, &scales, &modes),
-        restart: Restart::new(system, &scales, settings.tolerance),
         program: system.observe_only(&settings.wanted),
         slots: settings.wanted.iter().map(|&v| system.layout.var(v)).collect(),
         row: vec![0.0; settings.wanted.len()],
@@ -169,7 +216,9 @@ pub fn run<'a>(
         creep: 0,
         chatter: Chatter::new(settings.stop_time - settings.start_time, settings.events_at_once),
         told: Told::new(system),
+        pending: Vec::new(),
         t: start,
+        until: settings.stop_time,
         next_crossing: f64::INFINITY,
         roots: Vec::new(),
         statistics: Statistics::default(),
@@ -184,21 +233,18 @@ pub fn run<'a>(
         modes,
     };
     let model = Model { system, values, roots: RootFunctions::new(system), playback, trap: None };
-    driver.complete(model, solved, from.is_some(), clock)
+    (driver, model, solved)
 }
 
 impl<'a> Driver<'a, '_> {
     fn complete(mut self, mut model: Model<'a>, solved: Result<(), Diagnostic>, resumed: bool, clock: Instant) -> Leg {
         let end = match solved {
-            Err(diagnostic) => {
-                let end = if diagnostic.code == Code::NonFinite { End::NonFinite } else { End::StepTooSmall };
-                Err(Stop::new(end, diagnostic))
-            }
+            Err(diagnostic) => Err(stop_at_start(diagnostic)),
             Ok(()) => self.begin(&mut model, resumed),
         };
         self.statistics.initialize_s = clock.elapsed().as_secs_f64();
         let clock = now();
-        let before = self.sink.writing();
+        let before = self.writing();
         let (end, values) = match end.and_then(|()| self.integrator(model.clone())) {
             Err(stop) => (Err(stop), model.values),
             Ok(()) => {
@@ -207,8 +253,12 @@ impl<'a> Driver<'a, '_> {
                 (end, values)
             }
         };
-        self.statistics.solve_s = clock.elapsed().saturating_sub(self.sink.writing() - before).as_secs_f64();
+        self.statistics.solve_s = clock.elapsed().saturating_sub(self.writing() - before).as_secs_f64();
         self.finish(end, &values)
+    }
+
+    fn writing(&self) -> Duration {
+        self.sink.as_ref().map_or(Duration::ZERO, |sink| sink.writing())
     }
 
     fn finish(mut self, end: Flow, values: &[f64]) -> Leg {
@@ -219,17 +269,7 @@ impl<'a> Driver<'a, '_> {
                 stop.end
             }
         };
-        self.statistics.unknowns = self.system.columns.len();
-        self.statistics.states = self.system.columns.iter().filter(|c| c.state).count();
-        if let Some(ida) = &self.ida {
-            let work = ida.work();
-            self.statistics.steps = work.steps;
-            self.statistics.residual_evaluations = work.residuals;
-            self.statistics.jacobian_evaluations = work.jacobians;
-            self.statistics.factorizations = work.factorizations;
-            self.statistics.error_test_failures = work.error_test_failures;
-            self.statistics.crossing_evaluations = work.crossings;
-        }
+        self.count_work();
         let run = Run {
             end,
             time: self.t,
@@ -239,6 +279,21 @@ impl<'a> Driver<'a, '_> {
         };
         let grid = self.grid;
         Leg { run, switch: self.choice.map(|choice| Switch { choice, grid }) }
+    }
+
+    /// Brings the statistics up to date.
+    fn count_work(&mut self) {
+        self.statistics.unknowns = self.system.columns.len();
+        self.statistics.states = self.system.columns.iter().filter(|c| c.state).count();
+        if let Some(ida) = &self.ida {
+            let work = ida.work();
+            self.statistics.steps = work.steps;
+            self.statistics.residual_evaluations = work.residuals + self.algebraic.effort.residuals;
+            self.statistics.jacobian_evaluations = work.jacobians + self.algebraic.effort.jacobians;
+            self.statistics.factorizations = work.factorizations;
+            self.statistics.error_test_failures = work.error_test_failures;
+            self.statistics.crossing_evaluations = work.crossings;
+        }
     }
 
     /// The event iteration at the start, and the first row.
@@ -274,15 +329,18 @@ impl<'a> Driver<'a, '_> {
 
     /// Writes the wanted values that stand in their slots.
     fn write_row(&mut self, model: &mut Model<'a>) -> Flow {
+        if self.sink.is_none() {
+            return Ok(());
+        }
         for (cell, &slot) in self.row.iter_mut().zip(&self.slots) {
             *cell = model.values[slot];
         }
         if self.row.iter().any(|v| !v.is_finite()) {
             return Err(self.non_finite_row(model));
         }
-        match self.sink.row(self.t, &self.row) {
-            ControlFlow::Continue(()) => Ok(()),
-            ControlFlow::Break(()) => Err(self.interrupted()),
+        match self.sink.as_mut().map(|sink| sink.row(self.t, &self.row)) {
+            Some(ControlFlow::Break(())) => Err(self.interrupted()),
+            _ => Ok(()),
         }
     }
 
@@ -297,6 +355,7 @@ impl<'a> Driver<'a, '_> {
         let tolerances = Tolerances {
             relative: self.settings.tolerance,
             absolute: nominal.iter().map(|n| n * self.settings.tolerance).collect(),
+            share: if still { vec![1.0] } else { algebraic::shares(system) },
         };
         let lu = Lu::new(&pattern, nominal);
         self.restart.gather(system, &model.values);
@@ -322,9 +381,11 @@ impl<'a> Driver<'a, '_> {
 
     fn last_values(&mut self) -> Vec<f64> {
         let t = self.t;
-        let (model, y, yp) = self.ida().parts();
-        model.observe(t, y, yp);
-        model.values.clone()
+        self.with_model(|driver, model, y, yp| {
+            let (y, yp) = driver.algebraic.solve(model, t, y, yp);
+            model.observe(t, y, yp);
+            model.values.clone()
+        })
     }
 
     /// Runs `act` with the model and the integrator's values at hand.

@@ -8,7 +8,7 @@ mod context;
 
 use super::linear::{Lu, Singular};
 use crate::lower::Pattern;
-use context::{Context, new_matrix, new_solver, new_vector, on_crossings, on_jacobian, on_residual, slice};
+use context::{Context, new_matrix, new_solver, new_vector, on_crossings, on_jacobian, on_residual, on_weights, slice};
 use std::os::raw::{c_int, c_long, c_void};
 use std::ptr::null_mut;
 use sundials_sys as s;
@@ -71,9 +71,11 @@ pub enum Failure {
 pub struct Tolerances {
     /// Relative to the values.
     pub relative: f64,
-    /// Absolute, per unknown; positive. Algebraic unknowns are held to them too: they are results as much as the states,
-    /// and between two steps they are interpolated, which only the error test watches.
+    /// Absolute, per unknown; positive.
     pub absolute: Vec<f64>,
+    /// By how much an error counts, per unknown: it is divided by its tolerance, multiplied by this, and the root of the
+    /// mean square over all unknowns must stay below one.
+    pub share: Vec<f64>,
 }
 
 /// Work done since the beginning, restarts included.
@@ -139,6 +141,7 @@ impl<E: Equations> Ida<E> {
             equations,
             n,
             roots,
+            tolerances: tolerances.clone(),
             lu,
             singular: None,
             residual_calls: 0,
@@ -161,25 +164,23 @@ impl<E: Equations> Ida<E> {
             before: Work::default(),
             found: vec![0; roots],
         };
-        ida.configure(t, tolerances)?;
+        ida.configure(t)?;
         Ok(ida)
     }
 
-    fn configure(&mut self, t: f64, tolerances: &Tolerances) -> Result<(), Failure> {
-        let absolute = new_vector(&tolerances.absolute, self.sundials);
+    fn configure(&mut self, t: f64) -> Result<(), Failure> {
         let roots = c_int::try_from(self.found.len()).expect("fewer than 2^31 crossings");
-        // SAFETY: all objects are alive; the tolerance vector is copied by IDA and freed here
+        // SAFETY: all objects are alive
         unsafe {
             let results = [
                 s::IDAInit(self.memory, Some(on_residual::<E>), t, self.y, self.yp),
-                s::IDASVtolerances(self.memory, tolerances.relative, absolute),
+                s::IDAWFtolerances(self.memory, Some(on_weights::<E>)),
                 s::IDASetUserData(self.memory, self.context.cast()),
                 s::IDASetLinearSolver(self.memory, self.solver, self.matrix),
                 s::IDASetJacFn(self.memory, Some(on_jacobian::<E>)),
                 if roots > 0 { s::IDARootInit(self.memory, roots, Some(on_crossings::<E>)) } else { 0 },
                 s::IDASetNoInactiveRootWarn(self.memory),
             ];
-            s::N_VDestroy(absolute);
             results.into_iter().try_for_each(check)
         }
     }
@@ -188,6 +189,12 @@ impl<E: Equations> Ida<E> {
     pub fn equations(&mut self) -> &mut E {
         // SAFETY: the context is ours; no callback runs while `self` is borrowed here
         unsafe { &mut (*self.context).equations }
+    }
+
+    /// The same, to look at.
+    pub fn watch(&self) -> &E {
+        // SAFETY: the context is ours; it is only changed through `&mut self`
+        unsafe { &(*self.context).equations }
     }
 
     /// The values where the integrator stands.
@@ -379,7 +386,7 @@ impl<E: Equations> Ida<E> {
         }
     }
 
-    /// The reciprocal tolerances of the unknowns as used in the last step, into `out`.
+    /// What makes errors count as in the last step: the reciprocal tolerances times their shares, into `out`.
     pub fn weights(&mut self, out: &mut Vec<f64>) {
         out.clear();
         // SAFETY: as above

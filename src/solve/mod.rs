@@ -2,8 +2,9 @@
 //!
 //! [`simulate`] is the entry. A run that fails returns what it has and says why in its diagnostics.
 
+mod algebraic;
 mod blocks;
-mod driver;
+pub(crate) mod driver;
 mod events;
 pub mod ida;
 mod initialize;

@@ -202,7 +202,9 @@ impl Restart {
         let usual = if self.usual_step > 0.0 { self.usual_step } else { 1e-3 * room };
         // moves the unknowns by about one tolerance
         let probe = (1.0 / speed).min(0.1 * usual).min(0.01 * room).max(1e-10 * t.abs());
-        let most = (10.0 * usual).min(longest);
+        // nothing is known of the start's surroundings: no unknown shall leave its own size at once
+        let sensible = if self.usual_step > 0.0 { f64::INFINITY } else { 1.0 / (self.tolerance * speed) };
+        let most = (10.0 * usual).min(longest).min(sensible);
         if self.slots.is_empty() || probe.is_nan() || probe <= 0.0 {
             return most;
         }

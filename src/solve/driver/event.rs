@@ -90,6 +90,7 @@ impl<'a> Driver<'a, '_> {
         let crossing = self.find_roots(cause);
         let t = self.t;
         let outcome = self.with_model(|driver, model, y, yp| {
+            let (y, yp) = driver.algebraic.solve(model, t, y, yp);
             model.observe(t, y, yp);
             driver.restart.before(driver.system, &model.values, y);
             if driver.settings.event_rows {
@@ -142,6 +143,9 @@ impl<'a> Driver<'a, '_> {
                 playback.seek(t, values);
                 let events = &self.events;
                 self.clocks.ring(t, |i| events.raise(i, values));
+                for (slot, value) in self.pending.drain(..) {
+                    values[slot] = value;
+                }
             }
             Cause::Start => {}
         }

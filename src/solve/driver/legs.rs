@@ -19,14 +19,19 @@ const SHORTEST_STEP: f64 = 1e-15;
 
 impl<'a> Driver<'a, '_> {
     pub(super) fn integrate(&mut self) -> Flow {
-        let stop = self.settings.stop_time;
-        while self.t < stop && !same_time(self.t, stop) {
-            self.leg()?;
-            if self.choice.is_some() {
-                return Ok(());
-            }
+        self.reach()?;
+        if self.choice.is_some() {
+            return Ok(());
         }
         if self.uses_terminal() { self.event(Cause::Terminal) } else { Ok(()) }
+    }
+
+    /// Integrates until `self.until`, or to where other states are needed.
+    pub(super) fn reach(&mut self) -> Flow {
+        while self.t < self.until && !same_time(self.t, self.until) && self.choice.is_none() {
+            self.leg()?;
+        }
+        Ok(())
     }
 
     pub(super) fn uses_terminal(&self) -> bool {
@@ -46,7 +51,7 @@ impl<'a> Driver<'a, '_> {
     pub(super) fn next_stop(&mut self) -> f64 {
         let t = self.t;
         let kink = self.ida().equations().playback.next_kink(t);
-        self.next_event().min(kink).min(self.settings.stop_time)
+        self.next_event().min(kink).min(self.until)
     }
 
     /// Integrates to the next event, or the next bend of an input.
@@ -105,7 +110,7 @@ impl<'a> Driver<'a, '_> {
 
     /// Whether other states should be chosen; notes which.
     pub(super) fn states_fail(&mut self) -> bool {
-        if self.system.dae.selections.is_empty() || self.control.reselect.is_none() {
+        if self.system.dae.selections.is_empty() || self.control.as_ref().is_none_or(|c| c.reselect.is_none()) {
             return false;
         }
         let t = self.t;
@@ -133,6 +138,7 @@ impl<'a> Driver<'a, '_> {
     pub(super) fn output(&mut self) -> Flow {
         let t = self.t;
         self.with_model(|driver, model, y, yp| {
+            let (y, yp) = driver.algebraic.solve(model, t, y, yp);
             model.load(t, y, yp);
             driver.program.run(&mut model.values);
             driver.write_row(model)?;
@@ -144,11 +150,12 @@ impl<'a> Driver<'a, '_> {
 
     /// Interruption and progress.
     pub(super) fn look_outside(&mut self) -> Flow {
-        if self.control.interrupt.is_some_and(|flag| flag.load(std::sync::atomic::Ordering::Relaxed)) {
+        let progress = Progress { time: self.t, events: self.statistics.events };
+        let Some(control) = &mut self.control else { return Ok(()) };
+        if control.interrupt.is_some_and(|flag| flag.load(std::sync::atomic::Ordering::Relaxed)) {
             return Err(self.interrupted());
         }
-        let progress = Progress { time: self.t, events: self.statistics.events };
-        let go_on = self.control.progress.as_mut().is_none_or(|report| report(&progress));
+        let go_on = control.progress.as_mut().is_none_or(|report| report(&progress));
         if go_on { Ok(()) } else { Err(self.interrupted()) }
     }
 }

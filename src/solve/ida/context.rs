@@ -3,7 +3,7 @@
 
 #![allow(unsafe_code, reason = "functions called by SUNDIALS; each block states why it is sound")]
 
-use super::{Equations, Evaluation};
+use super::{Equations, Evaluation, Tolerances};
 use crate::solve::linear::{Lu, Singular};
 use std::os::raw::{c_int, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -15,6 +15,7 @@ pub(super) struct Context<E> {
     pub equations: E,
     pub n: usize,
     pub roots: usize,
+    pub tolerances: Tolerances,
     pub lu: Lu,
     pub singular: Option<Singular>,
     pub residual_calls: u64,
@@ -115,6 +116,19 @@ pub(super) unsafe extern "C" fn on_crossings<E: Equations>(
         c.equations.crossings(t, y, yp, g);
         0
     })
+}
+
+pub(super) unsafe extern "C" fn on_weights<E: Equations>(y: s::N_Vector, w: s::N_Vector, user: *mut c_void) -> c_int {
+    // SAFETY: as above
+    let (context, y, w) = unsafe {
+        let context = &*user.cast::<Context<E>>();
+        (context, slice(y, context.n), slice(w, context.n))
+    };
+    let Tolerances { relative, absolute, share } = &context.tolerances;
+    for (((w, y), absolute), share) in w.iter_mut().zip(y).zip(absolute).zip(share) {
+        *w = share / (relative * y.abs() + absolute);
+    }
+    0
 }
 
 unsafe extern "C" fn matrix_id(_: s::SUNMatrix) -> s::SUNMatrix_ID {

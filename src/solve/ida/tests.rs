@@ -45,7 +45,7 @@ impl Equations for Robertson {
 
 fn robertson(fault: Fault) -> Ida<Robertson> {
     let pattern = Pattern { n: 3, colptr: vec![0, 3, 6, 9], rowidx: [0, 1, 2].repeat(3) };
-    let tolerances = Tolerances { relative: 1e-4, absolute: vec![1e-8, 1e-6, 1e-6] };
+    let tolerances = Tolerances { relative: 1e-4, absolute: vec![1e-8, 1e-6, 1e-6], share: vec![1.0; 3] };
     let lu = Lu::new(&pattern, &[1.0, 1e-4, 1.0]);
     let start = (0.0, &[1.0, 0.0, 0.0][..], &[-0.04, 0.04, 0.0][..]);
     Ida::new(Robertson { fault }, &pattern, lu, 2, &tolerances, start).expect("accepted")

@@ -9,7 +9,7 @@ partial model DryFriction "Dry friction as an automaton with the states stuck, s
   Integer mode(start = Unknown, fixed = true, min = -1, max = 3) "State of the contact";
   Boolean locked(start = false) "true: held";
 protected
-  constant SI.AngularAcceleration unit_a = 1;
+  constant SI.AngularAcceleration unit_a = 1e3 "Usual size: in units of 1 rad/s2 the path would ask for all digits of the acceleration";
   constant SI.Torque unit_f = 1;
   SI.AngularVelocity w_slide "Sliding speed";
   SI.AngularAcceleration a_slide "Its rate";

@@ -1,0 +1,255 @@
+#!/usr/bin/env python3
+"""Bramah beside what one would take instead: the same problems, in turn, at equal error.
+
+usage: compare.py BRAMAH [--full] [--out FOLDER]
+
+Peers that are not installed are named, with how to get them. Writes results.md and one SVG a problem into FOLDER
+(target/bench). Times are medians over interleaved runs, each in a process of its own; errors are the largest of all
+values at the end, each relative to its reference of tests/stiff/references.toml."""
+import argparse, datetime, glob, json, os, platform, shutil, statistics, subprocess, sys, tempfile, time, tomllib
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+ROOT = os.path.dirname(HERE)
+WORK_PRECISION = ['Robertson', 'HiRes', 'VanDerPol']
+NAMES = {'Robertson': ['y_1', 'y_2', 'y_3'], 'HiRes': [f'y[{i}]' for i in range(1, 9)], 'VanDerPol': ['y_1', 'y_2']}
+# --- peers ------------------------------------------------------------------------------------------------------------
+
+def build_c(folder):
+    """The C programs on SUNDIALS at -O3, from the source that sundials-sys carries; None where they cannot be built."""
+    sources = sorted(glob.glob(os.path.expanduser('~/.cargo/registry/src/*/sundials-sys-*/vendor')))
+    if not sources or not shutil.which('cc') or not shutil.which('cmake'):
+        return None
+    os.makedirs(folder, exist_ok=True)
+    program, inst = os.path.join(folder, 'stiff_ida'), os.path.join(folder, 'inst')
+    with open(os.path.join(folder, 'build.log'), 'w') as log:
+        if not glob.glob(inst + '/lib*/libsundials_idas.a'):
+            off = ['ARKODE', 'CVODE', 'CVODES', 'IDA', 'KINSOL', 'TESTING', 'SHARED_LIBS']
+            options = [f'-DBUILD_{o}=OFF' for o in off] + ['-DBUILD_IDAS=ON', '-DEXAMPLES_ENABLE_C=OFF', '-DEXAMPLES_INSTALL=OFF']
+            flags = '-DCMAKE_C_FLAGS_RELEASE=-O3 -march=native -DNDEBUG'
+            make = ['cmake', '-S', sources[-1], '-B', folder + '/build', '-DCMAKE_BUILD_TYPE=Release', flags, *options,
+                    '-DCMAKE_INSTALL_PREFIX=' + inst]
+            for command in (make, ['cmake', '--build', folder + '/build', '--target', 'install', '-j2']):
+                if subprocess.run(command, stdout=log, stderr=log).returncode:
+                    return None
+        lib = os.path.dirname(glob.glob(inst + '/lib*/libsundials_idas.a')[0])
+        names = ['idas', 'nvecserial', 'sunmatrixdense', 'sunlinsoldense', 'sunmatrixband', 'sunlinsolband', 'sunnonlinsolnewton', 'core']
+        link = [f'{lib}/libsundials_{n}.a' for n in names]
+        command = ['cc', '-O3', '-march=native', f'-I{inst}/include', HERE + '/peers/stiff_ida.c', '-o', program, *link, '-lm']
+        return program if subprocess.run(command, stdout=log, stderr=log).returncode == 0 else None
+
+def bramah_run(binary, model, tolerance, end, names, extra=()):
+    with tempfile.TemporaryDirectory() as d:
+        out, stats = d + '/o.csv', d + '/s.json'
+        command = [binary, 'simulate', model, '--relative-tolerance', repr(tolerance), '--stop-time', repr(end),
+                   '--output-interval', repr(end), '--output-file', out, '--statistics', stats, *extra]
+        run = subprocess.run(command, capture_output=True, text=True)
+        if run.returncode:
+            return None
+        s = json.load(open(stats))
+        lines = open(out).read().splitlines()
+        row = dict(zip(split(lines[0]), split(lines[-1])))
+        return s, [float(row[n]) for n in names]
+
+def split(line):
+    import csv
+    return next(csv.reader([line]))
+
+def c_run(program, model, tolerance, end, names):
+    run = subprocess.run([program, model, repr(tolerance), '1'], capture_output=True, text=True)
+    if run.returncode:
+        return None
+    r = json.loads(run.stdout)
+    return {'solve_s': r['solve_s'], 'steps': r['steps']}, r['y']
+
+def scipy_problem(name):
+    import numpy as np
+    if name == 'Robertson':
+        f = lambda t, y: (a := -0.04*y[0] + 1e4*y[1]*y[2], -a - 3e7*y[1]**2, 3e7*y[1]**2)
+        j = lambda t, y: [[-0.04, 1e4*y[2], 1e4*y[1]], [0.04, -1e4*y[2] - 6e7*y[1], -1e4*y[1]], [0, 6e7*y[1], 0]]
+        return f, j, [1, 0, 0], [1, 1e-6, 1]
+    if name == 'VanDerPol':
+        f = lambda t, y: (y[1], ((1 - y[0]**2)*y[1] - y[0])*1e6)
+        j = lambda t, y: [[0, 1], [(-2*y[0]*y[1] - 1)*1e6, (1 - y[0]**2)*1e6]]
+        return f, j, [2, 0], [1, 1]
+    A = np.zeros((8, 8))
+    for i, k, v in [(0,0,-1.71),(0,1,.43),(0,2,8.32),(1,0,1.71),(1,1,-8.75),(2,2,-10.03),(2,3,.43),(2,4,.035),(3,1,8.32),(3,2,1.71),
+                    (3,3,-1.12),(4,4,-1.745),(4,5,.43),(4,6,.43),(5,3,.69),(5,4,1.71),(5,5,-.43),(5,6,.69),(6,6,-1.81),(7,6,1.81)]:
+        A[i, k] = v
+    s = np.array([0, 0, 0, 0, 0, -1, 1, -1.0])
+    c = np.array([.0007] + [0]*7)
+    f = lambda t, y: A @ y + c + 280*y[5]*y[7]*s
+    def j(t, y):
+        J = A.copy()
+        J[:, 5] += 280*y[7]*s
+        J[:, 7] += 280*y[5]*s
+        return J
+    return f, j, [1, 0, 0, 0, 0, 0, 0, .0057], [1e-3, 1e-4, 1e-4, 1e-3, 1e-3, 1e-2, 1e-3, 1e-3]
+
+def scipy_run(method):
+    def run(model, tolerance, end):
+        from scipy.integrate import solve_ivp
+        f, j, y0, size = scipy_problem(model)
+        begun = time.perf_counter()
+        s = solve_ivp(f, (0, end), y0, method=method, rtol=tolerance, atol=[tolerance*x for x in size], jac=j)
+        return ({'solve_s': time.perf_counter() - begun, 'steps': len(s.t) - 1}, list(s.y[:, -1])) if s.success else None
+    return run
+
+def rumoca_run():
+    """Reads the same model files; one absolute tolerance for all, that of the smallest unknown."""
+    import rumoca
+    session, models = rumoca.Session(), {}
+    def run(model, tolerance, end):
+        if model not in models:
+            models[model] = session.load(f'{ROOT}/models/stiff/{model}.mo')
+        config = rumoca.SimConfig(solver='bdf', rtol=tolerance, atol=tolerance*min(scipy_sizes(model)))
+        begun = time.perf_counter()
+        try:
+            r = models[model].simulate(end, dt=end, config=config)
+        except rumoca.RumocaError:
+            return None
+        return {'solve_s': time.perf_counter() - begun, 'steps': ''}, [float(r[n][-1]) for n in NAMES[model]]
+    return run
+
+def scipy_sizes(model):
+    return {'Robertson': [1e-6], 'HiRes': [1e-4], 'VanDerPol': [1]}[model]
+
+# --- work and precision -----------------------------------------------------------------------------------------------
+
+def references():
+    table = tomllib.load(open(ROOT + '/tests/stiff/references.toml', 'rb'))['problem']
+    found = {p['model']: (p['end'], [p['values'][n] for n in NAMES[p['model']]]) for p in table if p['model'] in NAMES}
+    # to 40 s, as most know it: digits of Radau of scipy at 1e-13, which agree with IDA at 1e-12 to 11
+    found["Robertson"] = (40.0, [0.7158270687194032, 9.185534764557798e-6, 0.2841637457458286])
+    return found
+
+def work_precision(peers, tolerances, repeats):
+    rows = []
+    for model in WORK_PRECISION:
+        end, reference = references()[model]
+        for tolerance in tolerances:
+            times, last = {p: [] for p in peers}, {}
+            for _ in range(repeats):
+                for name, run in peers.items():
+                    got = run(model, tolerance, end)
+                    if got:
+                        times[name].append(got[0]['solve_s'])
+                        last[name] = got
+            for name in peers:
+                if name in last:
+                    stats, y = last[name]
+                    error = max(abs(a - b)/abs(b) for a, b in zip(y, reference))
+                    rows.append((model, name, tolerance, error, statistics.median(times[name]), stats['steps']))
+    return rows
+
+def at_error(rows, model, peer, error):
+    """The time that a peer needs for an error, by a straight line between its runs in logarithms."""
+    import math
+    points = sorted((r[3], r[4]) for r in rows if r[0] == model and r[1] == peer and r[3] > 0)
+    for (e0, t0), (e1, t1) in zip(points, points[1:]):
+        if e0 <= error <= e1:
+            w = (math.log(error) - math.log(e0))/(math.log(e1) - math.log(e0))
+            return math.exp(math.log(t0) + w*(math.log(t1) - math.log(t0)))
+    return None
+
+def picture(rows, model, path):
+    import math
+    colours = ['#0b62a4', '#c1440e', '#2e8540', '#7a4fa3', '#8a6d00']
+    points = [r for r in rows if r[0] == model and r[3] > 0]
+    x = [math.log10(r[3]) for r in points]
+    y = [math.log10(r[4]) for r in points]
+    x0, x1, y0, y1 = math.floor(min(x)), math.ceil(max(x)), math.floor(min(y)), math.ceil(max(y))
+    px = lambda v: 70 + 520*(x1 - v)/(x1 - x0)
+    py = lambda v: 350 - 310*(v - y0)/(y1 - y0)
+    svg = ['<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 760 410" font-family="sans-serif" font-size="12">',
+           '<rect width="760" height="410" fill="white"/>', f'<text x="70" y="24" font-size="15">{model}: time over error</text>']
+    for k in range(x0, x1 + 1):
+        svg.append(f'<path d="M{px(k):.1f} 40V350" stroke="#ddd"/><text x="{px(k):.1f}" y="368" text-anchor="middle">1e{k}</text>')
+    for k in range(y0, y1 + 1):
+        svg.append(f'<path d="M70 {py(k):.1f}H590" stroke="#ddd"/><text x="62" y="{py(k) + 4:.1f}" text-anchor="end">1e{k} s</text>')
+    svg.append('<text x="330" y="392" text-anchor="middle">largest relative error at the end</text>')
+    for i, peer in enumerate(dict.fromkeys(r[1] for r in points)):
+        c = colours[i % len(colours)]
+        line = sorted((r[2], px(math.log10(r[3])), py(math.log10(r[4]))) for r in points if r[1] == peer)
+        svg.append(f'<polyline fill="none" stroke="{c}" stroke-width="2" points="' + ' '.join(f'{a:.1f},{b:.1f}' for _, a, b in line) + '"/>')
+        svg += [f'<circle cx="{a:.1f}" cy="{b:.1f}" r="3" fill="{c}"/>' for _, a, b in line]
+        svg.append(f'<path d="M605 {60 + 20*i}h20" stroke="{c}" stroke-width="2"/><text x="632" y="{64 + 20*i}">{peer}</text>')
+    open(path, 'w').write('\n'.join(svg + ['</svg>\n']))
+
+# --- growth -----------------------------------------------------------------------------------------------------------
+
+def growth(binary, full):
+    sizes = {'Grid': ('N', [10, 30, 100] if full else [10, 20, 40]), 'Tree': ('L', [64, 512, 4096] if full else [64, 256, 1024]),
+             'Frictions': ('N', [10, 100, 1000] if full else [10, 30, 100])}
+    rows = []
+    for model, (parameter, values) in sizes.items():
+        for n in values:
+            got = None
+            runs = []
+            for _ in range(3 if not full else 1):
+                with tempfile.TemporaryDirectory() as d:
+                    run = subprocess.run([binary, 'simulate', HERE + '/models/Networks.mo', '--model', 'Networks.' + model, '--set',
+                                          f'{parameter}={n}', '--output-file', d + '/o.csv', '--statistics', d + '/s.json'], capture_output=True)
+                    if run.returncode == 0:
+                        got = json.load(open(d + '/s.json'))
+                        runs.append((got['compile_s'], got['solve_s']))
+            if got:
+                rows.append((f'{model} {parameter} = {n}', got['unknowns'], statistics.median(r[0] for r in runs),
+                             statistics.median(r[1] for r in runs), got['steps'], got['events'], got['peak_memory_bytes']/2**20))
+    return rows
+
+def main():
+    arguments = argparse.ArgumentParser()
+    arguments.add_argument('bramah')
+    arguments.add_argument('--full', action='store_true')
+    arguments.add_argument('--out', default=ROOT + '/target/bench')
+    a = arguments.parse_args()
+    os.makedirs(a.out, exist_ok=True)
+    version = subprocess.run([a.bramah, '--version'], capture_output=True, text=True).stdout.strip()
+    peers = {'bramah': lambda m, tol, end: bramah_run(a.bramah, m, tol, end, NAMES[m])}
+    versions, skipped = [version], []
+    program = build_c(os.path.join(os.path.dirname(os.path.abspath(a.bramah)), 'peers'))
+    if program:
+        peers['C on IDA'] = lambda m, tol, end: c_run(program, m, tol, end, NAMES[m])
+        versions.append('C on IDAS of sundials-sys, -O3, exact Jacobian')
+    else:
+        skipped.append(('C on IDA', 'apt-get install gcc cmake make, and build bramah once'))
+    try:
+        import scipy
+        for method in ('LSODA', 'BDF', 'Radau'):
+            peers[f'scipy {method}'] = scipy_run(method)
+        versions.append(f'scipy {scipy.__version__}, exact Jacobian')
+    except ImportError:
+        skipped.append(('scipy', 'python3 -m pip install scipy'))
+    try:
+        import rumoca
+        peers['rumoca'] = rumoca_run()
+        versions.append(f'rumoca {rumoca.version() if callable(rumoca.version) else rumoca.version}')
+    except ImportError:
+        skipped.append(('rumoca', 'python3 -m pip install rumoca'))
+    skipped += [('diffsol', 'a Rust crate: needs the problem written by hand in its own language'),
+                ('OpenModelica', 'https://openmodelica.org: reads models/stiff as they are')]
+    tolerances = [10.0**-k for k in (range(3, 11) if a.full else range(3, 10, 2))]
+    rows = work_precision(peers, tolerances, 11 if a.full else 5)
+    text = [f'Run on {datetime.date.today().isoformat()}: {platform.processor() or platform.machine()}, {os.cpu_count()} cores, {platform.system()}; '
+            + '; '.join(versions) + '.', '', '## Time for an error', '',
+            'Milliseconds of solving, at the same error, by a line between the measured points in logarithms; in brackets as a multiple of bramah.', '',
+            '| problem | error | ' + ' | '.join(peers) + ' |', '|---' * (2 + len(peers)) + '|']
+    for model in WORK_PRECISION:
+        for error in (1e-3, 1e-5, 1e-7):
+            own = at_error(rows, model, 'bramah', error)
+            cells = []
+            for peer in peers:
+                t = at_error(rows, model, peer, error)
+                cells.append('' if t is None else f'{1e3*t:.3g}' + (f' ({t/own:.2g})' if own and peer != 'bramah' else ''))
+            text.append(f'| {model} | {error:.0e} | ' + ' | '.join(cells) + ' |')
+        picture(rows, model, f'{a.out}/{model}.svg')
+    text += ['', '## All runs', '', '| problem | solver | tolerance | error | milliseconds | steps |', '|---|---|---|---|---|---|']
+    text += [f'| {m} | {p} | {tol:.0e} | {e:.1e} | {1e3*t:.3g} | {s} |' for m, p, tol, e, t, s in rows]
+    text += ['', '## Growth', '', '| network | unknowns | compile, s | solve, s | steps | events | memory, MB |', '|---|---|---|---|---|---|---|']
+    text += [f'| {n} | {u} | {c:.3g} | {s:.3g} | {st} | {e} | {mb:.0f} |' for n, u, c, s, st, e, mb in growth(a.bramah, a.full)]
+    text += ['', '## Skipped', ''] + [f'- {name}: {how}' for name, how in skipped]
+    open(a.out + '/results.md', 'w').write('\n'.join(text) + '\n')
+    print('\n'.join(text))
+
+if __name__ == '__main__':
+    main()

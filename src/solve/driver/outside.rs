@@ -1,0 +1,68 @@
+//! A run that is taken further from outside, step by step, with inputs set in between.
+
+use super::{Cause, Driver, Flow};
+use crate::diag::Diagnostic;
+use crate::solve::{State, Statistics};
+
+impl Driver<'_, '_> {
+    /// Where the run stands, in seconds.
+    pub fn time(&self) -> f64 {
+        self.t
+    }
+
+    /// The value in a slot, as last observed.
+    pub fn value(&self, slot: usize) -> f64 {
+        self.ida.as_ref().map_or(f64::NAN, |ida| ida.watch().values[slot])
+    }
+
+    /// Sets input slots and lets everything that depends on them react at once, as at an event.
+    ///
+    /// # Errors
+    /// As a run that ends there.
+    pub fn set(&mut self, inputs: &[(usize, f64)]) -> Flow {
+        let values = &mut self.ida().equations().values;
+        if inputs.iter().all(|&(slot, value)| values[slot] == value) {
+            return Ok(());
+        }
+        self.pending.clear();
+        self.pending.extend_from_slice(inputs);
+        self.event(Cause::Time)
+    }
+
+    /// Integrates to `t`, which lies ahead, and observes all variables there.
+    ///
+    /// # Errors
+    /// As a run that ends before.
+    pub fn advance(&mut self, t: f64) -> Flow {
+        self.until = t;
+        self.reach()?;
+        self.observe();
+        Ok(())
+    }
+
+    /// Fills the slots of all variables where the run stands.
+    pub fn observe(&mut self) {
+        let t = self.t;
+        self.with_model(|driver, model, y, yp| {
+            let (y, yp) = driver.algebraic.solve(model, t, y, yp);
+            model.observe(t, y, yp);
+        });
+    }
+
+    /// Everything needed to go on from here.
+    pub fn state(&mut self) -> State {
+        let (system, t) = (self.system, self.t);
+        State::save(system, t, &self.ida().equations().values)
+    }
+
+    /// Work done so far; no seconds.
+    pub fn statistics(&mut self) -> Statistics {
+        self.count_work();
+        self.statistics
+    }
+
+    /// Takes the warnings since the last time.
+    pub fn warnings(&mut self) -> Vec<Diagnostic> {
+        std::mem::take(&mut self.diagnostics)
+    }
+}
