@@ -17,6 +17,7 @@ class Effect:
     families: list
     groups: list
     parameters: list = field(default_factory=list)  # nominal parameters that mean the same
+    also: list = field(default_factory=list)  # (family, groups) that mean the same at other places
     size: float = 0.05
     least: float = 1e-4
     largest: float = 1.0
@@ -37,8 +38,12 @@ def shunt(node, form):
     families, parameters = list(form.families), []
     if form.share and node.parameters.get(form.share):
         parameters = node.parameters[form.share]
+    probe, also = (node.domain, node.port, None, form), []
+    if node.low and families == ["external_leak"]:
+        port, names = node.low
+        probe, also = ("bridge", node.port, port, form), [("internal_leak", [node.names, names])]
     return Effect(
-        form.name, families, [node.names], parameters, probes=[(node.domain, node.port, None, form)], back=node.back,
+        form.name, families, [node.names], parameters, also, probes=[probe], back=node.back,
         largest=0.3 if form.share == "extra_inertia" else 1.0,
     )
 

@@ -75,7 +75,7 @@ def told(case, seen, shaken, closing, troubles, seed):
             parameters[e.drift] = case.circuit.parameters[e.drift][0] * math.exp(size)
     effects = [
         dict(
-            name=e.name, families=e.families, outside=e.outside(), groups=e.groups, parameters=e.parameters, size=size,
+            name=e.name, families=e.families, outside=e.outside(), groups=e.groups, parameters=e.parameters, also=e.also, size=size,
             visible=s["visible"], nats=s["nats"], small=max(s["visible"].values()) < 1 or s["nats"] < ENOUGH,
         )
         for e, size, s in zip(case.effects, case.sizes, seen)

@@ -27,13 +27,19 @@ def at_place(truth, spots):
     found = ports(spots)
     if found & set(truth["parameters"]):
         return True
-    return bool(truth["groups"]) and all(found & set(group) for group in truth["groups"])
+    return touches(found, truth["groups"]) or any(touches(found, groups) for _, groups in truth.get("also", []))
+
+
+def touches(found, groups):
+    """Whether names of places hold one of each group."""
+    return bool(groups) and all(found & set(group) for group in groups)
 
 
 def family_right(truth, claim):
     if claim["family"] == "parameter":
         return bool(ports(claim["places"]) & set(truth["parameters"]))
-    return claim["family"] in truth["families"]
+    also = any(claim["family"] == f and touches(ports(claim["places"]), groups) for f, groups in truth.get("also", []))
+    return also or claim["family"] in truth["families"]
 
 
 def right(truth, claim):

@@ -47,6 +47,7 @@ class Node:
     back: str = "1e5"
     inertia: float = 0.0  # usual mass or inertia there
     turns: bool = False  # a shaft that turns on and on
+    low: tuple = ()  # port and names of the low side, where a leak flows into another node instead of away
     pressure: str = ""  # expression of the pressure that loads a friction here
     position: str = ""  # expression of a position on which a flow may depend
     parameters: dict = field(default_factory=dict)

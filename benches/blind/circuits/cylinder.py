@@ -3,6 +3,7 @@
 from excitation import mixed
 from spec import Bridge, Circuit, Cut, Input, Node, Signal, nominal
 
+LOW = ["accumulator.port", "lowPressure.port", "relief_A.port_b", "relief_B.port_b", "check_A.port_a", "check_B.port_a"]
 SIDE_A = ["pump.port_a", "cylinder.port_1", "highPressure_A.port", "relief_A.port_a", "check_A.port_b", "check_B.port_x"]
 SIDE_B = ["pump.port_b", "cylinder.port_2", "highPressure_B.port", "relief_B.port_a", "check_B.port_b", "check_A.port_x"]
 SHAFT = ["drive.flange", "rotor.flange_a", "rotor.flange_b", "pump.flange"]
@@ -11,7 +12,7 @@ ROD = ["cylinder.flange", "positionSensor.flange", "load.flange_a", "load.flange
 
 def side(name, port, names):
     return Node(name, "hydraulic", port, names, through=2e-5, rate=2e7, way=3e6, middle=3e6, back="accumulator.p",
-                position="cylinder.s")
+                low=(LOW[0], LOW), position="cylinder.s")
 
 
 def circuit():

@@ -3,6 +3,7 @@
 from excitation import mixed
 from spec import Bridge, Circuit, Input, Node, Signal, nominal
 
+LOW = ["accumulator.port", "check_A.port_a", "check_B.port_a"]
 SIDE_A = ["pump.port_a", "volume_A.port", "gauge.port", "flowSensor.port_a", "check_A.port_b"]
 SIDE_B = ["pump.port_b", "volume_B.port", "check_B.port_b"]
 
@@ -25,7 +26,7 @@ def circuit():
         },
         nodes=[
             Node("side A", "hydraulic", "volume_A.port", SIDE_A, through=3e-7, rate=4e6, way=1e7, middle=1e7,
-                 back="accumulator.p", parameters={"extra_compliance": ["V_A"]}),
+                 back="accumulator.p", low=(LOW[0], LOW), parameters={"extra_compliance": ["V_A"]}),
         ],
         bridges=[
             Bridge("pump", "pump.port_a", "pump.port_b", SIDE_A, SIDE_B, through=3e-7, way=1e7, speed="pump.w", rate=3,

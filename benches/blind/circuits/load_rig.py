@@ -3,6 +3,7 @@
 from excitation import mixed
 from spec import Bridge, Circuit, Input, Node, Signal, nominal
 
+LOW = ["accumulator.port", "leak.port_b", "relief.port_b", "throttle.port_b", "check_A.port_a", "check_B.port_a"]
 SIDE_A = ["volume_A.port", "pump.port_a", "leak.port_a", "relief.port_a", "throttle.port_a", "check_A.port_b"]
 SIDE_B = ["volume_B.port", "pump.port_b", "check_B.port_b"]
 SHAFT = ["drive.flange", "rotor.flange_a", "rotor.flange_b", "bearing.flange_a", "pump.flange"]
@@ -33,7 +34,7 @@ def circuit():
                  parameters={"viscous_friction": ["bearing.d"], "extra_inertia": ["rotor.J"], "dry_friction": ["pump.T_c"],
                              "pressure_friction": ["pump.k_p"], "constant_force": ["pump.T_c"]}),
             Node("side A", "hydraulic", "volume_A.port", SIDE_A, through=1.2e-5, rate=2e7, way=5e6, middle=6e6,
-                 back="accumulator.p", parameters={"extra_compliance": ["volume_A.V"], "external_leak": ["G_A"]}),
+                 back="accumulator.p", low=(LOW[0], LOW), parameters={"extra_compliance": ["volume_A.V"], "external_leak": ["G_A"]}),
         ],
         bridges=[
             Bridge("pump", "pump.port_a", "pump.port_b", SIDE_A, SIDE_B, through=1.2e-5, way=5e6, speed="pump.w", rate=100,
