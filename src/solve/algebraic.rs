@@ -15,7 +15,7 @@ use crate::lower::System;
 /// Weight of the derivatives in the matrix: so large that states do not move.
 const HOLD_STATES: f64 = 1e60;
 /// The last correction, in tolerances.
-const ENOUGH: f64 = 0.01;
+const ENOUGH: f64 = 0.1;
 /// A rate that is not believed to be smaller.
 const LEAST_RATE: f64 = 1e-3;
 /// A correction that is a larger part of the one before asks for a new matrix.
@@ -125,7 +125,8 @@ impl Algebraic {
             if last.is_finite() {
                 self.rate = (size / last).clamp(LEAST_RATE, 1.0);
             }
-            if size <= ENOUGH || size <= 1.0 && size * self.rate <= ENOUGH {
+            // two small ones in a row are as good as rounding allows
+            if size <= ENOUGH || size <= 1.0 && (last <= 1.0 || size * self.rate <= ENOUGH) {
                 return true;
             }
             if size > SLOW * last && (!fresh || size > last || !self.factor(model, t)) {
