@@ -44,7 +44,7 @@ fn recording(world: &MemoryWorld) -> Result<String, bramah::Error> {
     let mut bench = Simulation::compile(world, &Request { source: "Tank.mo".into(), ..Request::default() })?;
     let times: Vec<f64> = (0..400).map(|k| 0.1 * f64::from(k)).collect();
     let u: Vec<f64> = (0..400).map(|k| if k / 50 % 2 == 0 { 2.0 } else { 0.5 }).collect();
-    bench.set("k_p", 0.15)?.set("a", 0.2)?.input("u", &times, &u, Interpolation::Held)?.stop_time(39.9);
+    bench.set("k_p", 0.15)?.set("a", 0.2)?.input("u", &times, &u, Interpolation::Held)?.stop_time(40.0);
     let t = bench.run()?.trajectory;
     let h = t.index("h").unwrap_or(0);
     let mut text = String::from("t,u,h\n");
