@@ -30,7 +30,7 @@ pub struct Raised {
     pub start: VarId,
 }
 
-/// Lifts `parameters`, all inputs and `outputs`. Parameters that depend on lifted ones become algebraic variables;
+/// Lifts `parameters`, all inputs and `outputs`. Parameters that depend on lifted ones become expressions of them;
 /// attributes (`start`, `nominal`, bounds) keep reading the parameters' values at the start.
 pub fn lift(flat: &FlatModel, parameters: &[VarId], outputs: &[VarId]) -> Lifted {
     let mut lift = Lift::new(flat.clone());
@@ -112,38 +112,45 @@ impl Lift {
         self.replacements.push((old, new));
     }
 
-    /// Real parameters whose bindings read a lifted one, however indirectly.
+    /// Real parameters whose bindings read a lifted one, however indirectly: their bindings, over the states, stand in
+    /// their place.
     fn dependents(&mut self, lifted: &[VarId]) {
+        let mut open = self.reading(lifted);
+        loop {
+            let ready = |&(_, binding): &(VarId, ExprId)| {
+                !self.flat.exprs.variables(binding).iter().any(|w| open.iter().any(|(v, _)| v == w))
+            };
+            let (found, rest): (Vec<_>, Vec<_>) = open.iter().copied().partition(ready);
+            if found.is_empty() {
+                break;
+            }
+            let mut substitution = Substitution::new(self.replacements.iter().copied());
+            for (v, binding) in found {
+                let value = substitution.apply(&mut self.flat.exprs, binding);
+                self.replacements.push((self.flat.exprs.var(v), value));
+            }
+            open = rest;
+        }
+    }
+
+    /// Real parameters with bindings that read one of these, however indirectly.
+    fn reading(&self, lifted: &[VarId]) -> Vec<(VarId, ExprId)> {
         let mut moved = vec![false; self.flat.variables.len()];
         lifted.iter().for_each(|p| moved[p.index()] = true);
-        let mut found: Vec<(VarId, ExprId)> = Vec::new();
-        let mut grown = true;
-        while grown {
-            grown = false;
+        let mut found = Vec::new();
+        loop {
+            let before = found.len();
             for (v, variable) in (0..).map(VarId).zip(&self.flat.variables) {
                 let real = variable.variability == Variability::Parameter && variable.ty == Type::Real;
-                if moved.get(v.index()).copied().unwrap_or(true) || !real {
-                    continue;
-                }
-                let Some(binding) = variable.binding else { continue };
-                if self.flat.exprs.variables(binding).iter().any(|w| moved.get(w.index()) == Some(&true)) {
+                let Some(binding) = variable.binding.filter(|_| real && !moved[v.index()]) else { continue };
+                if self.flat.exprs.variables(binding).iter().any(|w| moved[w.index()]) {
                     moved[v.index()] = true;
                     found.push((v, binding));
-                    grown = true;
                 }
             }
-        }
-        for &(v, _) in &found {
-            let name = format!("{} (dependent)", self.flat.variables[v.index()].name);
-            let new = self.beside(v, name, Variability::Continuous);
-            self.replace(v, new);
-        }
-        let mut substitution = Substitution::new(self.replacements.iter().copied());
-        for (v, binding) in found {
-            let old = self.flat.exprs.var(v);
-            let lhs = substitution.apply(&mut self.flat.exprs, old);
-            let rhs = substitution.apply(&mut self.flat.exprs, binding);
-            self.equation(lhs, rhs, v);
+            if found.len() == before {
+                return found;
+            }
         }
     }
 

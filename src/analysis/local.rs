@@ -143,6 +143,18 @@ impl Plan {
         self.states.iter().map(|s| s.1)
     }
 
+    /// Pairs of states of which the first one's rate reads the second one directly.
+    pub fn couplings(&self) -> impl Iterator<Item = (usize, usize)> {
+        let pattern = &self.system.pattern;
+        self.roles.iter().enumerate().flat_map(move |(column, role)| {
+            let rows = &pattern.rowidx[pattern.colptr[column]..pattern.colptr[column + 1]];
+            rows.iter().filter_map(move |&row| match (self.targets[row], *role) {
+                (Target::Rate(i), Role::State(j)) => Some((i, j)),
+                _ => None,
+            })
+        })
+    }
+
     /// How many parameters.
     pub fn parameters(&self) -> usize {
         self.parameters

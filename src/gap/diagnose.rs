@@ -1,6 +1,7 @@
 //! The whole diagnosis: noise, tolerances, places, effects one after another, and how far the gap shrinks.
 
 use super::data::Recording;
+use super::effects::Coefficient;
 use super::fit::{self, Fit, Prior, vuong};
 use super::held::{self, Gap};
 use super::hypotheses::{Hypothesis, Place};
@@ -9,6 +10,7 @@ use super::problem::{Assembled, Chosen, Problem};
 use super::recording::{self, Gross};
 use super::screen::{self, Accepted, Candidate};
 use super::verdict as v;
+use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// Effects that are looked for one after another, at most.
@@ -21,8 +23,9 @@ const PROMISING: f64 = 5.0;
 const FAR: f64 = 0.1;
 /// Candidates beyond those that are there or not.
 const BOUNDED: usize = 2;
-/// Iterations with which candidates are compared before the front is polished.
-const RACE: usize = 3;
+/// Iterations with which candidates are compared before the front is polished, and candidates polished.
+const RACE: usize = 2;
+const POLISHED: usize = 3;
 /// Gain that an effect must have to be accepted, nats.
 const ACCEPTED: f64 = 8.0;
 /// Vuong statistic that it must have.
@@ -63,6 +66,16 @@ struct Refined {
     accepted: Accepted,
     assembled: Assembled,
     fit: Fit,
+}
+
+impl Refined {
+    /// With the fitted values; a choice among variants has its price.
+    fn new(problem: &Problem<'_>, accepted: Accepted, assembled: Assembled, mut fit: Fit) -> Self {
+        fit.evidence -= screen::variants_cost(&problem.hypotheses[accepted.chosen.hypothesis]);
+        let values = assembled.attached.last().map_or_else(Vec::new, |own| values(&fit, own));
+        let chosen = Chosen { values, ..accepted.chosen };
+        Refined { accepted: Accepted { chosen, ..accepted }, assembled, fit }
+    }
 }
 
 /// An accepted effect with what came with it.
@@ -189,9 +202,9 @@ impl Search {
         let bounded = |c: &&Candidate| bounded(&problem.hypotheses[c.chosen.hypothesis]) && c.gain > PROMISING;
         promising.extend(candidates.iter().skip(promising.len()).filter(bounded).take(BOUNDED));
         progress(Stage::Refine(number));
-        let mut refined: Vec<Refined> = promising.into_iter().filter_map(|c| self.refine(problem, c)).collect();
+        let mut refined: Vec<Refined> = promising.into_par_iter().filter_map(|c| self.refine(problem, c)).collect();
         refined.sort_by(|a, b| b.fit.evidence.total_cmp(&a.fit.evidence));
-        self.sharpen(problem, &mut refined);
+        refined = self.sharpen(problem, refined);
         refined.sort_by(|a, b| b.fit.evidence.total_cmp(&a.fit.evidence));
         let trials: Vec<Trial> = refined.iter().map(|r| self.trial(number, r)).collect();
         self.trials.extend(trials);
@@ -241,57 +254,42 @@ impl Search {
         }
     }
 
-    /// Levels once more for those that are near the front.
-    fn sharpen(&self, problem: &Problem<'_>, refined: &mut [Refined]) {
-        let Some(front) = refined.first().map(|r| r.fit.evidence) else { return };
-        for r in refined.iter_mut().filter(|r| front - r.fit.evidence < 3.0 * NEAR_IF_INCONSISTENT).take(3) {
-            let cost = screen::variants_cost(&problem.hypotheses[r.accepted.chosen.hypothesis]);
-            r.fit.evidence += cost;
-            r.fit = fit::polish(r.fit.clone(), &problem.train, Some(self.last.share));
-            r.fit.evidence -= cost;
-            let own = r.assembled.attached.last().cloned().unwrap_or_default();
-            r.accepted.chosen.values = values(&r.fit, &own);
-        }
-    }
-
     /// Fits one candidate together with everything accepted before.
     fn refine(&self, problem: &Problem<'_>, candidate: &Candidate) -> Option<Refined> {
-        let estimated = self.refine_from(problem, candidate, candidate.chosen.values.clone());
-        // an effect that is there or not (a rectifying sensor) looks small from where it is not
         let h = &problem.hypotheses[candidate.chosen.hypothesis];
-        let mut whole = candidate.chosen.values.clone();
-        for (value, c) in whole.iter_mut().zip(&h.coefficients) {
-            if let Some(max) = share(c) {
-                *value = 0.98 * max;
-            }
+        let mut starts = vec![candidate.chosen.values.clone()];
+        if bounded(h) {
+            // an effect that is there or not (a rectifying sensor) looks small from where it is not
+            let whole = |(value, c): (&f64, &Coefficient)| share(c).map_or(*value, |max| 0.98 * max);
+            let mut values: Vec<f64> = starts[0].iter().zip(&h.coefficients).map(whole).collect();
+            values.extend(&starts[0][values.len()..]);
+            starts.push(values);
         }
-        if !bounded(h) {
-            return estimated;
-        }
-        // sources as strong as the nominal model needs them would hide how right it is
-        let full = self.refine_from(problem, candidate, whole).map(|mut r| {
-            let cost = screen::variants_cost(h);
-            r.fit.evidence += cost;
-            r.fit = fit::polish(r.fit, &problem.train, Some(self.last.share));
-            r.fit.evidence -= cost;
-            let own = r.assembled.attached.last().cloned().unwrap_or_default();
-            r.accepted.chosen.values = values(&r.fit, &own);
-            r
-        });
-        [estimated, full].into_iter().flatten().max_by(|a, b| a.fit.evidence.total_cmp(&b.fit.evidence))
+        let fits = starts.into_iter().filter_map(|values| self.refine_from(problem, candidate, values));
+        fits.max_by(|a, b| a.fit.evidence.total_cmp(&b.fit.evidence))
     }
 
-    fn refine_from(&self, problem: &Problem<'_>, candidate: &Candidate, values_from: Vec<f64>) -> Option<Refined> {
-        let chosen = Chosen { values: values_from, ..candidate.chosen.clone() };
+    fn refine_from(&self, problem: &Problem<'_>, candidate: &Candidate, from: Vec<f64>) -> Option<Refined> {
+        let chosen = Chosen { values: from, ..candidate.chosen.clone() };
         let accepted = Accepted { chosen, priors: candidate.priors.clone() };
         let mut all = self.accepted.clone();
         all.push(accepted.clone());
         let (fit, assembled) = fitted(problem, &self.last, &all)?;
-        let own = assembled.attached.last().cloned().unwrap_or_default();
-        let chosen = Chosen { values: values(&fit, &own), ..accepted.chosen };
-        let mut fit = fit;
-        fit.evidence -= screen::variants_cost(&problem.hypotheses[candidate.chosen.hypothesis]);
-        Some(Refined { accepted: Accepted { chosen, ..accepted }, assembled, fit })
+        Some(Refined::new(problem, accepted, assembled, fit))
+    }
+
+    /// Those at the front are fitted to the end: comparisons are between optima only.
+    fn sharpen(&self, problem: &Problem<'_>, refined: Vec<Refined>) -> Vec<Refined> {
+        let sharper = |(i, r): (usize, Refined)| {
+            if i >= POLISHED {
+                return r;
+            }
+            let mut fit = r.fit;
+            fit.evidence += screen::variants_cost(&problem.hypotheses[r.accepted.chosen.hypothesis]);
+            let fit = fit::polish(fit, &problem.train, Some(self.last.share));
+            Refined::new(problem, r.accepted, r.assembled, fit)
+        };
+        refined.into_par_iter().enumerate().map(sharper).collect()
     }
 
     /// Drops again what closes little of the simulated gap now that everything else is there: one effect hides another,
@@ -331,7 +329,7 @@ impl Search {
 }
 
 /// The value at which a coefficient stands for the whole effect, if it is a share of one.
-fn share(c: &super::effects::Coefficient) -> Option<f64> {
+fn share(c: &Coefficient) -> Option<f64> {
     c.max.filter(|m| m.is_finite() && *m <= 10.0 * c.nominal.abs())
 }
 
@@ -379,7 +377,9 @@ fn fitted(problem: &Problem<'_>, from: &Fit, accepted: &[Accepted]) -> Option<(F
         }
     }
     let levels: Vec<f64> = from.setting.sources.iter().map(|s| s.level).collect();
-    let setting = assembled.setting(&levels, &from.setting.noise, Vec::new());
+    let mut setting = assembled.setting(&levels, &from.setting.noise, Vec::new());
+    // sources as strong as the model before needed them would hide how right this one is
+    fit::adjust(&mut setting, &problem.train, 1)?;
     let fit = fit::fit(setting, &priors, &problem.train, Some(from.share), RACE)?;
     Some((fit, assembled))
 }

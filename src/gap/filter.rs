@@ -21,6 +21,9 @@ const PARTS: usize = 8;
 /// standard deviation, or by [`LEAST_BEND`] of its size.
 const BEND: f64 = 0.2;
 const LEAST_BEND: f64 = 1e-4;
+/// A part is halved when the model bends so many times more than that within it, and so often at most.
+const FAR: f64 = 5.0;
+const DEEPEST: u32 = 8;
 
 /// What drives the model beside its inputs.
 #[derive(Clone, Debug, PartialEq)]
@@ -164,8 +167,12 @@ struct Work {
     total: DMatrix<f64>,
 }
 
-/// States that nothing depends on: a lower triangular appendix of the system.
+/// States that nothing measured depends on, in groups that depend on each other.
 struct Passive {
+    groups: Vec<Group>,
+}
+
+struct Group {
     states: Vec<usize>,
     a: DMatrix<f64>,
     exponential: Exponential,
@@ -173,13 +180,41 @@ struct Passive {
 }
 
 impl Passive {
-    /// x next = x + integral (x' + A from the active states' half step); the matrix rarely changes.
-    fn step(&mut self, local: &Local, rates: &[f64], active: &[usize], moved: &[f64], x: &mut [f64], h: f64) {
-        let n = self.states.len();
-        if n == 0 {
-            return;
+    fn new(local: &Local, states: &[usize]) -> Self {
+        let mut groups: Vec<Vec<usize>> = states.iter().map(|&i| vec![i]).collect();
+        let linear = &local.linear.a;
+        let numeric = states.iter().flat_map(|&i| states.iter().map(move |&j| (i, j))).filter(|&at| linear[at] != 0.0);
+        for (i, j) in local.plan().couplings().chain(numeric) {
+            let place = |state: usize| groups.iter().position(|g| g.contains(&state));
+            if let (Some(one), Some(other)) = (place(i), place(j))
+                && one != other
+            {
+                let moved = groups.remove(one.max(other));
+                groups[one.min(other)].extend(moved);
+            }
         }
-        let full = &local.linear.a;
+        let group = |states: Vec<usize>| {
+            let n = states.len();
+            Group { states, a: DMatrix::zeros(0, 0), exponential: Exponential::new(n, 0), h: 0.0 }
+        };
+        Passive { groups: groups.into_iter().map(group).collect() }
+    }
+
+    fn states(&self) -> impl Iterator<Item = usize> {
+        self.groups.iter().flat_map(|g| g.states.iter().copied())
+    }
+
+    /// x next = x + integral (x' + A from the active states' half step).
+    fn step(&mut self, local: &Local, active: &[usize], moved: &[f64], x: &mut [f64], h: f64) {
+        for group in &mut self.groups {
+            group.step(local, active, moved, x, h);
+        }
+    }
+}
+
+impl Group {
+    fn step(&mut self, local: &Local, active: &[usize], moved: &[f64], x: &mut [f64], h: f64) {
+        let (n, full) = (self.states.len(), &local.linear.a);
         let fresh = DMatrix::from_fn(n, n, |i, j| full[(self.states[i], self.states[j])]);
         if h != self.h || fresh != self.a {
             self.exponential.compute(&fresh, h);
@@ -189,7 +224,7 @@ impl Passive {
         let rate = DVector::from_fn(n, |i, _| {
             let row = self.states[i];
             let along: f64 = active.iter().zip(moved).map(|(&j, dx)| full[(row, j)] * dx).sum();
-            rates[i] + 0.5 * along
+            local.rates[row] + 0.5 * along
         });
         let change = &self.exponential.integral * rate;
         self.states.iter().zip(change.iter()).for_each(|(&i, dx)| x[i] += dx);
@@ -213,8 +248,9 @@ fn passive_states(local: &Local) -> Vec<usize> {
 
 impl<'a> Filter<'a> {
     fn new(setting: &'a Setting, local: Local, theta: Vec<f64>, start: Vec<f64>, recording: &'a Recording) -> Self {
-        let passive = passive_states(&local);
-        let active: Vec<usize> = (0..start.len()).filter(|i| !passive.contains(i)).collect();
+        let hidden = passive_states(&local);
+        let passive = Passive::new(&local, &hidden);
+        let active: Vec<usize> = (0..start.len()).filter(|i| !hidden.contains(i)).collect();
         let n = active.len();
         let nz = n + setting.sources.len();
         let mut scale = DVector::from_element(nz, 1.0);
@@ -234,7 +270,6 @@ impl<'a> Filter<'a> {
             last: Vec::new(),
             noise: Vec::new(),
         };
-        let k = passive.len();
         Filter {
             setting,
             recording,
@@ -244,7 +279,7 @@ impl<'a> Filter<'a> {
             u: vec![0.0; recording.inputs.len()],
             between: vec![0.0; recording.inputs.len()],
             active,
-            passive: Passive { states: passive, a: DMatrix::zeros(0, 0), exponential: Exponential::new(k), h: 0.0 },
+            passive,
             x: start,
             z,
             scale,
@@ -253,7 +288,7 @@ impl<'a> Filter<'a> {
             work: Work {
                 a: DMatrix::zeros(nz, nz),
                 b: DMatrix::zeros(nz, columns),
-                exponential: Exponential::new(nz),
+                exponential: Exponential::new(n, nz - n),
                 next_p: DMatrix::zeros(nz, nz),
                 next_s: DMatrix::zeros(nz, columns),
                 transposed: DMatrix::zeros(nz, nz),
@@ -377,18 +412,17 @@ impl<'a> Filter<'a> {
             rate[i] += (self.local.rates[xi] + moved) / self.scale[i];
         }
         self.source_rates(correction, &mut rate);
-        let passive_rates: Vec<f64> = self.passive.states.iter().map(|&i| self.local.rates[i]).collect();
         self.work.exponential.compute(&self.work.a, h);
         let change = &self.work.exponential.integral * &rate;
         self.z += &change;
         let moved: Vec<f64> =
             (0..self.active.len()).map(|i| (change[i] + 2.0 * correction[i]) * self.scale[i]).collect();
+        self.passive.step(&self.local, &self.active, &moved, &mut self.x, h);
         let nearly_linear = match self.setting.cuts.get(self.number) {
             Some(cut) => !cut.get(k).copied().unwrap_or(false),
-            None => self.bend(t + h, &rate, &change, h)?,
+            None => self.bend(t + h, &rate, &change, h, 1.0),
         };
         self.pass.cut[k] = !nearly_linear;
-        self.passive.step(&self.local, &passive_rates, &self.active, &moved, &mut self.x, h);
         if nearly_linear {
             self.propagate(h);
             self.work.total.copy_from(&self.work.exponential.transition);
@@ -397,36 +431,46 @@ impl<'a> Filter<'a> {
         self.z = start;
         self.work.total.fill_with_identity();
         let part = h / PARTS as f64;
-        for i in 0..PARTS {
-            self.load();
-            self.local.linearize(t + i as f64 * part, &self.x, &self.theta, &self.between)?;
-            self.fill();
-            let mut rate = DVector::zeros(self.z.len());
-            for (i, &xi) in self.active.iter().enumerate() {
-                rate[i] = self.local.rates[xi] / self.scale[i];
-            }
-            self.source_rates(&DVector::zeros(self.z.len()), &mut rate);
-            self.work.exponential.compute(&self.work.a, part);
-            self.z += &self.work.exponential.integral * rate;
-            self.propagate(part);
-            self.work.total = &self.work.exponential.transition * &self.work.total;
+        (0..PARTS).try_for_each(|i| self.advance(t + i as f64 * part, part, 0))
+    }
+
+    /// A part of a cut step, linearised where it begins; halved where the model has no value at its end, or one far from
+    /// what the linear model says.
+    fn advance(&mut self, t: f64, h: f64, depth: u32) -> Result<(), LocalError> {
+        let start = self.z.clone();
+        self.load();
+        self.local.linearize(t, &self.x, &self.theta, &self.between)?;
+        self.fill();
+        let mut rate = DVector::zeros(self.z.len());
+        for (i, &xi) in self.active.iter().enumerate() {
+            rate[i] = self.local.rates[xi] / self.scale[i];
         }
+        self.source_rates(&DVector::zeros(self.z.len()), &mut rate);
+        self.work.exponential.compute(&self.work.a, h);
+        let change = &self.work.exponential.integral * &rate;
+        self.z += &change;
+        if depth < DEEPEST && !self.bend(t + h, &rate, &change, h, FAR) {
+            self.z = start;
+            self.advance(t, 0.5 * h, depth + 1)?;
+            return self.advance(t + 0.5 * h, 0.5 * h, depth + 1);
+        }
+        self.propagate(h);
+        self.work.total = &self.work.exponential.transition * &self.work.total;
         Ok(())
     }
 
-    /// Whether x' at the end of a step is what the linear model says, within the uncertainty of the state.
-    fn bend(&mut self, t: f64, rate: &DVector<f64>, change: &DVector<f64>, h: f64) -> Result<bool, LocalError> {
+    /// Whether x' at the end of a step is what the linear model says, within so many times the uncertainty of the state.
+    fn bend(&mut self, t: f64, rate: &DVector<f64>, change: &DVector<f64>, h: f64, times: f64) -> bool {
         let expected = rate + &self.work.a * change;
         self.load();
         if self.local.evaluate(t, &self.x, &self.theta, &self.between).is_err() {
-            return Ok(false);
+            return false;
         }
-        let fine = self.active.iter().enumerate().all(|(i, &xi)| {
+        self.active.iter().enumerate().all(|(i, &xi)| {
             let found = self.local.rates[xi] / self.scale[i];
             let allowed = (BEND * self.p[(i, i)].max(0.0).sqrt()).max(LEAST_BEND);
-            0.5 * h * (found - expected[i]).abs() <= allowed
-        });
-        Ok(fine)
+            0.5 * h * (found - expected[i]).abs() <= times * allowed
+        })
     }
 
     fn source_rates(&self, correction: &DVector<f64>, rate: &mut DVector<f64>) {
@@ -465,8 +509,8 @@ impl<'a> Filter<'a> {
         let n = self.active.len();
         let Work { b, exponential, next_p, next_s, transposed, .. } = &mut self.work;
         let m = &exponential.transition;
-        next_s.gemm(1.0, &exponential.integral, b, 0.0);
-        next_s.gemm(1.0, m, &self.s, 1.0);
+        multiply(next_s, &exponential.integral, b, 0.0);
+        multiply(next_s, m, &self.s, 1.0);
         std::mem::swap(&mut self.s, next_s);
         multiply(next_p, m, &self.p, 0.0);
         m.transpose_to(transposed);

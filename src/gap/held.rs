@@ -70,7 +70,7 @@ fn open_loop(setting: &Setting, recording: &Recording, from: usize, state: Vec<f
     let n = state.len();
     let scale = DVector::from_column_slice(&setting.sizes);
     let mut x = state;
-    let mut stepper = Stepper { scale, exponential: Exponential::new(n), u: u.clone(), theta };
+    let mut stepper = Stepper { scale, exponential: Exponential::new(n, 0), u: u.clone(), theta };
     let mut simulated = vec![Vec::with_capacity(recording.len() - from); setting.noise.len()];
     for k in from..recording.len() {
         recording.input(k, &mut u);

@@ -36,9 +36,9 @@ fn run(flat: &FlatModel, choice: &StateChoice, diagnostics: &mut Vec<Diagnostic>
     let order = parameters::order(&mut draft)?;
     let values = parameters::values(&draft, &order);
     diagnostics.extend(parameters::check(&draft, &order, &values));
-    let mut known = Known::new(values.clone());
     make_discrete_equations(&mut draft);
     prefer_reinitialized(&mut draft);
+    let mut known = Known::new(&draft, values.clone());
     let aliases = alias::eliminate(&mut draft, &mut known, diagnostics);
     discrete::classify(&mut draft);
     discrete::absorb_initial_pres(&mut draft);

@@ -1,7 +1,7 @@
 //! Parameters: the order in which bindings are evaluated, their values, and what follows for expressions of them.
 
 use super::draft::{Draft, Role};
-use super::{blt, messages};
+use super::{ActionKind, blt, messages};
 use crate::diag::{Code, Diagnostic};
 use crate::expr::{ExprId, Exprs, Node, VarId};
 use crate::flat::Equation;
@@ -175,14 +175,17 @@ enum Sign {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Known {
     variables: Vec<f64>,
+    /// Signs of variables that have no known value.
+    signs_of: Vec<Sign>,
     values: Vec<f64>,
     signs: Vec<Sign>,
 }
 
 impl Known {
     /// From the parameters' values; NaN for all other variables.
-    pub fn new(variables: Vec<f64>) -> Self {
-        Known { variables, values: Vec::new(), signs: Vec::new() }
+    pub fn new(draft: &Draft, variables: Vec<f64>) -> Self {
+        let signs_of = variable_signs(draft, &variables);
+        Known { variables, signs_of, ..Known::default() }
     }
 
     /// The value of an expression of parameters.
@@ -271,6 +274,7 @@ impl Known {
             },
             Node::If(_, a, b) | Node::Homotopy(a, b) => either(of(a), of(b)),
             Node::Rel(..) => Sign::NotNegative,
+            Node::Var(v) => self.signs_of.get(v.index()).copied().unwrap_or(Sign::Unknown),
             _ => Sign::Unknown,
         }
     }
@@ -285,6 +289,49 @@ impl Known {
             _ => Sign::Unknown,
         }
     }
+}
+
+/// Variables are followed through so many definitions.
+const DEPTH: usize = 4;
+
+/// Signs of variables: of those that stand still, and of those that an equation sets equal to something of known sign.
+fn variable_signs(draft: &Draft, values: &[f64]) -> Vec<Sign> {
+    let mut known = Known { variables: values.to_vec(), ..Known::default() };
+    let mut signs = vec![Sign::Unknown; draft.variables.len()];
+    let mut definitions = Vec::new();
+    for equation in &draft.equations {
+        match draft.exprs.node(equation.lhs) {
+            Node::Var(v) => definitions.push((v, equation.rhs)),
+            Node::Der(v) if equation.rhs == Exprs::ZERO => {
+                if let Some(value) = steady_value(draft, v, &mut known) {
+                    signs[v.index()] = sign_of(value);
+                }
+            }
+            _ => {}
+        }
+    }
+    for _ in 0..DEPTH {
+        known = Known { variables: known.variables, signs_of: signs.clone(), ..Known::default() };
+        known.extend(&draft.exprs);
+        for &(v, value) in &definitions {
+            if signs[v.index()] == Sign::Unknown {
+                signs[v.index()] = known.signs[value.index()];
+            }
+        }
+        if signs == known.signs_of {
+            break;
+        }
+    }
+    signs
+}
+
+/// The value of a variable with derivative 0 that starts from a fixed value, is never reinitialized, and is not 0: that
+/// may be another one in the next run, but hardly of another sign.
+fn steady_value(draft: &Draft, v: VarId, known: &mut Known) -> Option<f64> {
+    let variable = &draft.variables[v.index()];
+    let reinitialized = || draft.actions.iter().any(|a| matches!(a.kind, ActionKind::Reinit(w, _) if w == v));
+    let start = variable.start.filter(|_| variable.fixed && !reinitialized())?;
+    known.value(&draft.exprs, start).filter(|value| *value != 0.0)
 }
 
 fn sign_of(value: f64) -> Sign {
