@@ -6,5 +6,5 @@ model CommandSaturation "Clipped beyond a limit"
   parameter Real w(unit = "1", min = 1e-9) = 0.02 "Width of the corner over the limit";
 equation
   y = u - k*(Smooth.pos(u - m, w*m) - Smooth.pos(-u - m, w*m));
-  annotation(__bramah(family = "saturation", id = "E11", coefficients = {"k"}, shapes(m = {0.4, 0.6, 0.8, 0.95}), relative = {"m"}));
+  annotation(__bramah(family = "saturation", id = "E11", coefficients = {"k"}, shapes(m = {0.4, 0.6, 0.8, 0.95}), relative = {"m"}, limit = {"m"}));
 end CommandSaturation;

@@ -143,6 +143,11 @@ impl Plan {
         self.states.iter().map(|s| s.1)
     }
 
+    /// Unit of a state, as written.
+    pub fn state_unit(&self, state: usize) -> Option<&str> {
+        self.system.dae.variables[self.states[state].1.index()].unit.as_deref()
+    }
+
     /// Pairs of states of which the first one's rate reads the second one directly.
     pub fn couplings(&self) -> impl Iterator<Item = (usize, usize)> {
         let pattern = &self.system.pattern;
@@ -214,6 +219,8 @@ pub struct Local {
     residual: Vec<f64>,
     entries: Vec<f64>,
     torn_entries: Vec<f64>,
+    /// Implicit unknowns of the last solution.
+    implicit: Vec<f64>,
     /// x' at the last point.
     pub rates: Vec<f64>,
     /// y at the last point.
@@ -246,6 +253,7 @@ impl Local {
             residual: vec![0.0; columns],
             entries: vec![0.0; entries],
             torn_entries: vec![0.0; entries],
+            implicit: vec![0.0; plan.implicit.len()],
             rates: vec![0.0; n],
             outputs: vec![0.0; p],
             linear,
@@ -284,6 +292,12 @@ impl Local {
     /// # Errors
     /// [`LocalError`]; the values are then meaningless.
     pub fn evaluate(&mut self, time: f64, x: &[f64], theta: &[f64], u: &[f64]) -> Result<(), LocalError> {
+        let result = self.values(time, x, theta, u);
+        self.remember(result.is_ok());
+        result
+    }
+
+    fn values(&mut self, time: f64, x: &[f64], theta: &[f64], u: &[f64]) -> Result<(), LocalError> {
         let Local { plan, point, y, yp, residual, entries, torn_entries, .. } = self;
         let system = &plan.system;
         for (&(column, _), &value) in plan.states.iter().zip(x) {
@@ -310,6 +324,18 @@ impl Local {
         }
         let finite = self.rates.iter().chain(&self.outputs).all(|v| v.is_finite());
         if finite { Ok(()) } else { Err(LocalError::NonFinite) }
+    }
+
+    /// Remembers the implicit unknowns where there is a solution; where there is none, the next search begins there.
+    fn remember(&mut self, found: bool) {
+        for (kept, &(column, torn)) in self.implicit.iter_mut().zip(&self.plan.implicit) {
+            let unknown = if torn { &mut self.yp[column] } else { &mut self.y[column] };
+            if found {
+                *kept = *unknown;
+            } else {
+                *unknown = *kept;
+            }
+        }
     }
 
     /// Values and derivatives.

@@ -25,7 +25,7 @@ const FAR: f64 = 0.1;
 const BOUNDED: usize = 2;
 /// Iterations with which candidates are compared before the front is polished, and candidates polished.
 const RACE: usize = 2;
-const POLISHED: usize = 3;
+const POLISHED: usize = 5;
 /// Gain that an effect must have to be accepted, nats.
 const ACCEPTED: f64 = 8.0;
 /// Vuong statistic that it must have.
@@ -204,7 +204,7 @@ impl Search {
         progress(Stage::Refine(number));
         let mut refined: Vec<Refined> = promising.into_par_iter().filter_map(|c| self.refine(problem, c)).collect();
         refined.sort_by(|a, b| b.fit.evidence.total_cmp(&a.fit.evidence));
-        refined = self.sharpen(problem, refined);
+        self.sharpen(problem, &mut refined);
         refined.sort_by(|a, b| b.fit.evidence.total_cmp(&a.fit.evidence));
         let trials: Vec<Trial> = refined.iter().map(|r| self.trial(number, r)).collect();
         self.trials.extend(trials);
@@ -278,18 +278,23 @@ impl Search {
         Some(Refined::new(problem, accepted, assembled, fit))
     }
 
-    /// Those at the front are fitted to the end: comparisons are between optima only.
-    fn sharpen(&self, problem: &Problem<'_>, refined: Vec<Refined>) -> Vec<Refined> {
+    /// Those at the front are fitted to the end: comparisons are between optima only. The share of independent samples is
+    /// that of the whitest: a model that explains what is missing leaves white innovations, and then all samples count.
+    fn sharpen(&mut self, problem: &Problem<'_>, refined: &mut Vec<Refined>) {
         let sharper = |(i, r): (usize, Refined)| {
             if i >= POLISHED {
                 return r;
             }
             let mut fit = r.fit;
             fit.evidence += screen::variants_cost(&problem.hypotheses[r.accepted.chosen.hypothesis]);
-            let fit = fit::polish(fit, &problem.train, Some(self.last.share));
+            let fit = fit::polish(fit, &problem.train, Some(self.last.search_share()));
             Refined::new(problem, r.accepted, r.assembled, fit)
         };
-        refined.into_par_iter().enumerate().map(sharper).collect()
+        let taken = std::mem::take(refined);
+        let polished: Vec<Refined> = taken.into_par_iter().enumerate().map(sharper).collect();
+        let share = polished.iter().take(POLISHED).map(|r| r.fit.own_share()).fold(self.last.share, f64::max);
+        refined.extend(polished.into_iter().map(|r| Refined { fit: r.fit.at_share(share), ..r }));
+        self.last = self.last.clone().at_share(share);
     }
 
     /// Drops again what closes little of the simulated gap now that everything else is there: one effect hides another,
@@ -380,7 +385,7 @@ fn fitted(problem: &Problem<'_>, from: &Fit, accepted: &[Accepted]) -> Option<(F
     let mut setting = assembled.setting(&levels, &from.setting.noise, Vec::new());
     // sources as strong as the model before needed them would hide how right this one is
     fit::adjust(&mut setting, &problem.train, 1)?;
-    let fit = fit::fit(setting, &priors, &problem.train, Some(from.share), RACE)?;
+    let fit = fit::fit(setting, &priors, &problem.train, Some(from.search_share()), RACE)?;
     Some((fit, assembled))
 }
 

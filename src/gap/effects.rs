@@ -81,6 +81,9 @@ pub struct Shape {
     /// Compared with the potential of the site, or with the difference of its two: values beyond the range that occurs
     /// make no difference.
     pub threshold: bool,
+    /// A size of the signal at a sensor or command beyond which the effect acts: values outside of the range that occurs
+    /// make no difference.
+    pub limit: bool,
 }
 
 /// One effect model.
@@ -444,7 +447,8 @@ fn shapes(
             grid.filter(|g| !g.is_empty()).ok_or_else(|| format!("the grid of `{name}` is no list of numbers"))?;
         let unit = read.quantity(number, &name)?.unit;
         let threshold = texts(own, "threshold").contains(&name);
-        Ok(Shape { unit, grid, relative: relative.contains(&name), threshold, name })
+        let limit = texts(own, "limit").contains(&name);
+        Ok(Shape { unit, grid, relative: relative.contains(&name), threshold, limit, name })
     };
     list.arguments.iter().map(one).collect()
 }

@@ -17,13 +17,24 @@ pub const BLOCKS: usize = 16;
 
 /// Parts into which a step is cut where the model bends within it.
 const PARTS: usize = 8;
+/// How far states may be from the model's start when a recording begins: measured ones by their size, the others by this
+/// part of it, absolute temperatures by so much.
+const START_UNMEASURED: f64 = 0.2;
+const START_KELVIN: f64 = 10.0;
 /// A model counts as linear over a step when its curvature moves no state by more than this part of the state's
 /// standard deviation, or by [`LEAST_BEND`] of its size.
 const BEND: f64 = 0.2;
 const LEAST_BEND: f64 = 1e-4;
-/// A part is halved when the model bends so many times more than that within it, and so often at most.
+/// A part is halved when the model bends so many times more than that within it, and so often at most; more often only
+/// where the model has no values at its end.
 const FAR: f64 = 5.0;
-const DEEPEST: u32 = 8;
+const FINEST: u32 = 2;
+const DEEPEST: u32 = 5;
+/// Parts for each sample on the average, beyond which no part is halved any more.
+const MOST_PARTS: usize = 8;
+/// A corrected state counts as out of the model's reach when its rates differ by so many sizes of the states over a step
+/// from what was expected.
+const STRANGE: f64 = 10.0;
 
 /// What drives the model beside its inputs.
 #[derive(Clone, Debug, PartialEq)]
@@ -79,9 +90,6 @@ pub struct Pass {
     pub cut: Vec<bool>,
     /// Filtered state at the last sample, SI.
     pub last: Vec<f64>,
-    /// Mean square of each signal's innovation beyond what its prediction's uncertainty explains: noise variances as
-    /// the data show them.
-    pub noise: Vec<f64>,
 }
 
 /// A linearised step: from one sample to the next.
@@ -144,13 +152,16 @@ struct Filter<'a> {
     x: Vec<f64>,
     /// Active states and sources, scaled.
     z: DVector<f64>,
+    /// Where the model had values last.
+    safe: DVector<f64>,
     scale: DVector<f64>,
     p: DMatrix<f64>,
     /// d z / d parameters wanted.
     s: DMatrix<f64>,
     work: Work,
     chunk: Vec<f64>,
-    noise: Vec<(f64, f64)>,
+    /// Parts of cut steps so far.
+    parts: usize,
     block: f64,
     pass: Pass,
 }
@@ -198,10 +209,6 @@ impl Passive {
             Group { states, a: DMatrix::zeros(0, 0), exponential: Exponential::new(n, 0), h: 0.0 }
         };
         Passive { groups: groups.into_iter().map(group).collect() }
-    }
-
-    fn states(&self) -> impl Iterator<Item = usize> {
-        self.groups.iter().flat_map(|g| g.states.iter().copied())
     }
 
     /// x next = x + integral (x' + A from the active states' half step).
@@ -258,6 +265,16 @@ impl<'a> Filter<'a> {
         setting.sources.iter().enumerate().for_each(|(i, source)| scale[n + i] = source.level.max(1e-300));
         let mut z = DVector::zeros(nz);
         active.iter().enumerate().for_each(|(i, &x)| z[i] = start[x] / scale[i]);
+        let mut p = DMatrix::identity(nz, nz);
+        for (i, &x) in active.iter().enumerate() {
+            let measured = local.linear.c.column(x).iter().any(|c| *c != 0.0);
+            let deviation = match local.plan().state_unit(x) {
+                Some("K") => START_KELVIN / scale[i],
+                _ if measured => 1.0,
+                _ => START_UNMEASURED,
+            };
+            p[(i, i)] = deviation * deviation;
+        }
         let columns = setting.columns.len();
         let (samples, signals) = (recording.len(), setting.noise.len());
         let pass = Pass {
@@ -268,7 +285,6 @@ impl<'a> Filter<'a> {
             tape: Vec::new(),
             cut: vec![false; samples],
             last: Vec::new(),
-            noise: Vec::new(),
         };
         Filter {
             setting,
@@ -281,9 +297,10 @@ impl<'a> Filter<'a> {
             active,
             passive,
             x: start,
+            safe: z.clone(),
             z,
             scale,
-            p: DMatrix::identity(nz, nz),
+            p,
             s: DMatrix::zeros(nz, columns),
             work: Work {
                 a: DMatrix::zeros(nz, nz),
@@ -295,7 +312,7 @@ impl<'a> Filter<'a> {
                 total: DMatrix::zeros(nz, nz),
             },
             chunk: Vec::new(),
-            noise: vec![(0.0, 0.0); signals],
+            parts: 0,
             block: 0.0,
             pass,
         }
@@ -319,10 +336,16 @@ impl<'a> Filter<'a> {
         let t = recording.times[k];
         recording.input(k, &mut self.u);
         self.load();
-        self.local.linearize(t, &self.x, &self.theta, &self.u)?;
+        if self.local.linearize(t, &self.x, &self.theta, &self.u).is_err() {
+            // with other inputs there may be no values there
+            self.z.copy_from(&self.safe);
+            self.load();
+            self.local.linearize(t, &self.x, &self.theta, &self.u)?;
+        }
         let before = self.z.clone();
+        self.safe.copy_from(&before);
         let (here, innovation, output) = self.update(k);
-        let correction = &self.z - &before;
+        let mut correction = &self.z - &before;
         if (k + 1) * BLOCKS / samples > k * BLOCKS / samples {
             self.close_block();
         }
@@ -331,7 +354,7 @@ impl<'a> Filter<'a> {
         }
         let h = recording.times[k + 1] - t;
         recording.input_between(k, &mut self.between);
-        self.predict(k, &correction, h)?;
+        self.predict(k, &mut correction, h);
         if with_tape {
             let transition = self.work.total.clone();
             self.pass.tape.push(Step { here, innovation, output, correction, transition, h });
@@ -384,26 +407,17 @@ impl<'a> Filter<'a> {
             }
             self.p.ger(-1.0 / variance, &pc, &pc, 1.0);
         }
-        let moved = &self.z - &before;
-        for (row, &i) in here.iter().enumerate() {
-            let direction = c.row(row).transpose();
-            pc.gemv(1.0, &self.p, &direction, 0.0);
-            let residual = innovation[row] - direction.dot(&moved);
-            // expectation step for the noise: squared residual behind the update plus what is uncertain in it
-            self.noise[i].0 += residual * residual + direction.dot(&pc).max(0.0);
-            self.noise[i].1 += 1.0;
-        }
         (here, innovation, c)
     }
 
     /// From the filtered state at sample `k` to the predicted one at the next: one step where the model is nearly linear
     /// over it, else several. The transition over the whole interval is kept in `work.total`.
-    fn predict(&mut self, k: usize, correction: &DVector<f64>, h: f64) -> Result<(), LocalError> {
+    fn predict(&mut self, k: usize, correction: &mut DVector<f64>, h: f64) {
         let t = self.recording.times[k];
         let start = self.z.clone();
         self.fill();
         // x' at the filtered state, to first order from the predicted one
-        let mut rate = &self.work.a * correction;
+        let mut rate = &self.work.a * &*correction;
         let first_input = self.setting.plan.parameters();
         let linear = &self.local.linear;
         for (i, &xi) in self.active.iter().enumerate() {
@@ -415,31 +429,56 @@ impl<'a> Filter<'a> {
         self.work.exponential.compute(&self.work.a, h);
         let change = &self.work.exponential.integral * &rate;
         self.z += &change;
-        let moved: Vec<f64> =
-            (0..self.active.len()).map(|i| (change[i] + 2.0 * correction[i]) * self.scale[i]).collect();
+        let finite = change.iter().all(|v| v.is_finite());
+        let along = if finite { &change + 2.0 * &*correction } else { 2.0 * &*correction };
+        let moved: Vec<f64> = (0..self.active.len()).map(|i| along[i] * self.scale[i]).collect();
         self.passive.step(&self.local, &self.active, &moved, &mut self.x, h);
         let nearly_linear = match self.setting.cuts.get(self.number) {
             Some(cut) => !cut.get(k).copied().unwrap_or(false),
             None => self.bend(t + h, &rate, &change, h, 1.0),
         };
+        let nearly_linear = nearly_linear && finite;
         self.pass.cut[k] = !nearly_linear;
         if nearly_linear {
             self.propagate(h);
             self.work.total.copy_from(&self.work.exponential.transition);
-            return Ok(());
+            return;
         }
         self.z = start;
+        self.temper(t, &rate, correction, h);
         self.work.total.fill_with_identity();
         let part = h / PARTS as f64;
-        (0..PARTS).try_for_each(|i| self.advance(t + i as f64 * part, part, 0))
+        (0..PARTS).for_each(|i| self.advance(t + i as f64 * part, part, 0));
+    }
+
+    /// Takes back part of a correction that leads to where the model is nothing like what it was linearised as (an
+    /// unmeasured pressure below zero, say).
+    fn temper(&mut self, t: f64, expected: &DVector<f64>, correction: &mut DVector<f64>, h: f64) {
+        let predicted = &self.z - &*correction;
+        for halving in 0..=DEEPEST {
+            self.load();
+            let known = self.local.linearize(t, &self.x, &self.theta, &self.between).is_ok();
+            let strange = |(i, &xi): (usize, &usize)| {
+                let rate = self.local.rates[xi] / self.scale[i];
+                let beyond = h * (rate - expected[i]).abs() > STRANGE * (1.0 + h * expected[i].abs());
+                beyond || !rate.is_finite()
+            };
+            if known && !self.active.iter().enumerate().any(strange) {
+                return;
+            }
+            *correction *= if halving + 1 < DEEPEST { 0.5 } else { 0.0 };
+            self.z = &predicted + &*correction;
+        }
     }
 
     /// A part of a cut step, linearised where it begins; halved where the model has no value at its end, or one far from
     /// what the linear model says.
-    fn advance(&mut self, t: f64, h: f64, depth: u32) -> Result<(), LocalError> {
+    fn advance(&mut self, t: f64, h: f64, depth: u32) {
         let start = self.z.clone();
-        self.load();
-        self.local.linearize(t, &self.x, &self.theta, &self.between)?;
+        if !self.possible(t) {
+            // the state waits at the edge of where the model has values
+            return;
+        }
         self.fill();
         let mut rate = DVector::zeros(self.z.len());
         for (i, &xi) in self.active.iter().enumerate() {
@@ -449,14 +488,27 @@ impl<'a> Filter<'a> {
         self.work.exponential.compute(&self.work.a, h);
         let change = &self.work.exponential.integral * &rate;
         self.z += &change;
-        if depth < DEEPEST && !self.bend(t + h, &rate, &change, h, FAR) {
+        let possible = self.possible(t + h);
+        self.parts += 1;
+        let deepest = if self.parts > MOST_PARTS * self.recording.len() { 0 } else { DEEPEST };
+        if depth < deepest && (!possible || depth < FINEST && !self.bend(t + h, &rate, &change, h, FAR)) {
             self.z = start;
-            self.advance(t, 0.5 * h, depth + 1)?;
-            return self.advance(t + 0.5 * h, 0.5 * h, depth + 1);
+            self.advance(t, 0.5 * h, depth + 1);
+            self.advance(t + 0.5 * h, 0.5 * h, depth + 1);
+            return;
+        }
+        if !possible {
+            self.z = start;
+            return;
         }
         self.propagate(h);
         self.work.total = &self.work.exponential.transition * &self.work.total;
-        Ok(())
+    }
+
+    /// Whether the model has values and derivatives at the present state.
+    fn possible(&mut self, t: f64) -> bool {
+        self.load();
+        self.local.linearize(t, &self.x, &self.theta, &self.between).is_ok()
     }
 
     /// Whether x' at the end of a step is what the linear model says, within so many times the uncertainty of the state.
@@ -560,7 +612,6 @@ impl<'a> Filter<'a> {
     fn finish(mut self) -> Pass {
         self.load();
         self.pass.last = self.x;
-        self.pass.noise = self.noise.iter().map(|(sum, n)| if *n > 0.0 { sum / n } else { 0.0 }).collect();
         self.pass
     }
 }

@@ -104,19 +104,17 @@ pub fn adjust(setting: &mut Setting, train: &[Recording], rounds: usize) -> Opti
     for _ in 0..rounds {
         let longest = train.iter().map(Recording::len).max().unwrap_or(0);
         let found = passes(setting, train, LEVEL_SAMPLES.max(longest / LEVEL_PART), true)?;
-        for i in 0..setting.noise.len() {
-            // where sources cannot take what is left, it counts as noise after all
-            if mean_square(&found, i) > MISFIT {
-                setting.most_noise[i] *= 2.0;
-            }
-            let count = found.iter().filter(|p| p.noise[i] > 0.0).count();
-            if count > 0 {
-                let mean = found.iter().map(|p| p.noise[i]).sum::<f64>() / count as f64;
-                setting.noise[i] = mean.sqrt().max(0.2 * setting.noise[i]).min(setting.most_noise[i]);
-            }
-        }
         let tapes: Vec<&[filter::Step]> = found.iter().map(|p| &p.tape[..]).collect();
         let (factors, _) = levels::fit(setting, &tapes);
+        // what the sources can take is not noise
+        for (i, noise) in levels::noise(setting, &tapes, &factors).into_iter().enumerate() {
+            if noise.misfit > MISFIT {
+                setting.most_noise[i] *= 2.0;
+            }
+            if noise.variance > 0.0 {
+                setting.noise[i] = noise.variance.sqrt().max(0.2 * setting.noise[i]).min(setting.most_noise[i]);
+            }
+        }
         setting.sources.iter_mut().zip(factors).for_each(|(s, f)| s.level *= f);
     }
     setting.columns = columns;
@@ -212,15 +210,6 @@ pub fn polish(mut best: Fit, train: &[Recording], share: Option<f64>) -> Fit {
     best
 }
 
-/// Mean square of a signal's whitened innovations, 1 where the model is right.
-fn mean_square(found: &[Pass], signal: usize) -> f64 {
-    let known = || {
-        found.iter().flat_map(|p| p.white.column(signal).iter().copied().collect::<Vec<f64>>()).filter(|v| *v != 0.0)
-    };
-    let count = known().count();
-    known().map(|v| v * v).sum::<f64>() / count.max(1) as f64
-}
-
 fn share_of(found: &[Pass]) -> f64 {
     evidence::independent_share(&found.iter().map(|p| &p.white).collect::<Vec<_>>())
 }
@@ -252,7 +241,28 @@ fn quadratic(gram: &DMatrix<f64>, d: &[f64], sigmas: &[f64]) -> f64 {
     sum
 }
 
+/// Fits count at least this share of the samples as independent: how coloured the rest is shows only once what is
+/// missing has been found.
+const LEAST_SHARE: f64 = 0.1;
+
 impl Fit {
+    /// The same fit with its evidence counted at another share of independent samples.
+    pub fn at_share(mut self, share: f64) -> Fit {
+        self.evidence += (share - self.share) * self.likelihood;
+        self.share = share;
+        self
+    }
+
+    /// The share at which models that are to explain more are weighed.
+    pub fn search_share(&self) -> f64 {
+        self.share.max(LEAST_SHARE)
+    }
+
+    /// Effective share of independent samples that its own innovations show.
+    pub fn own_share(&self) -> f64 {
+        evidence::independent_share(&self.white.iter().collect::<Vec<_>>())
+    }
+
     /// The part of the log posterior that the priors take, nats.
     pub fn prior_cost(&self, count: usize) -> f64 {
         let square = |p: &Prior| ((self.setting.theta[p.parameter] - p.mean) / p.sigma).powi(2);

@@ -10,18 +10,24 @@ const ROUNDS: [&[f64]; 3] = [&[0.1, 10.0], &[0.3, 3.0], &[0.55, 1.8]];
 
 /// Steps at most in a direction that pays.
 const FURTHER: usize = 5;
+/// What a source may move a state within a step at most, in sizes of the state: a stronger one is no disturbance.
+const REACH: f64 = 0.5;
 
 /// Adjusts the levels of the sources, relative to those in the setting, so that the tapes become most likely.
 /// Returns the factors and the log likelihood reached.
 pub fn fit(setting: &Setting, tapes: &[&[Step]]) -> (Vec<f64>, f64) {
     let mut factors = vec![1.0; setting.sources.len()];
     let value = |factors: &[f64]| tapes.par_iter().map(|t| likelihood(setting, t, factors)).sum::<f64>();
+    let most = most(tapes, factors.len());
     let mut best = value(&factors);
     for round in ROUNDS {
         for i in 0..factors.len() {
             let before = factors[i];
             let mut kept = before;
             for f in round {
+                if before * f > most[i].max(before) {
+                    continue;
+                }
                 factors[i] = before * f;
                 let found = value(&factors);
                 if found > best {
@@ -29,6 +35,9 @@ pub fn fit(setting: &Setting, tapes: &[&[Step]]) -> (Vec<f64>, f64) {
                     (best, kept) = (found, factors[i]);
                     for _ in 0..FURTHER {
                         factors[i] *= f;
+                        if *f > 1.0 && factors[i] > most[i] {
+                            break;
+                        }
                         let next = value(&factors);
                         if next <= best {
                             break;
@@ -44,9 +53,73 @@ pub fn fit(setting: &Setting, tapes: &[&[Step]]) -> (Vec<f64>, f64) {
     (factors, best)
 }
 
+/// Factors at which each of the sources moves the states as far as it may, half of the time.
+fn most(tapes: &[&[Step]], sources: usize) -> Vec<f64> {
+    let reach = |j: usize| {
+        let moved = |step: &Step| {
+            let n = step.transition.nrows() - sources;
+            step.transition.column(n + j).iter().take(n).fold(0.0, |most: f64, v| most.max(v.abs()))
+        };
+        let mut all: Vec<f64> = tapes.iter().flat_map(|t| t.iter().map(moved)).collect();
+        all.sort_by(f64::total_cmp);
+        REACH / all.get(all.len() / 2).copied().unwrap_or(0.0).max(1e-300)
+    };
+    (0..sources).map(reach).collect()
+}
+
 /// Log likelihood of a tape with the sources' levels multiplied by `factors`: a Kalman filter, one signal after the other.
 pub fn likelihood(setting: &Setting, tape: &[Step], factors: &[f64]) -> f64 {
-    let Some(first) = tape.first() else { return 0.0 };
+    let mut sum = 0.0;
+    replay(setting, tape, factors, &mut |sample| {
+        let (left, variance) = (sample.left, sample.variance);
+        sum -= 0.5 * (left * left / variance + variance.ln() + (2.0 * std::f64::consts::PI).ln());
+    });
+    if sum.is_finite() { sum } else { f64::NEG_INFINITY }
+}
+
+/// What the tapes say of a signal's noise, over all its samples.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Noise {
+    /// Mean square of the whitened innovations: 1 where the model is right.
+    pub misfit: f64,
+    /// The variance that makes what is left most likely (expectation step).
+    pub variance: f64,
+    count: f64,
+}
+
+/// Noise of every signal at these levels.
+pub fn noise(setting: &Setting, tapes: &[&[Step]], factors: &[f64]) -> Vec<Noise> {
+    let mut found = vec![Noise::default(); setting.noise.len()];
+    for tape in tapes {
+        replay(setting, tape, factors, &mut |sample| {
+            let own = &mut found[sample.signal];
+            let r = setting.noise[sample.signal] * setting.noise[sample.signal];
+            // behind the update with this sample alone the residual shrinks by r/variance
+            let residual = sample.left * r / sample.variance;
+            own.misfit += sample.left * sample.left / sample.variance;
+            own.variance += residual * residual + (sample.variance - r) * r / sample.variance;
+            own.count += 1.0;
+        });
+    }
+    for own in found.iter_mut().filter(|n| n.count > 0.0) {
+        own.misfit /= own.count;
+        own.variance /= own.count;
+    }
+    found
+}
+
+/// One sample of one signal on a tape.
+struct Sample {
+    signal: usize,
+    /// Innovation.
+    left: f64,
+    /// Its variance.
+    variance: f64,
+}
+
+/// Runs the Kalman filter over a tape.
+fn replay(setting: &Setting, tape: &[Step], factors: &[f64], each: &mut impl FnMut(Sample)) {
+    let Some(first) = tape.first() else { return };
     let nz = first.correction.len();
     let n = nz - factors.len();
     let mut p = DMatrix::identity(nz, nz);
@@ -59,14 +132,13 @@ pub fn likelihood(setting: &Setting, tape: &[Step], factors: &[f64]) -> f64 {
     let (mut d, mut moved) = (DVector::zeros(nz), DVector::zeros(nz));
     let mut pc = DVector::zeros(nz);
     let mut direction = DVector::zeros(nz);
-    let mut sum = 0.0;
     for step in tape {
-        for (row, &i) in step.here.iter().enumerate() {
+        for (row, &signal) in step.here.iter().enumerate() {
             (0..nz).for_each(|j| direction[j] = step.output[(row, j)]);
             pc.gemv(1.0, &p, &direction, 0.0);
-            let variance = direction.dot(&pc) + setting.noise[i] * setting.noise[i];
+            let variance = direction.dot(&pc) + setting.noise[signal] * setting.noise[signal];
             let left = step.innovation[row] - direction.dot(&d);
-            sum -= 0.5 * (left * left / variance + variance.ln() + (2.0 * std::f64::consts::PI).ln());
+            each(Sample { signal, left, variance });
             d.axpy(left / variance, &pc, 1.0);
             p.ger(-1.0 / variance, &pc, &pc, 1.0);
         }
@@ -84,5 +156,4 @@ pub fn likelihood(setting: &Setting, tape: &[Step], factors: &[f64]) -> f64 {
         }
         symmetrize(&mut p);
     }
-    if sum.is_finite() { sum } else { f64::NEG_INFINITY }
 }

@@ -4,7 +4,7 @@
 use super::filter::{self, Setting, Source};
 use super::fit::{self, Fit};
 use super::levels;
-use super::problem::{Assembled, Problem, SLOW_TAU};
+use super::problem::{Assembled, Problem, SLOWER};
 use super::screen::Accepted;
 use rayon::prelude::*;
 
@@ -50,20 +50,16 @@ pub fn locate(problem: &Problem<'_>, base: &Fit, accepted: &[Accepted]) -> Vec<L
             })
             .collect();
         if found.is_empty() {
-            found = first_ranking(&results, best, base.share, fast);
+            found = first_ranking(&results, best, base.search_share(), fast);
         }
         let Some(&(top, i, s)) = results.iter().max_by(|a, b| a.0.total_cmp(&b.0)) else { break };
-        if base.share * (top - best) < GAIN {
+        if base.search_share() * (top - best) < GAIN {
             break;
         }
         factors[i] = s;
         best = top;
-        // what the place is worth given the others
-        if let Some(place) = found.iter_mut().find(|f| f.disturbance == i - fast) {
-            place.evidence = place.evidence.max(GAIN);
-        }
     }
-    rank(&mut found, &factors, fast, &value, best, base.share);
+    rank(&mut found, &factors, fast, &value, best, base.search_share());
     found
 }
 
@@ -105,7 +101,7 @@ fn setting(problem: &Problem<'_>, base: &Fit, assembled: &Assembled, accepted: &
         setting.sources.push(Source { parameter: scaled.sources.start + node, ..source.clone() });
     }
     for (i, level) in first.into_iter().enumerate() {
-        setting.sources.push(Source { parameter: scaled.sources.start + i, level, tau: SLOW_TAU });
+        setting.sources.push(Source { parameter: scaled.sources.start + i, level, tau: SLOWER * scaled.tau });
     }
     Some(setting)
 }

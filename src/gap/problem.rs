@@ -5,6 +5,7 @@ use super::augment::{self, Attached, Augmented, PLANT};
 use super::circuit::Circuit;
 use super::data::Recording;
 use super::filter::{Setting, Source};
+use super::held;
 use super::hypotheses::{Hypothesis, Signal, Site};
 use crate::analysis::lift;
 use crate::analysis::local::{Local, Plan};
@@ -17,10 +18,12 @@ use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Correlation time of disturbances, s: what a bench's torques, flows and forces do beside their laws.
-pub const TAU: f64 = 0.025;
-/// The same for sources that locate a gap, s.
-pub const SLOW_TAU: f64 = 0.1;
+/// Correlation time of disturbances, s: what a bench's torques, flows and forces do beside their laws; where samples are
+/// far apart, so many of their distances.
+const TAU: f64 = 0.025;
+const TAU_STEPS: f64 = 3.0;
+/// Sources that locate a gap are so many times slower.
+pub const SLOWER: f64 = 4.0;
 /// Noise may be so much above what sixth differences show.
 const MOST_NOISE: f64 = 1.1;
 
@@ -88,6 +91,8 @@ pub struct Assembled {
     pub sizes: Vec<f64>,
     /// Per signal the largest noise that its samples allow.
     pub most_noise: Vec<f64>,
+    /// Correlation time of sources, s.
+    pub tau: f64,
     /// The Modelica text.
     pub augmented: Augmented,
 }
@@ -111,6 +116,14 @@ impl Problem<'_> {
     /// Number of blocks into which the train recordings are cut.
     pub fn blocks(&self) -> f64 {
         (self.train.len() * super::filter::BLOCKS) as f64
+    }
+
+    /// Median time between samples, s; 0 without any.
+    pub fn step(&self) -> f64 {
+        let steps = |r: &Recording| r.times.windows(2).map(|w| w[1] - w[0]).filter(|h| *h > 0.0).collect::<Vec<f64>>();
+        let mut steps: Vec<f64> = self.train.iter().flat_map(steps).collect();
+        steps.sort_by(f64::total_cmp);
+        steps.get(steps.len() / 2).copied().unwrap_or(0.0)
     }
 
     /// The nominal model with hypotheses and sources; coefficients and shapes of the hypotheses are free.
@@ -142,6 +155,21 @@ impl Problem<'_> {
         };
         let counts: Vec<usize> = chosen.iter().enumerate().map(still).collect();
         self.lifted(flat, augmented, &counts)
+    }
+
+    /// What the nominal model says of further variables over all train recordings, one after the other, from its own
+    /// start; `None` where it does not reach the end.
+    pub fn observe(&self, variables: &[Signal]) -> Option<Vec<Vec<f64>>> {
+        let augmented = augment::augment(&self.circuit, &[], variables);
+        let flat = self.flat(&augmented).ok()?;
+        let model = self.lifted(flat, augmented, &[]).ok()?;
+        let setting = model.setting(&[], &vec![1.0; variables.len()], Vec::new());
+        let mut all = vec![Vec::new(); variables.len()];
+        for r in &self.train {
+            let run = held::from_start(&setting, r)?;
+            all.iter_mut().zip(run).for_each(|(a, v)| a.extend(v));
+        }
+        Some(all)
     }
 
     /// The flat model of an augmented text.
@@ -198,14 +226,15 @@ impl Problem<'_> {
         };
         let sizes = sizes.map_or_else(|_| vec![1.0; plan.states()], |l| l.nominals());
         let most_noise = self.noise_floor.iter().map(|n| MOST_NOISE * n).collect();
-        Ok(Assembled { plan, theta, free, sources, attached, sizes, most_noise, augmented })
+        let tau = TAU.max(TAU_STEPS * self.step());
+        Ok(Assembled { plan, theta, free, sources, attached, sizes, most_noise, tau, augmented })
     }
 }
 
 impl Assembled {
     /// A setting for the filter with these levels of the sources.
     pub fn setting(&self, levels: &[f64], noise: &[f64], columns: Vec<usize>) -> Setting {
-        let source = |(parameter, &level): (usize, &f64)| Source { parameter, level, tau: TAU };
+        let source = |(parameter, &level): (usize, &f64)| Source { parameter, level, tau: self.tau };
         Setting {
             plan: self.plan.clone(),
             theta: self.theta.clone(),

@@ -9,9 +9,7 @@ use nalgebra::DMatrix;
 use std::ops::Range;
 
 /// The background is tried as fitted, and reduced: what a hypothesis explains must be allowed to leave it.
-const BACKGROUNDS: [f64; 2] = [1.0, 0.3];
-/// Hypotheses that are tried with the reduced background.
-const FRONT: usize = 20;
+const BACKGROUNDS: [f64; 3] = [1.0, 0.3, 0.03];
 /// Typical sizes that a coefficient may have at most, as prior deviation.
 const LARGEST: f64 = 30.0;
 
@@ -30,6 +28,8 @@ pub struct Candidate {
 
 /// How far a data sheet is usually off where it is wrong, as part of the value.
 const WRONG_SHEET: f64 = 0.3;
+/// Beyond so many times that, something else is wrong.
+const AT_MOST: f64 = 2.0;
 
 /// Something accepted before.
 #[derive(Clone, Debug)]
@@ -53,21 +53,19 @@ pub fn screen(problem: &Problem<'_>, base: &Fit, accepted: &[Accepted]) -> Vec<C
     let open: Vec<usize> = (0..problem.hypotheses.len()).filter(|&h| !taken(h)).collect();
     let (drifts, effects): (Vec<usize>, Vec<usize>) =
         open.into_iter().partition(|&h| problem.hypotheses[h].family == "parameter");
-    let mut chosen: Vec<Chosen> = effects
+    let chosen: Vec<Chosen> = effects
         .into_iter()
         .filter(|&h| jointly(&problem.hypotheses[h]))
         .flat_map(|h| variants(&problem.hypotheses[h], h))
         .collect();
     let before: Vec<Chosen> = accepted.iter().map(|a| a.chosen.clone()).collect();
-    chosen = attachable(problem, &before, chosen);
+    let chosen = attachable(problem, &before, chosen);
     let Some(full) = Joint::new(problem, base, accepted, &before, chosen.clone(), BACKGROUNDS[0]) else {
         return Vec::new();
     };
     let mut found = full.weigh(&drifts, None);
-    // once more for the front, with less background
-    let front: Vec<usize> = found.iter().take(FRONT).map(|c| c.chosen.hypothesis).collect();
-    chosen.retain(|c| front.contains(&c.hypothesis));
-    if let Some(reduced) = Joint::new(problem, base, accepted, &before, chosen, BACKGROUNDS[1]) {
+    for background in &BACKGROUNDS[1..] {
+        let Some(reduced) = Joint::new(problem, base, accepted, &before, chosen.clone(), *background) else { continue };
         for c in reduced.weigh(&drifts, Some(full.floor)) {
             match found.iter_mut().find(|f| f.chosen.hypothesis == c.chosen.hypothesis) {
                 Some(f) if f.gain < c.gain => *f = c,
@@ -159,8 +157,8 @@ impl<'a> Joint<'a> {
         setting.groups = entries.iter().map(|e| e.columns.clone()).collect();
         let passes = fit::passes(&setting, &problem.train, usize::MAX, false)?;
         let width = setting.columns.len() + 1;
-        let gram = passes.iter().fold(DMatrix::zeros(width, width), |sum, p| sum + &p.gram) * base.share;
-        let likelihood = base.share * passes.iter().map(|p| p.likelihood).sum::<f64>();
+        let gram = passes.iter().fold(DMatrix::zeros(width, width), |sum, p| sum + &p.gram) * base.search_share();
+        let likelihood = base.search_share() * passes.iter().map(|p| p.likelihood).sum::<f64>();
         // means relative to where the model was linearised
         common.iter_mut().for_each(|p| p.mean -= assembled.theta[p.parameter]);
         let mut joint = Joint { entries, common, gram, likelihood, floor: 0.0, problem };
@@ -291,8 +289,9 @@ impl<'a> Joint<'a> {
         wide[index] = broad;
         let found = evidence::explain(gram, base, means, &wide)?;
         let value = t.nominal - means[index] + found.estimate[index];
-        let value = value.clamp(t.min, t.max);
-        let prior = Prior { parameter: index, mean: t.nominal, sigma: broad, min: t.min, max: t.max };
+        let (min, max) = (t.min.max(t.nominal - AT_MOST * broad), t.max.min(t.nominal + AT_MOST * broad));
+        let value = value.clamp(min, max);
+        let prior = Prior { parameter: index, mean: t.nominal, sigma: broad, min, max };
         let visible = 0.5 * (10.0 * t.sigma).powi(2) * info;
         let chosen = Chosen { hypothesis, values: vec![value] };
         Some(Candidate { chosen, gain: found.evidence, priors: vec![prior], visible })

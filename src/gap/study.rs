@@ -5,6 +5,7 @@ use super::data::Recording;
 use super::effects;
 use super::hypotheses::{self, Free, Hypothesis, Signal};
 use super::problem::{Problem, Tolerance};
+use super::shapes;
 use crate::analysis::{lift::is_root, noise};
 use crate::diag::{Diagnostic, Sources};
 use crate::expr::VarId;
@@ -81,7 +82,7 @@ pub fn question<'a>(
     let files = train.iter().map(|r| r.file.clone()).collect();
     let train: Vec<Recording> = train.into_iter().map(|r| recording(&flat, &bound, r)).collect();
     let noise_floor = full_scale.iter().enumerate().map(|(i, scale)| floor(&train, i, *scale)).collect();
-    let problem = Problem {
+    let mut problem = Problem {
         world,
         request,
         folder: offer.folder,
@@ -95,6 +96,7 @@ pub fn question<'a>(
         files,
         train,
     };
+    shapes::fit(&mut problem);
     Ok(Question { problem, bound, flat, diagnostics })
 }
 

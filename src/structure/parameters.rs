@@ -249,6 +249,7 @@ impl Known {
                 Unary::Exp | Unary::Cosh => Sign::Positive,
                 Unary::Abs if nonzero(of(a)) => Sign::Positive,
                 Unary::Sqrt if of(a) == Sign::Positive => Sign::Positive,
+                Unary::Log => self.logarithm(pool, a),
                 Unary::Abs | Unary::Sqrt | Unary::Not => Sign::NotNegative,
                 Unary::Sinh | Unary::Tanh | Unary::Atan | Unary::Sign => of(a),
                 _ => Sign::Unknown,
@@ -264,6 +265,8 @@ impl Known {
                     }
                 }
                 // A quotient of something that is not 0 is not 0 either, unless it overflows.
+                // what is divided by Modelica.Constants.inf is nothing
+                Binary::Div if self.values[b.index()].abs() >= INFINITE => Sign::NotNegative,
                 Binary::Mul | Binary::Div => product(of(a), of(b)),
                 Binary::Pow => self.power(of(a), b),
                 Binary::Max if of(a) == Sign::Positive || of(b) == Sign::Positive => Sign::Positive,
@@ -279,6 +282,16 @@ impl Known {
         }
     }
 
+    /// log(1 + something that is not negative), as in a softplus.
+    fn logarithm(&self, pool: &Exprs, e: ExprId) -> Sign {
+        let Node::Binary(crate::expr::Binary::Add, a, b) = pool.node(e) else { return Sign::Unknown };
+        let beyond = |one: ExprId, rest: ExprId| match self.signs[rest.index()] {
+            sign @ (Sign::Positive | Sign::NotNegative) if self.values[one.index()] >= 1.0 => sign,
+            _ => Sign::Unknown,
+        };
+        if beyond(a, b) == Sign::Unknown { beyond(b, a) } else { beyond(a, b) }
+    }
+
     fn power(&self, base: Sign, exponent: ExprId) -> Sign {
         let even = self.values[exponent.index()] % 2.0 == 0.0;
         match base {
@@ -290,6 +303,9 @@ impl Known {
         }
     }
 }
+
+/// Modelica.Constants.inf.
+const INFINITE: f64 = 1e60;
 
 /// Variables are followed through so many definitions.
 const DEPTH: usize = 4;

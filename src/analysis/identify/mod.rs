@@ -313,6 +313,9 @@ impl<'a> Identification<'a> {
         let slope: Vec<f64> = free.clone().map(|(f, &z)| f.slope(z).abs()).collect();
         let deviation = |j: usize| covariance[(j, j)].max(0.0).sqrt();
         let correlation = DMatrix::from_fn(p, p, |i, j| {
+            if i == j {
+                return 1.0;
+            }
             let scale = deviation(i) * deviation(j);
             if scale > 0.0 { covariance[(i, j)] / scale } else { f64::from(u8::from(i == j)) }
         });
