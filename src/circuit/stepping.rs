@@ -128,7 +128,7 @@ impl<'a> Stepping<'a> {
             return Err(self.simulation.errors(vec![Diagnostic::new(crate::diag::Code::BadArgument, text)]));
         }
         let changes = std::mem::take(&mut self.changes);
-        let moved = self.driver.set(&changes).and_then(|()| self.driver.advance(time));
+        let moved = self.driver.advance(&changes, time);
         self.changes = changes;
         self.changes.clear();
         match moved {

@@ -15,26 +15,20 @@ impl Driver<'_, '_> {
         self.ida.as_ref().map_or(f64::NAN, |ida| ida.watch().values[slot])
     }
 
-    /// Sets input slots and lets everything that depends on them react at once, as at an event.
-    ///
-    /// # Errors
-    /// As a run that ends there.
-    pub fn set(&mut self, inputs: &[(usize, f64)]) -> Flow {
-        let values = &mut self.ida().equations().values;
-        if inputs.iter().all(|&(slot, value)| values[slot] == value) {
-            return Ok(());
-        }
-        self.pending.clear();
-        self.pending.extend_from_slice(inputs);
-        self.event(Cause::Time)
-    }
-
-    /// Integrates to `t`, which lies ahead, and observes all variables there.
+    /// Sets input slots, lets everything that depends on them react at once, as at an event, integrates to `t`, which
+    /// lies ahead, and observes all variables there.
     ///
     /// # Errors
     /// As a run that ends before.
-    pub fn advance(&mut self, t: f64) -> Flow {
+    pub fn advance(&mut self, inputs: &[(usize, f64)], t: f64) -> Flow {
+        // first: whether the integrator's past still serves depends on how far the next step may go
         self.until = t;
+        let values = &self.ida().equations().values;
+        if inputs.iter().any(|&(slot, value)| values[slot] != value) {
+            self.pending.clear();
+            self.pending.extend_from_slice(inputs);
+            self.event(Cause::Time)?;
+        }
         self.reach()?;
         self.observe();
         Ok(())

@@ -1,0 +1,85 @@
+//! The crate from outside: steps with inputs set in between, rows handed to a function, and misuse.
+
+use bramah::diag::Code;
+use bramah::solve::{End, Interpolation};
+use bramah::{Error, Simulation};
+use std::ops::ControlFlow;
+
+const LAG: &str = "
+model Lag
+  input Real u(start = 0);
+  parameter Real T = 0.1;
+  Real x(start = 0, fixed = true), y(start = 0, fixed = true);
+  Boolean high = y > 0.5;
+  discrete Integer count(start = 0, fixed = true);
+equation
+  T*der(x) = u - x;
+  T*der(y) = x - y;
+  when high then
+    count = pre(count) + 1;
+  end when;
+end Lag;";
+
+fn lag() -> Simulation {
+    Simulation::from_text(LAG).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn course(k: u32) -> f64 {
+    1.0 + (f64::from(k) * 0.05).sin()
+}
+
+fn code(error: &Error) -> Code {
+    error.diagnostics[0].code
+}
+
+#[test]
+fn steps_give_what_a_recorded_input_gives() {
+    let mut whole = lag();
+    let times: Vec<f64> = (0..500).map(|k| f64::from(k) * 1e-3).collect();
+    let values: Vec<f64> = (0..500).map(course).collect();
+    whole.input("u", &times, &values, Interpolation::Held).expect("an input").stop_time(0.5);
+    let outcome = whole.run().expect("it runs");
+    let stepped = lag();
+    let mut run = stepped.stepping().expect("it starts");
+    let (u, y, count) = (run.input("u").expect("u"), run.probe("y").expect("y"), run.probe("count").expect("count"));
+    for k in 0..500 {
+        run.set(u, course(k));
+        run.step_to(f64::from(k + 1) * 1e-3).expect("it steps");
+    }
+    let last = |name: &str| *outcome.trajectory.column(name).and_then(|c| c.last()).expect("a row");
+    assert!((run.get(y) - last("y")).abs() < 1e-5, "{} {}", run.get(y), last("y"));
+    assert_eq!(run.get(count), last("count"));
+    assert!(run.statistics().steps > 0 && run.terminated().is_none());
+    // and on from there, in another way
+    let state = run.state();
+    assert!(whole.stop_time(0.6).run_from(&state).is_ok());
+}
+
+#[test]
+fn a_function_may_end_the_run_and_its_panic_is_an_error() {
+    let mut simulation = lag();
+    simulation.record(&["y"]).expect("a variable").stop_time(1.0);
+    let ended = simulation
+        .run_rows(None, |time, _| if time < 0.3 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) })
+        .expect("ending is fine");
+    assert_eq!(ended.end, End::Interrupted);
+    assert!((ended.state.time - 0.3).abs() < 0.01);
+    let error = simulation.run_rows(None, |_, _| panic!("enough")).expect_err("it panicked");
+    assert_eq!(code(&error), Code::CallbackPanicked);
+    assert!(error.to_string().contains("enough"), "{error}");
+    assert!(simulation.run().is_ok(), "the simulation remains of use");
+}
+
+#[test]
+fn misuse_is_told_by_codes() {
+    let mut simulation = lag();
+    assert_eq!(code(&simulation.record(&["z"]).map(|_| ()).expect_err("no such variable")), Code::BadSet);
+    assert_eq!(code(&simulation.set("u", 1.0).map(|_| ()).expect_err("no parameter")), Code::BadSet);
+    let mut run = simulation.stepping().expect("it starts");
+    assert_eq!(code(&run.input("x").map(|_| ()).expect_err("no input")), Code::BadMap);
+    assert_eq!(code(&run.probe("z").map(|_| ()).expect_err("no variable")), Code::BadSet);
+    assert_eq!(code(&run.step(-1.0).expect_err("backwards")), Code::BadArgument);
+    assert_eq!(code(&run.step(f64::NAN).expect_err("nowhere")), Code::BadArgument);
+    assert!(run.step(0.0).is_ok() && run.step(0.1).is_ok());
+    assert!(Simulation::from_text("model M Real x; end M;").is_err());
+}
