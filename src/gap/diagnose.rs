@@ -26,6 +26,8 @@ const BOUNDED: usize = 2;
 /// Iterations with which candidates are compared before the front is polished, and candidates polished.
 const RACE: usize = 2;
 const POLISHED: usize = 5;
+/// Part of the sources' levels with which a candidate is tried as well.
+const QUIET: f64 = 0.1;
 /// Gain that an effect must have to be accepted, nats.
 const ACCEPTED: f64 = 8.0;
 /// Vuong statistic that it must have.
@@ -43,6 +45,8 @@ const NEAR: f64 = 6.0;
 const NEAR_IF_INCONSISTENT: f64 = 15.0;
 /// Vuong statistic below which an alternative is worse for certain.
 const CERTAINLY_WORSE: f64 = -1.64;
+/// A gap of so many times the sensors' noise is one, located or not.
+const PLAIN: f64 = 4.0;
 /// Evidence for a place at which a gap counts as located, nats.
 const LOCATED: f64 = 50.0;
 
@@ -382,10 +386,15 @@ fn fitted(problem: &Problem<'_>, from: &Fit, accepted: &[Accepted]) -> Option<(F
         }
     }
     let levels: Vec<f64> = from.setting.sources.iter().map(|s| s.level).collect();
-    let mut setting = assembled.setting(&levels, &from.setting.noise, Vec::new());
-    // sources as strong as the model before needed them would hide how right this one is
-    fit::adjust(&mut setting, &problem.train, 1)?;
-    let fit = fit::fit(setting, &priors, &problem.train, Some(from.search_share()), RACE)?;
+    let setting = assembled.setting(&levels, &from.setting.noise, Vec::new());
+    // sources as strong as the model before needed them may hide how right this one is: weaker ones are tried too
+    let mut adjusted = setting.clone();
+    fit::adjust(&mut adjusted, &problem.train, 1);
+    let mut quiet = setting.clone();
+    quiet.sources.iter_mut().for_each(|s| s.level *= QUIET);
+    let fits =
+        [setting, adjusted, quiet].map(|s| fit::fit(s, &priors, &problem.train, Some(from.search_share()), RACE));
+    let fit = fits.into_iter().flatten().max_by(|a, b| a.evidence.total_cmp(&b.evidence))?;
     Some((fit, assembled))
 }
 
@@ -442,7 +451,10 @@ impl Finish<'_> {
         let by_effects = (measurable && t.total > 0.0).then(|| 1.0 - e.total / t.total);
         let share = measurable.then(|| e.total / n.total);
         let place = s.left.first().filter(|l| l.evidence > LOCATED && share.is_none_or(|s| s > 0.1));
-        let outside = s.accepted.is_empty() && place.is_some();
+        // what several times the noise leaves open is something, even where no place stands out
+        let noise = relative(&s.last.setting.noise, &problem.full_scale);
+        let plain = share.is_some_and(|share| share > 0.1) && e.total > PLAIN * noise;
+        let outside = s.accepted.is_empty() && (place.is_some() || plain);
         let verdict = match () {
             () if !s.gross.is_empty() => "recording_error",
             () if !s.accepted.is_empty() => "effects",
@@ -619,6 +631,12 @@ impl Finish<'_> {
         };
         self.problem.tolerances.iter().enumerate().map(drift).collect()
     }
+}
+
+/// Noise in parts of the full scales, RMS over the signals.
+fn relative(noise: &[f64], full_scale: &[f64]) -> f64 {
+    let square: f64 = noise.iter().zip(full_scale).map(|(n, f)| (n / f).powi(2)).sum();
+    (square / noise.len().max(1) as f64).sqrt()
 }
 
 fn spots(h: &Hypothesis) -> Vec<v::Spot> {

@@ -191,10 +191,9 @@ struct Group {
 }
 
 impl Passive {
-    fn new(local: &Local, states: &[usize]) -> Self {
+    fn new(local: &Local, states: &[usize], reads: &DMatrix<bool>) -> Self {
         let mut groups: Vec<Vec<usize>> = states.iter().map(|&i| vec![i]).collect();
-        let linear = &local.linear.a;
-        let numeric = states.iter().flat_map(|&i| states.iter().map(move |&j| (i, j))).filter(|&at| linear[at] != 0.0);
+        let numeric = states.iter().flat_map(|&i| states.iter().map(move |&j| (i, j))).filter(|&at| reads[at]);
         for (i, j) in local.plan().couplings().chain(numeric) {
             let place = |state: usize| groups.iter().position(|g| g.contains(&state));
             if let (Some(one), Some(other)) = (place(i), place(j))
@@ -238,25 +237,48 @@ impl Group {
     }
 }
 
-/// States from which no path of dependence leads to an output.
-fn passive_states(local: &Local) -> Vec<usize> {
-    let (a, c) = (&local.linear.a, &local.linear.c);
-    let n = a.nrows();
-    let mut seen: Vec<bool> = (0..n).map(|j| c.column(j).iter().any(|v| *v != 0.0)).collect();
+/// Points at which dependences are looked for: at a single one a limiter may hide them.
+const POINTS: usize = 12;
+
+/// States from which no path of dependence leads to an output, and all dependences of rates on states.
+fn passive_states(
+    local: &mut Local,
+    recording: &Recording,
+    theta: &[f64],
+    start: &[f64],
+    sizes: &[f64],
+) -> (Vec<usize>, DMatrix<bool>) {
+    let n = start.len();
+    let mut reads = DMatrix::from_element(n, n, false);
+    let mut seen = vec![false; n];
+    let mut u = vec![0.0; recording.inputs.len()];
+    for point in 0..POINTS {
+        let k = point * (recording.len() - 1) / POINTS;
+        recording.input(k, &mut u);
+        // about the start, each state another way
+        let side = |i: usize| [0.0, 0.1, -0.07, 0.3][(point + point / 4 * i) % 4];
+        let x: Vec<f64> = (0..n).map(|i| start[i] + side(i) * sizes[i]).collect();
+        if local.linearize(recording.times[k], &x, theta, &u).is_err() {
+            continue;
+        }
+        let (a, c) = (&local.linear.a, &local.linear.c);
+        reads.zip_apply(a, |r, a| *r |= a != 0.0);
+        seen.iter_mut().enumerate().for_each(|(j, s)| *s |= c.column(j).iter().any(|v| *v != 0.0));
+    }
     loop {
-        let more: Vec<usize> = (0..n).filter(|&j| !seen[j] && (0..n).any(|i| seen[i] && a[(i, j)] != 0.0)).collect();
+        let more: Vec<usize> = (0..n).filter(|&j| !seen[j] && (0..n).any(|i| seen[i] && reads[(i, j)])).collect();
         if more.is_empty() {
             break;
         }
         more.into_iter().for_each(|j| seen[j] = true);
     }
-    (0..n).filter(|&j| !seen[j]).collect()
+    ((0..n).filter(|&j| !seen[j]).collect(), reads)
 }
 
 impl<'a> Filter<'a> {
-    fn new(setting: &'a Setting, local: Local, theta: Vec<f64>, start: Vec<f64>, recording: &'a Recording) -> Self {
-        let hidden = passive_states(&local);
-        let passive = Passive::new(&local, &hidden);
+    fn new(setting: &'a Setting, mut local: Local, theta: Vec<f64>, start: Vec<f64>, recording: &'a Recording) -> Self {
+        let (hidden, reads) = passive_states(&mut local, recording, &theta, &start, &setting.sizes);
+        let passive = Passive::new(&local, &hidden, &reads);
         let active: Vec<usize> = (0..start.len()).filter(|i| !hidden.contains(i)).collect();
         let n = active.len();
         let nz = n + setting.sources.len();

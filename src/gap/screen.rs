@@ -9,7 +9,7 @@ use nalgebra::DMatrix;
 use std::ops::Range;
 
 /// The background is tried as fitted, and reduced: what a hypothesis explains must be allowed to leave it.
-const BACKGROUNDS: [f64; 3] = [1.0, 0.3, 0.03];
+const BACKGROUNDS: [f64; 2] = [1.0, 0.1];
 /// Typical sizes that a coefficient may have at most, as prior deviation.
 const LARGEST: f64 = 30.0;
 
