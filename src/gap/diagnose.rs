@@ -21,6 +21,8 @@ const REFINED: usize = 5;
 const PROMISING: f64 = 5.0;
 /// Candidates behind this part of the best one's gain are not refined.
 const FAR: f64 = 0.1;
+/// Deviation of the share of such an effect from the whole.
+const WHOLE: f64 = 0.3;
 /// Candidates beyond those that are there or not.
 const BOUNDED: usize = 2;
 /// Iterations with which candidates are compared before the front is polished, and candidates polished.
@@ -258,24 +260,20 @@ impl Search {
         }
     }
 
-    /// Fits one candidate together with everything accepted before.
+    /// Fits one candidate together with everything accepted before. An effect that is there or not (a rectifying sensor)
+    /// looks small from where it is not: it begins as a whole, and less than half of it would be something else.
     fn refine(&self, problem: &Problem<'_>, candidate: &Candidate) -> Option<Refined> {
         let h = &problem.hypotheses[candidate.chosen.hypothesis];
-        let mut starts = vec![candidate.chosen.values.clone()];
+        let mut whole = candidate.clone();
         if bounded(h) {
-            // an effect that is there or not (a rectifying sensor) looks small from where it is not
-            let whole = |(value, c): (&f64, &Coefficient)| share(c).map_or(*value, |max| 0.98 * max);
-            let mut values: Vec<f64> = starts[0].iter().zip(&h.coefficients).map(whole).collect();
-            values.extend(&starts[0][values.len()..]);
-            starts.push(values);
+            for (i, c) in h.coefficients.iter().enumerate() {
+                let Some(max) = share(c) else { continue };
+                whole.chosen.values[i] = max;
+                let prior = &mut whole.priors[i];
+                (prior.mean, prior.sigma, prior.min) = (max, WHOLE * max, 0.5 * max);
+            }
         }
-        let fits = starts.into_iter().filter_map(|values| self.refine_from(problem, candidate, values));
-        fits.max_by(|a, b| a.fit.evidence.total_cmp(&b.fit.evidence))
-    }
-
-    fn refine_from(&self, problem: &Problem<'_>, candidate: &Candidate, from: Vec<f64>) -> Option<Refined> {
-        let chosen = Chosen { values: from, ..candidate.chosen.clone() };
-        let accepted = Accepted { chosen, priors: candidate.priors.clone() };
+        let accepted = Accepted { chosen: whole.chosen, priors: whole.priors };
         let mut all = self.accepted.clone();
         all.push(accepted.clone());
         let (fit, assembled) = fitted(problem, &self.last, &all)?;

@@ -172,9 +172,12 @@ pub fn fit(
         }
     }
     let (likelihood, gram) = total(&found);
-    let local = explain(&setting, &(gram * share), priors, &set, &sigmas)?;
+    let gram = gram * share;
+    let local = explain(&setting, &gram, priors, &set, &sigmas)?;
+    // what another step promises has not been reached: a bound may be in the way, or the model bend
+    let promise = 0.5 * quadratic(&gram, local.estimate.as_slice(), &sigmas);
     Some(Fit {
-        evidence: share * likelihood + local.evidence,
+        evidence: share * likelihood + local.evidence - promise,
         likelihood,
         blocks: found.iter().flat_map(|p| p.blocks.iter().copied()).collect(),
         covariance: local.covariance,
