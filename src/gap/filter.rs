@@ -128,7 +128,10 @@ pub fn run(
     let mut local = Local::start(setting.plan.clone(), t0, &theta, &u).map_err(|e| (t0, e))?;
     let start = local.state();
     local.linearize(t0, &start, &theta, &u).map_err(|e| (t0, e))?;
-    let mut filter = Filter::new(setting, local, theta, start, recording);
+    // looked at by a model of its own: where there is no value, the search for one leaves traces
+    let mut scout = Local::start(setting.plan.clone(), t0, &theta, &u).map_err(|e| (t0, e))?;
+    let (hidden, reads) = passive_states(&mut scout, recording, &theta, &start, &setting.sizes);
+    let mut filter = Filter::new(setting, local, theta, start, recording, &hidden, &reads);
     filter.number = number;
     let samples = samples.min(recording.len());
     for k in 0..samples {
@@ -276,9 +279,16 @@ fn passive_states(
 }
 
 impl<'a> Filter<'a> {
-    fn new(setting: &'a Setting, mut local: Local, theta: Vec<f64>, start: Vec<f64>, recording: &'a Recording) -> Self {
-        let (hidden, reads) = passive_states(&mut local, recording, &theta, &start, &setting.sizes);
-        let passive = Passive::new(&local, &hidden, &reads);
+    fn new(
+        setting: &'a Setting,
+        local: Local,
+        theta: Vec<f64>,
+        start: Vec<f64>,
+        recording: &'a Recording,
+        hidden: &[usize],
+        reads: &DMatrix<bool>,
+    ) -> Self {
+        let passive = Passive::new(&local, hidden, reads);
         let active: Vec<usize> = (0..start.len()).filter(|i| !hidden.contains(i)).collect();
         let n = active.len();
         let nz = n + setting.sources.len();

@@ -176,8 +176,12 @@ pub fn fit(
     let local = explain(&setting, &gram, priors, &set, &sigmas)?;
     // what another step promises has not been reached: a bound may be in the way, or the model bend
     let promise = 0.5 * quadratic(&gram, local.estimate.as_slice(), &sigmas);
+    let evidence = share * likelihood + local.evidence - promise;
+    if !evidence.is_finite() {
+        return None;
+    }
     Some(Fit {
-        evidence: share * likelihood + local.evidence - promise,
+        evidence,
         likelihood,
         blocks: found.iter().flat_map(|p| p.blocks.iter().copied()).collect(),
         covariance: local.covariance,

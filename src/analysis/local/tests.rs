@@ -56,6 +56,7 @@ fn explicit_models() {
       end M;";
     let mut local = local(text, &["k", "m"], &["f", "x"], &[0.7]);
     assert_eq!(local.state(), [0.2, 0.1]);
+    assert_eq!(local.plan().implicit(), 0, "a raised mass keeps its sign: one may divide by it");
     check(&mut local, &[0.3, -0.4], &[3.0, 1.5], &[0.7]);
 }
 
@@ -75,4 +76,23 @@ fn algebraic_loops_and_index_reduction() {
     let mut local = local(text, &["r", "G"], &["p", "f"], &[0.5]);
     assert_eq!(local.plan().states(), 2);
     check(&mut local, &[0.4, 0.9], &[2.0, 0.3], &[0.5]);
+}
+
+#[test]
+fn coefficients_of_known_sign_leave_nothing_implicit() {
+    // the modulus of oil with air is positive by its form: a softplus, a floor, powers, and a wall that is rigid
+    let text = "model M
+        parameter Real V = 1e-3, beta_0 = 1.5e9, wall = Modelica.Constants.inf;
+        input Real q; Real p(start = 5e5, fixed = true), p_s, beta, V_p;
+      equation
+        p_s = max(p, 0) + 5e3*(log(1 + exp(-abs(p)/5e3)) + 1e-6);
+        beta = max(1 + 10*(p_s - 1e5)/beta_0, 1e-3)^(-0.1)*beta_0;
+        V_p = V*(1 + (p - 1e5)/wall);
+        (V_p/beta + V/wall)*der(p) = q;
+      end M;";
+    let mut local = local(text, &["V", "beta_0"], &["p"], &[1e-5]);
+    assert_eq!(local.plan().implicit(), 0);
+    assert_eq!(local.plan().implicit_names(), Vec::<String>::new());
+    local.linearize(0.0, &[5e5], &[1e-3, 1.5e9], &[1e-5]).expect("has derivatives");
+    assert!(local.linear.a[(0, 0)].is_finite() && local.rates[0] > 0.0);
 }
