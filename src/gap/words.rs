@@ -24,6 +24,9 @@ pub fn words(v: &Verdict) -> String {
         ("outside_library", Some(p)) => {
             let _ = writeln!(text, "Something is missing at {p} that none of the known effects explains.");
         }
+        ("outside_library", None) => text.push_str(
+            "Several times the noise stays open, no place stands out, and none of the known effects explains it.\n",
+        ),
         ("undecidable", _) => {
             text.push_str("The recordings cannot tell: effects of usual size would hardly show in them.\n")
         }
