@@ -68,6 +68,15 @@ pub(super) fn not_differentiable(draft: &Draft, equation: &Equation, v: VarId) -
     })
 }
 
+/// A constraint whose unknowns cancel when it is differentiated: another equation says the same, or contradicts it.
+pub(super) fn cancelling(draft: &Draft, equation: &Equation) -> Diagnostic {
+    let message = format!("the equation `{}` determines nothing", sides(draft, equation));
+    let made = Diagnostic::new(Code::Singular, message)
+        .at(equation.origin.span, "its unknowns cancel when it is differentiated")
+        .help("look for a term that stands on both sides, or write the equation that was meant");
+    located(draft, made, equation)
+}
+
 /// `reinit` of something that follows from other quantities.
 pub(super) fn reinit_of_no_state(draft: &Draft, v: VarId, origin: Origin) -> Diagnostic {
     let message = format!("{} cannot be set by `reinit`, because it follows from other quantities", name(draft, v));

@@ -154,7 +154,8 @@ impl Reduction {
     /// Differentiates until every equation of highest order has an unknown of highest order.
     ///
     /// The system must be structurally regular when a variable and its derivatives count as one unknown, else this
-    /// would not end.
+    /// would not end. Unknowns may cancel when an equation is differentiated (`der(x) - der(x)`), so what was regular
+    /// is looked at again where that happens.
     pub fn reduce(&mut self, draft: &mut Draft) -> Result<(), Diagnostic> {
         let mut matching = self.first_matching();
         let mut augmenter = Augmenter::default();
@@ -200,15 +201,52 @@ impl Reduction {
             self.add_derivative(draft, c);
             matching.row_of.push(NONE);
         }
+        let mut cancelled = false;
         for &row in rows {
             let made = self.differentiate_row(draft, row)?;
+            cancelled |= self.highest(made).count() < self.next_to_highest(row);
             matching.column_of.push(NONE);
             let partner = matching.column_of[row as usize];
             if partner != NONE {
                 matching.join(made, self.columns[partner as usize].derivative);
             }
         }
-        Ok(())
+        if cancelled { self.check_regular(draft) } else { Ok(()) }
+    }
+
+    /// How many columns of a row have a derivative of highest order.
+    fn next_to_highest(&self, row: u32) -> usize {
+        let derivative = |c: u32| self.columns[c as usize].derivative;
+        let next = |&&c: &&u32| derivative(c) != NONE && derivative(derivative(c)) == NONE;
+        self.incidence.solvable(row).iter().filter(next).count()
+    }
+
+    /// Fails if the rows of highest order cannot determine one unknown each, a variable and its derivatives counted as
+    /// one.
+    fn check_regular(&self, draft: &Draft) -> Result<(), Diagnostic> {
+        let rows: Vec<u32> =
+            (0..self.equations.len() as u32).filter(|&r| self.derivative[r as usize] == NONE).collect();
+        let mut chains = Incidence::default();
+        for &row in &rows {
+            let mut columns: Vec<u32> = self.incidence.solvable(row).iter().map(|&c| self.first_of_chain(c)).collect();
+            columns.sort_unstable();
+            columns.dedup();
+            chains.push(&columns, &[]);
+        }
+        let matching = super::matching::maximum(&chains, self.columns.len());
+        let Some(lone) = matching.column_of.iter().position(|&c| c == NONE) else { return Ok(()) };
+        let mut row = rows[lone];
+        while self.integral[row as usize] != NONE {
+            row = self.integral[row as usize];
+        }
+        Err(messages::cancelling(draft, &draft.equations[self.equations[row as usize] as usize]))
+    }
+
+    fn first_of_chain(&self, mut column: u32) -> u32 {
+        while self.columns[column as usize].integral != NONE {
+            column = self.columns[column as usize].integral;
+        }
+        column
     }
 
     fn add_derivative(&mut self, draft: &mut Draft, column: u32) {
