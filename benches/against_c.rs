@@ -5,25 +5,15 @@
 
 #![allow(clippy::disallowed_methods, clippy::print_stdout, reason = "measures, and prints what it measured")]
 
+#[path = "../tests/disk/mod.rs"]
+mod disk;
+
 use bramah::instance::Override;
-use bramah::world::World;
 use bramah::{Request, Simulation};
+use disk::Disk;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
-
-struct Disk;
-
-impl World for Disk {
-    fn read(&self, path: &Path) -> Result<String, String> {
-        std::fs::read_to_string(path).map_err(|e| e.to_string())
-    }
-
-    fn list(&self, path: &Path) -> Option<Vec<(String, bool)>> {
-        let entries = std::fs::read_dir(path).ok()?.flatten();
-        Some(entries.map(|e| (e.file_name().to_string_lossy().into_owned(), e.path().is_dir())).collect())
-    }
-}
 
 const PAIRS: usize = 21;
 

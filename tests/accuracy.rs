@@ -2,24 +2,13 @@
 
 #![allow(clippy::disallowed_methods, reason = "tests read their own files")]
 
+mod disk;
+
 use bramah::results::Trajectory;
 use bramah::solve::{End, Statistics};
-use bramah::world::World;
 use bramah::{Request, Simulation};
+use disk::Disk;
 use std::path::{Path, PathBuf};
-
-struct Disk;
-
-impl World for Disk {
-    fn read(&self, path: &Path) -> Result<String, String> {
-        std::fs::read_to_string(path).map_err(|e| e.to_string())
-    }
-
-    fn list(&self, path: &Path) -> Option<Vec<(String, bool)>> {
-        let entries = std::fs::read_dir(path).ok()?.flatten();
-        Some(entries.map(|e| (e.file_name().to_string_lossy().into_owned(), e.path().is_dir())).collect())
-    }
-}
 
 /// A shipped class, or a file of `models/`.
 fn compiled(source: &str) -> Simulation {

@@ -3,26 +3,16 @@
 #![allow(clippy::disallowed_methods, reason = "tests read their own files")]
 #![allow(clippy::print_stdout, reason = "a test without its data says so")]
 
+mod disk;
+
 use bramah::analysis::identify::{Identification, Method, Problem, Report};
 use bramah::diag::Sources;
 use bramah::diag::render::{Format, render};
 use bramah::study::{Bound, Recording, Role, Study};
-use bramah::world::{MemoryWorld, World};
+use bramah::world::MemoryWorld;
 use bramah::{Request, Simulation};
+use disk::Disk;
 use std::path::{Path, PathBuf};
-
-struct Disk;
-
-impl World for Disk {
-    fn read(&self, path: &Path) -> Result<String, String> {
-        std::fs::read_to_string(path).map_err(|e| e.to_string())
-    }
-
-    fn list(&self, path: &Path) -> Option<Vec<(String, bool)>> {
-        let entries = std::fs::read_dir(path).ok()?.flatten();
-        Some(entries.map(|e| (e.file_name().to_string_lossy().into_owned(), e.path().is_dir())).collect())
-    }
-}
 
 fn models() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("models")

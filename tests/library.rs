@@ -2,28 +2,15 @@
 
 #![allow(clippy::disallowed_methods, reason = "tests read their own files")]
 
+mod disk;
+
 use bramah::diag::render::{Format, render};
 use bramah::resolve::{Library, Trees, nested_classes};
 use bramah::syntax::ast::ClassKind;
 use bramah::world::World;
 use bramah::{Request, flatten, flatten_text};
+use disk::Disk;
 use std::path::{Path, PathBuf};
-
-struct Disk;
-
-impl World for Disk {
-    fn read(&self, path: &Path) -> Result<String, String> {
-        std::fs::read_to_string(path).map_err(|e| e.to_string())
-    }
-
-    fn list(&self, path: &Path) -> Option<Vec<(String, bool)>> {
-        let entries = std::fs::read_dir(path).ok()?.flatten();
-        let mut names: Vec<(String, bool)> =
-            entries.map(|e| (e.file_name().to_string_lossy().into_owned(), e.path().is_dir())).collect();
-        names.sort();
-        Some(names)
-    }
-}
 
 fn mo_files(folder: &Path, out: &mut Vec<PathBuf>) {
     for (name, is_folder) in Disk.list(folder).expect("the folder is there") {

@@ -64,21 +64,13 @@ impl Lift {
         let model = &self.flat.variables[of.index()];
         let origin = Origin { kind: OriginKind::Made, ..model.origin };
         let variable = Variable {
-            name,
-            ty: Type::Real,
-            variability,
-            input: false,
-            output: false,
-            flow: false,
             hidden: true,
-            binding: None,
-            start: None,
             fixed: variability <= Variability::Parameter,
-            min: None,
-            max: None,
-            state_select: StateSelect::Default,
-            origin,
-            ..model.clone()
+            nominal: model.nominal,
+            unit: model.unit.clone(),
+            display_unit: model.display_unit.clone(),
+            description: model.description.clone(),
+            ..Variable::plain(name, Type::Real, variability, origin)
         };
         self.add(variable)
     }

@@ -84,24 +84,14 @@ fn variable(
     let input = data.top && data.causality == Some(ast::Causality::Input);
     let output = data.top && data.causality == Some(ast::Causality::Output);
     let mut v = Variable {
-        name: data.name.clone(),
-        ty: data.ty,
-        variability: data.variability,
         input,
         output,
         flow: data.flow,
         hidden: data.hidden,
-        binding: None,
-        start: None,
         fixed: data.variability <= Variability::Parameter,
-        min: None,
-        max: None,
-        nominal: None,
-        unit: None,
-        display_unit: None,
         description: data.description.map(Into::into),
         state_select: if data.ty == Type::Real { data.state_select } else { StateSelect::Default },
-        origin,
+        ..Variable::plain(data.name.clone(), data.ty, data.variability, origin)
     };
     attributes(instance, i, &mut v);
     binding(instance, i, &mut v, flat);

@@ -181,6 +181,32 @@ pub struct Variable {
     pub origin: Origin,
 }
 
+impl Variable {
+    /// A variable of which nothing is said but this: no attributes, visible, not fixed.
+    pub fn plain(name: impl Into<String>, ty: Type, variability: Variability, origin: Origin) -> Self {
+        Variable {
+            name: name.into(),
+            ty,
+            variability,
+            input: false,
+            output: false,
+            flow: false,
+            hidden: false,
+            binding: None,
+            start: None,
+            fixed: false,
+            min: None,
+            max: None,
+            nominal: None,
+            unit: None,
+            display_unit: None,
+            description: None,
+            state_select: StateSelect::Default,
+            origin,
+        }
+    }
+}
+
 /// `lhs = rhs`.
 ///
 /// If the left side is a lone discrete-valued variable (Boolean, Integer, enumeration, or `discrete Real`), or both

@@ -19,26 +19,7 @@ pub struct Model {
 impl Model {
     pub fn variable(&mut self, name: &str, variability: Variability) -> VarId {
         let v = VarId(u32::try_from(self.dae.variables.len()).unwrap());
-        self.dae.variables.push(flat::Variable {
-            name: name.into(),
-            ty: Type::Real,
-            variability,
-            input: false,
-            output: false,
-            flow: false,
-            hidden: false,
-            binding: None,
-            start: None,
-            fixed: false,
-            min: None,
-            max: None,
-            nominal: None,
-            unit: None,
-            display_unit: None,
-            description: None,
-            state_select: flat::StateSelect::Default,
-            origin: ORIGIN,
-        });
+        self.dae.variables.push(flat::Variable::plain(name, Type::Real, variability, ORIGIN));
         v
     }
 

@@ -1,6 +1,7 @@
 //! Streams between things drawn with widths in proportion.
 
 use super::figure::colour;
+use super::svg::escape;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
@@ -42,7 +43,7 @@ pub fn svg(title: &str, flows: &[Flow]) -> String {
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{WIDTH}\" height=\"{lowest:.0}\" \
          viewBox=\"0 0 {WIDTH} {lowest:.0}\" font-family=\"sans-serif\" font-size=\"12\">\n\
          <rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n<text x=\"20\" y=\"26\" font-size=\"16\">{}</text>\n",
-        escaped(title)
+        escape(title)
     );
     let names: Vec<String> = blocks.keys().cloned().collect();
     for flow in flows {
@@ -59,9 +60,9 @@ pub fn svg(title: &str, flows: &[Flow]) -> String {
             out,
             "<path d=\"M{x0:.1},{y0:.1} C{middle:.1},{y0:.1} {middle:.1},{y1:.1} {x1:.1},{y1:.1}\" fill=\"none\" \
              stroke=\"{paint}\" stroke-opacity=\"0.35\" stroke-width=\"{width:.2}\"><title>{} to {}: {}</title></path>",
-            escaped(&flow.from),
-            escaped(&flow.to),
-            escaped(&flow.label)
+            escape(&flow.from),
+            escape(&flow.to),
+            escape(&flow.label)
         );
     }
     for (k, (name, block)) in blocks.iter().enumerate() {
@@ -73,7 +74,7 @@ pub fn svg(title: &str, flows: &[Flow]) -> String {
             colour(k),
             x + BAR + 4.0,
             y + height / 2.0 + 4.0,
-            escaped(name)
+            escape(name)
         );
     }
     out + "</svg>\n"
@@ -119,10 +120,6 @@ fn place(blocks: &mut BTreeMap<String, Block>) -> f64 {
         *top += block.size * scale + GAP;
     }
     scale
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 #[cfg(test)]

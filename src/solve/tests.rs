@@ -5,7 +5,7 @@ mod integration;
 
 use crate::diag::{FileId, Span};
 use crate::expr::{ExprId, Exprs, Rel, VarId};
-use crate::flat::{Equation, Origin, OriginKind, StateSelect, Type, Variability, Variable};
+use crate::flat::{Equation, Origin, OriginKind, Type, Variability, Variable};
 use crate::lower::{Options, System, lower};
 use crate::results::Trajectory;
 use crate::solve::{Control, Input, Run, Settings, signals, simulate};
@@ -17,26 +17,7 @@ const ORIGIN: Origin =
 
 /// A plain continuous variable.
 pub fn variable(name: &str) -> Variable {
-    Variable {
-        name: name.into(),
-        ty: Type::Real,
-        variability: Variability::Continuous,
-        input: false,
-        output: false,
-        flow: false,
-        hidden: false,
-        binding: None,
-        start: None,
-        fixed: false,
-        min: None,
-        max: None,
-        nominal: None,
-        unit: None,
-        display_unit: None,
-        description: None,
-        state_select: StateSelect::Default,
-        origin: ORIGIN,
-    }
+    Variable::plain(name, Type::Real, Variability::Continuous, ORIGIN)
 }
 
 /// Builds a sorted model: calls stand in the order of evaluation.

@@ -126,26 +126,7 @@ impl Draft {
     /// Adds a variable made by the compiler.
     pub fn make_variable(&mut self, name: String, ty: Type, role: Role, origin: flat::Origin) -> VarId {
         let variability = if role == Role::Continuous { Variability::Continuous } else { Variability::Discrete };
-        self.variables.push(flat::Variable {
-            name,
-            ty,
-            variability,
-            input: false,
-            output: false,
-            flow: false,
-            hidden: true,
-            binding: None,
-            start: None,
-            fixed: false,
-            min: None,
-            max: None,
-            nominal: None,
-            unit: None,
-            display_unit: None,
-            description: None,
-            state_select: flat::StateSelect::Default,
-            origin,
-        });
+        self.variables.push(flat::Variable { hidden: true, ..flat::Variable::plain(name, ty, variability, origin) });
         self.roles.push(role);
         self.when_assigned.push(false);
         self.derivative.push(None);

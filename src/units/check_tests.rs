@@ -4,7 +4,7 @@
 use super::*;
 use crate::diag::FileId;
 use crate::expr::Exprs;
-use crate::flat::{Equation, InstanceInfo, Origin, OriginKind, StateSelect, Type, Variability, Variable};
+use crate::flat::{Equation, InstanceInfo, Origin, OriginKind, Type, Variability, Variable};
 
 fn span(at: usize) -> Span {
     let at = u32::try_from(at).expect("a short text");
@@ -20,24 +20,14 @@ fn variable(name: &str, unit: &str, at: usize, pool: &mut Exprs) -> Variable {
     let ty = if unit == "Integer" { Type::Integer } else { Type::Real };
     let declared = !matches!(unit, "?" | "Integer") && value.is_none();
     Variable {
-        name: name.into(),
-        ty,
-        variability: if value.is_some() { Variability::Parameter } else { Variability::Continuous },
-        input: false,
-        output: false,
-        flow: false,
-        hidden: false,
         binding: value,
-        start: None,
-        fixed: false,
-        min: None,
-        max: None,
-        nominal: None,
         unit: declared.then(|| unit.into()),
-        display_unit: None,
-        description: None,
-        state_select: StateSelect::Default,
-        origin: origin(at),
+        ..Variable::plain(
+            name,
+            ty,
+            if value.is_some() { Variability::Parameter } else { Variability::Continuous },
+            origin(at),
+        )
     }
 }
 

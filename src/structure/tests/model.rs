@@ -36,24 +36,8 @@ impl Model {
     fn declare(&mut self, name: &str, ty: Type, variability: Variability) -> VarId {
         let instance = name.rsplit_once('.').map_or(0, |(outer, _)| self.instance_named(outer));
         self.flat.variables.push(Variable {
-            name: name.into(),
-            ty,
-            variability,
-            input: false,
-            output: false,
-            flow: false,
-            hidden: false,
-            binding: None,
-            start: None,
             fixed: variability <= Variability::Parameter,
-            min: None,
-            max: None,
-            nominal: None,
-            unit: None,
-            display_unit: None,
-            description: None,
-            state_select: StateSelect::Default,
-            origin: origin(instance, OriginKind::Declared),
+            ..Variable::plain(name, ty, variability, origin(instance, OriginKind::Declared))
         });
         VarId(self.flat.variables.len() as u32 - 1)
     }
