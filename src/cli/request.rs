@@ -8,7 +8,7 @@ use super::Failure;
 use super::files::access;
 use super::messages::Messages;
 use crate::diag::{Code, Diagnostic};
-use crate::experiment::{self, Experiment, Hold, InputMap, seconds, tolerance};
+use crate::experiment::{self, Experiment, Hold, InputMap, duration, seconds, tolerance};
 use crate::results::glob::split_list;
 
 /// What to compile: shared by `check` and `simulate`.
@@ -41,7 +41,7 @@ pub(super) struct RunArgs {
     #[arg(long, value_name = "TIME", value_parser = seconds, allow_hyphen_values = true)]
     stop_time: Option<f64>,
     /// Time between two rows of the result
-    #[arg(long, value_name = "TIME", value_parser = seconds, allow_hyphen_values = true)]
+    #[arg(long, value_name = "TIME", value_parser = duration, allow_hyphen_values = true)]
     output_interval: Option<f64>,
     /// Relative tolerance; the absolute one is this times a variable's nominal value
     #[arg(long, value_name = "NUMBER", value_parser = tolerance)]

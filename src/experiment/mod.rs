@@ -111,6 +111,17 @@ pub fn seconds(text: &str) -> Result<f64, String> {
     time.filter(|t| t.is_finite()).ok_or_else(|| format!("`{text}` is no time; write `2`, `2 s` or `500 ms`"))
 }
 
+/// A length of time in seconds, written like [`seconds`].
+///
+/// # Errors
+/// A sentence saying what is expected; also when the time is not positive.
+pub fn duration(text: &str) -> Result<f64, String> {
+    match seconds(text)? {
+        length if length > 0.0 => Ok(length),
+        _ => Err(format!("`{text}` is no length of time; write a positive one, such as `1 ms`")),
+    }
+}
+
 /// A relative tolerance.
 ///
 /// # Errors
@@ -133,6 +144,9 @@ mod tests {
         assert_eq!(seconds("2min"), Ok(120.0));
         assert!(seconds("2 m").unwrap_err().contains("no time"));
         assert!(seconds("soon").is_err());
+        assert_eq!(duration("2 ms"), Ok(0.002));
+        assert!(duration("0").unwrap_err().contains("positive"));
+        assert!(duration("-1 s").is_err());
         assert_eq!(tolerance("1e-6"), Ok(1e-6));
         assert!(tolerance("0").is_err() && tolerance("2").is_err() && tolerance("nan").is_err());
     }

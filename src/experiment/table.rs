@@ -5,7 +5,7 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::{Experiment, Hold, InputMap, seconds, tolerance};
+use super::{Experiment, Hold, InputMap, duration, seconds, tolerance};
 use crate::diag::{Checked, Code, Diagnostic, FileId, Sources, Span, nearest};
 use crate::results::glob;
 
@@ -89,7 +89,7 @@ impl Reader {
             "set" => self.set("", value),
             "start-time" => self.experiment.start_time = self.number(key, value, seconds),
             "stop-time" => self.experiment.stop_time = self.number(key, value, seconds),
-            "output-interval" => self.experiment.output_interval = self.number(key, value, seconds),
+            "output-interval" => self.experiment.output_interval = self.number(key, value, duration),
             "relative-tolerance" => self.experiment.relative_tolerance = self.number(key, value, tolerance),
             "variables" => self.experiment.variables = self.list(key, value),
             "output-file" => self.experiment.output_file = self.text(key, value),
@@ -306,6 +306,7 @@ pulse = { column = "pulse_V", unit = "V", interpolation = "held" }
             "stop_time = 2\n",
             "stop-time = \"2 m\"\n",
             "stop-time = true\n",
+            "output-interval = 0\n",
             "relative-tolerance = 2\n",
             "variables = 3\n",
             "set = 3\n",

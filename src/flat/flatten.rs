@@ -252,7 +252,8 @@ fn experiment(instance: &mut Instance<'_, '_>) -> Experiment {
         let number = |name: &str| argument(m, name).and_then(|m| m.value.as_ref()).and_then(literal);
         experiment.start_time = experiment.start_time.or(number("StartTime"));
         experiment.stop_time = experiment.stop_time.or(number("StopTime"));
-        experiment.interval = experiment.interval.or(number("Interval"));
+        // Tools write 0 where a number of rows was chosen instead.
+        experiment.interval = experiment.interval.or(number("Interval").filter(|interval| *interval > 0.0));
         experiment.tolerance = experiment.tolerance.or(number("Tolerance"));
         break;
     }

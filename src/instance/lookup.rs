@@ -228,6 +228,7 @@ impl<'a> Instance<'a, '_> {
             imports: Vec::new(),
             short: false,
             broken_connects: Vec::new(),
+            broken_components: Vec::new(),
         };
         let mut elements = Vec::new();
         for e in &body.elements {

@@ -49,6 +49,8 @@ pub struct Base<'a> {
     pub short: bool,
     /// `connect` equations removed by `break` (with texts of both sides).
     pub broken_connects: Vec<(&'a ast::Expr, &'a ast::Expr)>,
+    /// Components removed by `break`; their connections go with them.
+    pub broken_components: Vec<Symbol>,
 }
 
 /// One element.
@@ -130,7 +132,16 @@ impl<'a> Instance<'a, '_> {
         let base = u32::try_from(t.bases.len()).expect("fewer than 2^32 bases");
         let short = !matches!(ast.body, ClassBody::Long(_));
         let (names, imports) = (FxHashSet::default(), Vec::new());
-        t.bases.push(Base { class, ast, parent, names, imports, short, broken_connects: Vec::new() });
+        t.bases.push(Base {
+            class,
+            ast,
+            parent,
+            names,
+            imports,
+            short,
+            broken_connects: Vec::new(),
+            broken_components: Vec::new(),
+        });
         if chain.contains(&class) || chain.len() > DEEPEST {
             let name = self.library.full_name(class);
             self.report(
@@ -332,6 +343,7 @@ impl<'a> Instance<'a, '_> {
                 t.by_name = (0u32..).zip(&t.elements).map(|(i, e)| (e.name, i)).collect();
                 for base in &mut t.bases[inner as usize..] {
                     base.names.remove(&name.name);
+                    base.broken_components.push(name.name);
                 }
             }
             None => {

@@ -5,7 +5,7 @@ use crate::diag::{Code, Diagnostic, Span};
 use crate::flat::{Type, Variability};
 use crate::instance::lookup::Found;
 use crate::instance::reference::Selection;
-use crate::instance::template::Kind;
+use crate::instance::template::{Base, Kind};
 use crate::instance::{Instance, Node, NodeId, ScopeId, View};
 use crate::syntax::ast::{self, ClassBody, ClassKind, Equation, EquationKind, Expr, ExprKind};
 use crate::syntax::symbol::Symbol;
@@ -104,7 +104,7 @@ impl Collector {
         for (base, i) in template.bases.iter().zip(0u32..) {
             let ClassBody::Long(body) = &base.ast.body else { continue };
             let view = View { scope, base: i };
-            self.equations(instance, &body.equations, view, &base.broken_connects);
+            self.equations(instance, &body.equations, view, base);
         }
     }
 
@@ -113,22 +113,22 @@ impl Collector {
         instance: &mut Instance<'a, '_>,
         equations: &'a [Equation],
         view: View,
-        broken: &[(&Expr, &Expr)],
+        base: &Base<'_>,
     ) {
         for e in equations {
             match &e.kind {
-                EquationKind::Connect(a, b) if !broken.iter().any(|(x, y)| same_pair((a, b), (x, y))) => {
+                EquationKind::Connect(a, b) if !is_broken(base, a, b) => {
                     self.connect(instance, a, b, view, e.span);
                 }
                 EquationKind::For { iterators, body } if has_connect(body) => {
                     instance.for_each(iterators, view, &mut |instance| {
-                        self.equations(instance, body, view, broken);
+                        self.equations(instance, body, view, base);
                     });
                 }
                 EquationKind::If { branches, otherwise } => {
                     let connects = branches.iter().any(|(_, b)| has_connect(b)) || has_connect(otherwise);
                     if connects && let Some(body) = choose(instance, branches, otherwise, view) {
-                        self.equations(instance, body, view, broken);
+                        self.equations(instance, body, view, base);
                     }
                 }
                 _ => {}
@@ -445,6 +445,15 @@ fn different_units(instance: &mut Instance<'_, '_>, a: u32, b: u32, at: &Place) 
         .help("put the component between them that turns the one into the other, such as a pump, a cylinder or a gear"),
     );
     true
+}
+
+/// Whether a `break` of who extends the class takes the connection away: by itself, or with one of its components.
+fn is_broken(base: &Base<'_>, a: &Expr, b: &Expr) -> bool {
+    let names = |e: &Expr| match &e.kind {
+        ExprKind::Reference(r) => r.parts.first().is_some_and(|p| base.broken_components.contains(&p.name.name)),
+        _ => false,
+    };
+    names(a) || names(b) || base.broken_connects.iter().any(|(x, y)| same_pair((a, b), (x, y)))
 }
 
 fn same_pair(a: (&Expr, &Expr), b: (&Expr, &Expr)) -> bool {

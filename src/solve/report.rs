@@ -233,6 +233,22 @@ pub fn step_collapse(system: &System, t: f64, h: f64, why: &str, errors: &[f64],
         .help("look for a jump or an infinite slope in the equations of this variable; a smaller tolerance or a `nominal` of the right size may help")
 }
 
+/// Says of a collapse that an equation determines nothing there.
+pub fn idle_equation(system: &System, collapse: Diagnostic, equation: u32) -> Diagnostic {
+    let Some(origin) = system.dae.equations.get(equation as usize).map(|e| e.origin) else { return collapse };
+    let component = component(&system.dae, origin).map(|(name, class)| format!(" (`{name}`, a `{class}`)"));
+    let mut collapse = collapse;
+    collapse.labels.clear();
+    collapse.help.clear();
+    collapse
+        .at(origin.span, "with the values there, this equation determines no unknown")
+        .note(format!(
+            "there the marked equation{} holds only quantities that have memory, so that nothing says how they move on",
+            component.unwrap_or_default()
+        ))
+        .help("where an element lets go (play, a switch, a closed valve) something else must tell what happens to what was joined: an inertia, a volume, or a small damping or leakage of the element itself")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

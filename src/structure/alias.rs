@@ -179,8 +179,7 @@ impl Classes {
     /// Makes `a` equal `b`; false when that is not possible or not new.
     fn join(&mut self, draft: &Draft, a: VarId, b: Signed) -> bool {
         let (a, b) = (self.find(a), self.find_signed(b));
-        let both_given = self.given[a.variable.index()] && self.given[b.variable.index()];
-        if a.variable == b.variable || both_given || !self.chains_fit(a, b) {
+        if a.variable == b.variable || !self.gifts_fit(a.variable, b.variable) || !self.chains_fit(a, b) {
             return false;
         }
         let negated = a.negated != b.negated;
@@ -194,6 +193,18 @@ impl Classes {
         self.given[large.index()] |= self.given[small.index()];
         self.carry_links(draft, small, Signed { variable: large, negated });
         true
+    }
+
+    /// Two given variables stay apart. So do a given one and a link of a chain: the chain would lose the equation that
+    /// determines it.
+    fn gifts_fit(&self, a: VarId, b: VarId) -> bool {
+        let linked = |v: VarId| self.derivative[v.index()].is_some() || self.integral[v.index()].is_some();
+        match (self.given[a.index()], self.given[b.index()]) {
+            (true, true) => false,
+            (true, false) => !linked(b),
+            (false, true) => !linked(a),
+            (false, false) => true,
+        }
     }
 
     /// Whether the derivatives of both, as far as they are linked, can be made equal too.

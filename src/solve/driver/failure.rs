@@ -2,7 +2,7 @@
 
 use super::{Driver, Stop};
 use crate::diag::{Code, Diagnostic};
-use crate::solve::ida::Failure;
+use crate::solve::ida::{Equations, Evaluation, Failure};
 use crate::solve::model::Model;
 use crate::solve::report;
 use crate::solve::settings::End;
@@ -62,7 +62,36 @@ impl<'a> Driver<'a, '_> {
             Failure::TooMuchAccuracy => "the tolerance is finer than numbers of 64 bits allow".to_string(),
             other => format!("{other:?}"),
         };
-        Stop::new(End::StepTooSmall, report::step_collapse(system, t, h, &why, &errors, &y))
+        let collapse = report::step_collapse(system, t, h, &why, &errors, &y);
+        Stop::new(
+            End::StepTooSmall,
+            match self.idle_equation(t, &y) {
+                Some(equation) => report::idle_equation(system, collapse, equation),
+                None => collapse,
+            },
+        )
+    }
+
+    /// An equation that, with the values as they are, holds neither a derivative of a state nor an algebraic unknown.
+    /// It then ties states together and leaves undetermined what it was to determine: the index is higher there than
+    /// the structure tells.
+    fn idle_equation(&mut self, t: f64, y: &[f64]) -> Option<u32> {
+        let system = self.system;
+        let (pattern, n) = (&system.pattern, system.columns.len());
+        let yp = self.ida().yp().to_vec();
+        let model = self.ida().equations();
+        let mut still = vec![0.0; pattern.rowidx.len()];
+        let mut moving = still.clone();
+        let done = model.jacobian(t, 0.0, y, &yp, &mut still) == Evaluation::Done
+            && model.jacobian(t, 1.0, y, &yp, &mut moving) == Evaluation::Done;
+        let mut busy = vec![!done; n];
+        for (j, column) in system.columns.iter().enumerate() {
+            for k in pattern.colptr[j]..pattern.colptr[j + 1] {
+                let entry = if column.state { moving[k] - still[k] } else { still[k] };
+                busy[pattern.rowidx[k]] |= entry != 0.0;
+            }
+        }
+        busy.iter().position(|busy| !busy).and_then(|i| system.rows.get(i)).map(|row| row.equation)
     }
 
     pub(super) fn non_finite(&mut self, t: f64) -> Stop {
