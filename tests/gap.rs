@@ -16,7 +16,8 @@ use bramah::{Request, Simulation};
 use std::fmt::Write;
 use std::path::Path;
 
-/// A slide on a spring with its own connectors; the plant has dry friction of another form than the library's.
+/// A slide on a spring with its own connectors; the plant has dry friction of another form than the library's, and waves
+/// of friction over the position, which are in no library.
 const MODEL: &str = "
 package Slide
   connector Flange Real s(unit = \"m\"); flow Real f(unit = \"N\"); end Flange;
@@ -44,9 +45,10 @@ package Slide
   model Rub
     Flange flange;
     parameter Real F(unit = \"N\") = 0;
+    parameter Real W(unit = \"N\") = 0;
     Real v(unit = \"m/s\");
   equation
-    v = der(flange.s); flange.f = F*v/sqrt(v^2 + 1e-5);
+    v = der(flange.s); flange.f = (F + W*(1 + sin(60*flange.s)))*v/sqrt(v^2 + 1e-5);
   end Rub;
   model Nominal
     input Real u(unit = \"N\");
@@ -99,10 +101,10 @@ impl Normal {
 }
 
 /// A recording of the plant with this friction under steps of random height.
-fn recording(world: &MemoryWorld, friction: f64, seed: u64) -> String {
+fn recording(world: &MemoryWorld, friction: (&str, f64), seed: u64) -> String {
     let request = Request { source: "Slide.mo".into(), model: Some("Slide.Plant".into()), ..Request::default() };
     let mut plant = Simulation::compile(world, &request).unwrap();
-    plant.set("rub.F", friction).unwrap();
+    plant.set(friction.0, friction.1).unwrap();
     let mut random = Normal(seed);
     let (count, h) = (1500, 0.004);
     let times: Vec<f64> = (0..count).map(|k| f64::from(k) * h).collect();
@@ -131,7 +133,7 @@ fn recording(world: &MemoryWorld, friction: f64, seed: u64) -> String {
     text
 }
 
-fn diagnosed(friction: f64, held_seed: u64) -> Verdict {
+fn diagnosed(friction: (&str, f64), held_seed: u64) -> Verdict {
     let mut world = MemoryWorld::single("Slide.mo", MODEL);
     let (train, held) = (recording(&world, friction, 11), recording(&world, friction, held_seed));
     world.add("train.csv", train);
@@ -147,13 +149,13 @@ fn diagnosed(friction: f64, held_seed: u64) -> Verdict {
 
 #[test]
 fn dry_friction_is_named_at_its_place_and_held_recordings_change_no_choice() {
-    let first = diagnosed(3.0, 12);
+    let first = diagnosed(("rub.F", 3.0), 12);
     assert_eq!(first.verdict, "effects");
     let effect = &first.effects[0];
     assert_eq!(effect.family, "dry_friction");
     assert!(effect.places[0].node.iter().any(|n| n == "mass.flange"), "{:?}", effect.places);
     assert!(first.closed_by_effects.unwrap() > 0.6, "{:?}", first.gap.held.total);
-    let second = diagnosed(3.0, 13);
+    let second = diagnosed(("rub.F", 3.0), 13);
     let same = |a: &Verdict, b: &Verdict| {
         let text = |v: &Verdict| {
             let effects: Vec<String> = v
@@ -170,8 +172,18 @@ fn dry_friction_is_named_at_its_place_and_held_recordings_change_no_choice() {
 }
 
 #[test]
+fn what_no_effect_explains_is_told_by_its_shape() {
+    let verdict = diagnosed(("rub.W", 3.0), 12);
+    assert_eq!(verdict.verdict, "outside_library", "{:?}", verdict.effects);
+    assert!(verdict.places[0].node.iter().any(|n| n == "mass.flange"), "{:?}", verdict.places);
+    let shape = &verdict.unexplained.shape.unwrap()[0];
+    assert_eq!(shape.term, "Dry friction that depends on the position");
+    assert!(shape.r2 > 0.5, "{}", shape.r2);
+}
+
+#[test]
 fn a_sound_plant_lacks_nothing() {
-    let verdict = diagnosed(0.0, 12);
+    let verdict = diagnosed(("rub.F", 0.0), 12);
     assert!(verdict.effects.is_empty(), "{:?}", verdict.effects);
     assert_eq!(verdict.verdict, "nothing_found");
 }
@@ -180,7 +192,7 @@ fn a_sound_plant_lacks_nothing() {
 #[test]
 fn the_corrected_model_stands_alone_and_so_does_the_page() {
     let mut world = MemoryWorld::single("Slide.mo", MODEL);
-    let (train, held) = (recording(&world, 3.0, 11), recording(&world, 3.0, 12));
+    let (train, held) = (recording(&world, ("rub.F", 3.0), 11), recording(&world, ("rub.F", 3.0), 12));
     world.add("train.csv", train);
     world.add("held.csv", held);
     world.add("study.toml", STUDY);

@@ -13,6 +13,7 @@ class Bench:
 
     def __init__(self, binary, folder, case):
         self.binary, self.folder, self.case = binary, folder, case
+        self.reached = {}  # by effect: the largest value of the first run, one limit for all recordings
 
     def run(self, name, chosen, quiet=False):
         """Noise-free signals of a recording with the effects numbered in `chosen`; makes its commands anew."""
@@ -51,7 +52,8 @@ class Bench:
         for j in chosen:
             if self.case.effects[j].command:
                 name, change = self.case.effects[j].command
-                commands[name] = change(commands[name], self.case.circuit.step, self.case.sizes[j])
+                reach = self.reach(j, commands[name])
+                commands[name] = change(commands[name], self.case.circuit.step, self.case.sizes[j], reach)
         return commands
 
     def drive(self, r, sets, shaken):
@@ -70,9 +72,12 @@ class Bench:
         for j in chosen:
             if self.case.effects[j].sensor and self.case.effects[j].sensor[0] == signal:
                 size = self.case.sizes[j]
-                reach = max(abs(v) for v in values) if self.case.effects[j].falling else span
+                reach = self.reach(j, values) if self.case.effects[j].falling else span
                 values = self.case.effects[j].sensor[1](values, self.case.circuit.step, size, reach, None)
         return values
+
+    def reach(self, j, values):
+        return self.reached.setdefault(j, max(abs(v) for v in values))
 
     def again(self, name, chosen, quiet=False):
         """A recording anew under the commands of its last run, also where a loop makes them."""

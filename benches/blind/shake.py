@@ -113,27 +113,27 @@ def between(values, at):
 # --- commands: samples as they act, from samples as they are recorded ---------------------------------------------
 
 
-def command_gain(values, dt, size):
+def command_gain(values, dt, size, reach):
     return [v * (1 + size * (1.1 if v > 0 else 0.9)) for v in values]
 
 
-def command_dead_zone(values, dt, size):
+def command_dead_zone(values, dt, size, reach):
     """Nothing below a part of the largest command, on one side a little earlier."""
-    d = size * max(abs(v) for v in values)
+    d = size * reach
     return [v - d if v > d else v + 0.9 * d if v < -0.9 * d else 0.0 for v in values]
 
 
-def command_saturation(values, dt, size):
-    m = size * max(abs(v) for v in values)
+def command_saturation(values, dt, size, reach):
+    m = size * reach
     return [min(max(v, -0.95 * m), m) for v in values]
 
 
-def command_dead_time(values, dt, size):
+def command_dead_time(values, dt, size, reach):
     k = max(1, round(size))
     return [values[0]] * k + values[: len(values) - k]
 
 
-def command_lag(values, dt, size):
+def command_lag(values, dt, size, reach):
     """First order, of `size` samples, for held samples; the mean over each quarter of a sample acts: four values for one."""
     size *= FINE
     a, out, y = math.exp(-1 / size), [], values[0]

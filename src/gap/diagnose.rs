@@ -1,17 +1,19 @@
 //! The whole diagnosis: noise, tolerances, places, effects one after another, and how far the gap shrinks.
 
+mod conclusion;
+
 use super::data::Recording;
 use super::effects::Coefficient;
 use super::fit::{self, Fit, Prior, vuong};
-use super::held::{self, Gap};
-use super::hypotheses::{Hypothesis, Place};
+use super::held;
+use super::hypotheses::Hypothesis;
 use super::locate::{self, Located};
 use super::problem::{Assembled, Chosen, Problem};
 use super::recording::{self, Gross};
 use super::screen::{self, Accepted, Candidate};
-use super::verdict as v;
+use super::verdict::Verdict;
+use conclusion::Conclusion;
 use rayon::prelude::*;
-use std::collections::BTreeMap;
 
 /// Effects that are looked for one after another, at most.
 const MOST_EFFECTS: usize = 4;
@@ -25,20 +27,27 @@ const FAR: f64 = 0.1;
 const WHOLE: f64 = 0.3;
 /// Candidates beyond those that are there or not.
 const BOUNDED: usize = 2;
+/// Shapes without a name that are refined beside; and what one must be ahead of the best effect, nats and as part of that
+/// effect's gain, before nothing that is known explains the gap: a form other than the library's is no other cause.
+const SHAPES: usize = 2;
+const AHEAD: f64 = 15.0;
+const AHEAD_PART: f64 = 0.2;
 /// Iterations with which candidates are compared before the front is polished, and candidates polished.
 const RACE: usize = 2;
 const POLISHED: usize = 5;
 /// Part of the sources' levels with which a candidate is tried as well.
 const QUIET: f64 = 0.1;
+/// A candidate that is so much worse than the model without it is not tried further, nats.
+const HOPELESS: f64 = 3e3;
 /// Gain that an effect must have to be accepted, nats.
 const ACCEPTED: f64 = 8.0;
 /// Vuong statistic that it must have.
 const CONSISTENT: f64 = 2.0;
 /// Gain from which an effect may be one that acts rarely, nats; and how much more it must win than lose.
 const RARE: f64 = 30.0;
-const RARE_RATIO: f64 = 2.0;
-/// Part of the simulated gap that it must close.
-const CLOSES: f64 = 0.03;
+const RARE_RATIO: f64 = 4.0;
+/// Part of the simulated gap that opens again without it, of what all effects together close.
+const CLOSES: f64 = 0.07;
 /// Candidates this near are equally good: the simpler one stands first, nats.
 const AS_GOOD: f64 = 2.0;
 /// Alternatives this near cannot be told apart, nats.
@@ -47,10 +56,6 @@ const NEAR: f64 = 6.0;
 const NEAR_IF_INCONSISTENT: f64 = 15.0;
 /// Vuong statistic below which an alternative is worse for certain.
 const CERTAINLY_WORSE: f64 = -1.64;
-/// A gap of so many times the sensors' noise is one, located or not.
-const PLAIN: f64 = 4.0;
-/// Evidence for a place at which a gap counts as located, nats.
-const LOCATED: f64 = 50.0;
 
 /// A stage of the diagnosis, for progress bars.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,6 +87,10 @@ impl Refined {
         let chosen = Chosen { values, ..accepted.chosen };
         Refined { accepted: Accepted { chosen, ..accepted }, assembled, fit }
     }
+
+    fn is_shape(&self, problem: &Problem<'_>) -> bool {
+        problem.hypotheses[self.accepted.chosen.hypothesis].is_shape()
+    }
 }
 
 /// An accepted effect with what came with it.
@@ -89,6 +98,16 @@ struct Found {
     gain: f64,
     t: f64,
     alternatives: Vec<(Chosen, f64)>,
+}
+
+/// A gap that no effect explains, by its shape.
+struct Shaped {
+    /// Index into [`Problem::hypotheses`].
+    hypothesis: usize,
+    /// Nats gained.
+    gain: f64,
+    /// Part of the simulated gap's square on the train recordings that it closes.
+    closes: f64,
 }
 
 /// A refined candidate of one round, for the ranking.
@@ -116,6 +135,8 @@ pub struct Search {
     found: Vec<Found>,
     last: Fit,
     last_model: Assembled,
+    /// What is left after the effects, by its shape.
+    shape: Option<Shaped>,
     /// Places that are left.
     left: Vec<Located>,
     /// All refined candidates.
@@ -153,6 +174,7 @@ pub fn search(problem: &Problem<'_>, progress: &mut dyn FnMut(Stage)) -> Result<
         places,
         accepted: Vec::new(),
         found: Vec::new(),
+        shape: None,
         left: Vec::new(),
         visible: 0.0,
         trials: Vec::new(),
@@ -201,19 +223,22 @@ impl Search {
             let seen = candidates.iter().filter(|c| c.visible > ACCEPTED).count();
             self.visible = seen as f64 / candidates.len().max(1) as f64;
         }
-        let front = candidates.first().map_or(0.0, |c| c.gain);
-        let worth = |c: &&Candidate| c.gain > PROMISING.max(FAR * front);
-        let mut promising: Vec<&Candidate> = candidates.iter().filter(worth).take(REFINED).collect();
-        // what is there or not may look small from where it is not
-        let bounded = |c: &&Candidate| bounded(&problem.hypotheses[c.chosen.hypothesis]) && c.gain > PROMISING;
-        promising.extend(candidates.iter().skip(promising.len()).filter(bounded).take(BOUNDED));
+        let promising = promising(problem, candidates);
         progress(Stage::Refine(number));
-        let mut refined: Vec<Refined> = promising.into_par_iter().filter_map(|c| self.refine(problem, c)).collect();
+        let mut refined: Vec<Refined> = promising.par_iter().filter_map(|c| self.refine(problem, c)).collect();
         refined.sort_by(|a, b| b.fit.evidence.total_cmp(&a.fit.evidence));
         self.sharpen(problem, &mut refined);
         refined.sort_by(|a, b| b.fit.evidence.total_cmp(&a.fit.evidence));
         let trials: Vec<Trial> = refined.iter().map(|r| self.trial(number, r)).collect();
         self.trials.extend(trials);
+        let (shapes, mut refined): (Vec<Refined>, Vec<Refined>) =
+            refined.into_iter().partition(|r| r.is_shape(problem));
+        if let Some(shape) = shapes.into_iter().next()
+            && self.nothing_known(&shape, refined.first())
+        {
+            self.shaped(problem, shape);
+            return false;
+        }
         if refined.is_empty() {
             return false;
         }
@@ -243,6 +268,38 @@ impl Search {
         self.last = best.fit;
         self.last_model = best.assembled;
         true
+    }
+
+    /// Whether a shape explains so much more than the best effect that the effect is not the cause.
+    fn nothing_known(&self, shape: &Refined, best: Option<&Refined>) -> bool {
+        let gain = shape.fit.evidence - self.last.evidence;
+        let named = best.map_or(0.0, |b| b.fit.evidence - self.last.evidence).max(0.0);
+        let blocks = best.map_or(&self.last.blocks, |b| &b.fit.blocks);
+        gain > ACCEPTED && gain - named > AHEAD.max(AHEAD_PART * named) && vuong(&shape.fit.blocks, blocks) > CONSISTENT
+    }
+
+    /// Takes down what is left by its shape. Effects found before are dropped where the shape without them explains more
+    /// than they do: they only stood near it.
+    fn shaped(&mut self, problem: &Problem<'_>, shape: Refined) {
+        let hypothesis = shape.accepted.chosen.hypothesis;
+        let gain = shape.fit.evidence - self.last.evidence;
+        let mut with = shape.fit;
+        if !self.accepted.is_empty()
+            && let Some((alone, _)) = fitted(problem, &self.base, std::slice::from_ref(&shape.accepted))
+        {
+            let alone = alone.at_share(self.last.share);
+            if alone.evidence > self.last.evidence {
+                self.accepted.clear();
+                self.found.clear();
+                self.last = self.base.clone().at_share(self.last.share);
+                self.last_model = self.base_model.clone();
+                with = alone;
+            }
+        }
+        let gap = |f: &Fit| simulated(problem, f, &with.setting.noise).total;
+        let before = gap(&self.last);
+        let closes = if before > 0.0 { 1.0 - (gap(&with) / before).powi(2) } else { 0.0 };
+        self.shape = Some(Shaped { hypothesis, gain, closes });
     }
 
     fn trial(&self, round: usize, r: &Refined) -> Trial {
@@ -302,13 +359,11 @@ impl Search {
     /// Drops again what closes little of the simulated gap now that everything else is there: one effect hides another,
     /// so this is asked at the end only.
     fn prune(&mut self, problem: &Problem<'_>) {
-        let gap = |f: &Fit| {
-            let runs = held::simulate_all(&f.setting, &problem.train);
-            held::gap(&runs, &problem.train, &f.setting.noise, &problem.full_scale).total
-        };
-        let whole = gap(&self.base);
         while !self.accepted.is_empty() {
+            let noise = self.last.setting.noise.clone();
+            let gap = |f: &Fit| simulated(problem, f, &noise);
             let full = gap(&self.last);
+            let closable = gap(&self.base).beyond(&full);
             let without = |i: usize| {
                 let rest: Vec<Accepted> =
                     (0..self.accepted.len()).filter(|k| *k != i).map(|k| self.accepted[k].clone()).collect();
@@ -318,10 +373,10 @@ impl Search {
                 fitted(problem, &self.last, &rest)
             };
             let least = (0..self.accepted.len())
-                .filter_map(|i| without(i).map(|(f, m)| ((gap(&f) - full) / whole, i, f, m)))
+                .filter_map(|i| without(i).map(|(f, m)| (gap(&f).beyond(&full) / closable.max(1e-300), i, f, m)))
                 .min_by(|a, b| a.0.total_cmp(&b.0));
             match least {
-                Some((closes, i, fit, model)) if closes < CLOSES || whole <= 0.0 => {
+                Some((closes, i, fit, model)) if closes < CLOSES => {
                     self.accepted.remove(i);
                     self.found.remove(i);
                     let values: Vec<Vec<f64>> = model.attached.iter().map(|a| values(&fit, a)).collect();
@@ -333,6 +388,26 @@ impl Search {
             }
         }
     }
+}
+
+/// Gap of a fit on the train recordings, simulated from the inputs alone.
+fn simulated(problem: &Problem<'_>, f: &Fit, noise: &[f64]) -> held::Gap {
+    held::gap(&held::simulate_all(&f.setting, &problem.train), &problem.train, noise, &problem.full_scale)
+}
+
+/// What is refined: the best effects, the best of those that are there or not, which may look small from where they are
+/// not, and the best shapes.
+fn promising(problem: &Problem<'_>, candidates: Vec<Candidate>) -> Vec<Candidate> {
+    let (shapes, effects): (Vec<Candidate>, Vec<Candidate>) =
+        candidates.into_iter().partition(|c| problem.hypotheses[c.chosen.hypothesis].is_shape());
+    let front = effects.first().map_or(0.0, |c| c.gain);
+    let worth = |c: &Candidate| c.gain > PROMISING.max(FAR * front);
+    let (mut chosen, rest): (Vec<Candidate>, Vec<Candidate>) = effects.into_iter().partition(worth);
+    let late = chosen.split_off(chosen.len().min(REFINED));
+    let bounded = |c: &Candidate| bounded(&problem.hypotheses[c.chosen.hypothesis]) && c.gain > PROMISING;
+    chosen.extend(late.into_iter().chain(rest).filter(bounded).take(BOUNDED));
+    chosen.extend(shapes.into_iter().filter(|c| c.gain > front.max(PROMISING)).take(SHAPES));
+    chosen
 }
 
 /// The value at which a coefficient stands for the whole effect, if it is a share of one.
@@ -385,27 +460,27 @@ fn fitted(problem: &Problem<'_>, from: &Fit, accepted: &[Accepted]) -> Option<(F
     }
     let levels: Vec<f64> = from.setting.sources.iter().map(|s| s.level).collect();
     let setting = assembled.setting(&levels, &from.setting.noise, Vec::new());
+    let fit = |s| fit::fit(s, &priors, &problem.train, Some(from.search_share()), RACE);
+    let first = fit(setting.clone());
+    if let Some(f) = &first
+        && f.evidence < from.evidence - HOPELESS
+    {
+        return first.map(|f| (f, assembled));
+    }
     // sources as strong as the model before needed them may hide how right this one is: weaker ones are tried too
     let mut adjusted = setting.clone();
     fit::adjust(&mut adjusted, &problem.train, 1);
-    let mut quiet = setting.clone();
+    let mut quiet = setting;
     quiet.sources.iter_mut().for_each(|s| s.level *= QUIET);
-    let fits =
-        [setting, adjusted, quiet].map(|s| fit::fit(s, &priors, &problem.train, Some(from.search_share()), RACE));
-    let fit = fits.into_iter().flatten().max_by(|a, b| a.evidence.total_cmp(&b.evidence))?;
-    Some((fit, assembled))
-}
-
-/// The three models whose gaps are compared, and those for what each effect closes.
-struct Finish<'a> {
-    problem: &'a Problem<'a>,
-    search: &'a Search,
+    let fits = [first, fit(adjusted), fit(quiet)];
+    let best = fits.into_iter().flatten().max_by(|a, b| a.evidence.total_cmp(&b.evidence))?;
+    Some((best, assembled))
 }
 
 impl Search {
     /// The verdict. `held` is read here and nowhere before; without held recordings the train ones stand in.
-    pub fn verdict(&self, problem: &Problem<'_>, held: &[Recording], seconds: f64) -> v::Verdict {
-        Finish { problem, search: self }.verdict(held, seconds)
+    pub fn verdict(&self, problem: &Problem<'_>, held: &[Recording], seconds: f64) -> Verdict {
+        Conclusion { problem, search: self }.verdict(held, seconds)
     }
 
     /// The accepted effects with their fitted values.
@@ -420,7 +495,7 @@ impl Search {
 
     /// The model as the study gives it.
     pub fn nominal(&self, problem: &Problem<'_>) -> super::filter::Setting {
-        Finish { problem, search: self }.nominal()
+        Conclusion { problem, search: self }.nominal()
     }
 
     /// The final fit and its model.
@@ -432,211 +507,4 @@ impl Search {
     pub fn tolerated(&self) -> (&Fit, &Assembled) {
         (&self.base, &self.base_model)
     }
-}
-
-impl Finish<'_> {
-    fn verdict(&self, held: &[Recording], seconds: f64) -> v::Verdict {
-        let s = self.search;
-        let problem = self.problem;
-        let held = if held.is_empty() { &problem.train[..] } else { held };
-        let nominal = self.nominal();
-        let side =
-            |recordings: &[Recording]| [&nominal, &s.base.setting, &s.last.setting].map(|f| self.gap(f, recordings));
-        let (on_held, on_train) = (side(held), side(&problem.train));
-        let [n, t, e] = &on_held;
-        let measurable = n.total > 2.0 * n.error && n.total > 0.0;
-        let closed = measurable.then(|| 1.0 - e.total / n.total);
-        let by_effects = (measurable && t.total > 0.0).then(|| 1.0 - e.total / t.total);
-        let share = measurable.then(|| e.total / n.total);
-        let place = s.left.first().filter(|l| l.evidence > LOCATED && share.is_none_or(|s| s > 0.1));
-        // what several times the noise leaves open is something, even where no place stands out
-        let noise = relative(&s.last.setting.noise, &problem.full_scale);
-        let plain = share.is_some_and(|share| share > 0.1) && e.total > PLAIN * noise;
-        let outside = s.accepted.is_empty() && (place.is_some() || plain);
-        let verdict = match () {
-            () if !s.gross.is_empty() => "recording_error",
-            () if !s.accepted.is_empty() => "effects",
-            () if outside => "outside_library",
-            () if s.visible < 0.2 => "undecidable",
-            () => "nothing_found",
-        };
-        v::Verdict {
-            schema: 1,
-            verdict,
-            noise: self.by_signal(&s.last.setting.noise),
-            assumed: problem.tolerances.iter().filter(|t| t.assumed).map(|t| (t.name.clone(), t.sigma)).collect(),
-            recording: self.gross(),
-            places: self.places(&s.places),
-            effects: self.effects(held, t.total),
-            drifts: self.drifts(),
-            gap: v::Gaps { held: self.side(&on_held), train: self.side(&on_train) },
-            closed,
-            closed_by_effects: by_effects,
-            unexplained: v::Unexplained {
-                share,
-                place: place.map(|l| problem.disturbances[l.disturbance].attachments[0].place.place.clone()),
-                shape: None,
-            },
-            next_experiment: self.next_experiment(verdict),
-            seconds,
-        }
-    }
-
-    fn gross(&self) -> Vec<v::RecordingError> {
-        let error = |g: &Gross| v::RecordingError {
-            file: self.problem.files[g.recording].clone(),
-            signal: self.problem.signals[g.signal].name.clone(),
-            error: g.error,
-            value: g.value,
-        };
-        self.search.gross.iter().map(error).collect()
-    }
-
-    fn next_experiment(&self, verdict: &str) -> Option<String> {
-        let ambiguous = self.search.found.iter().any(|f| !f.alternatives.is_empty());
-        match verdict {
-            "undecidable" => Some(
-                "more excitation: steps of the inputs over their whole range, then slow triangles through zero".into(),
-            ),
-            "effects" if ambiguous => {
-                Some("slow triangles through zero, steps and a chirp over the whole range: what moves alike here may part there".into())
-            }
-            _ => None,
-        }
-    }
-
-    /// The model as the study gives it.
-    fn nominal(&self) -> super::filter::Setting {
-        let model = &self.search.base_model;
-        let mut setting = model.setting(&vec![0.0; model.sources.len()], &self.search.last.setting.noise, Vec::new());
-        for (i, t) in self.problem.tolerances.iter().enumerate() {
-            setting.theta[i] = t.nominal;
-        }
-        setting
-    }
-
-    fn gap(&self, setting: &super::filter::Setting, recordings: &[Recording]) -> Gap {
-        let runs = held::simulate_all(setting, recordings);
-        held::gap(&runs, recordings, &self.search.last.setting.noise, &self.problem.full_scale)
-    }
-
-    fn by_signal(&self, values: &[f64]) -> BTreeMap<String, f64> {
-        self.problem.signals.iter().zip(values).map(|(s, v)| (s.name.clone(), *v)).collect()
-    }
-
-    fn side(&self, [n, t, e]: &[Gap; 3]) -> v::Side {
-        let columns = |n, t, e| v::Columns { nominal: Some(n), tolerances: Some(t), effects: Some(e) };
-        let signals = self.problem.signals.iter().enumerate();
-        v::Side {
-            total: columns(n.total, t.total, e.total),
-            signals: signals
-                .map(|(i, s)| (s.name.clone(), columns(n.signals[i], t.signals[i], e.signals[i])))
-                .collect(),
-        }
-    }
-
-    fn places(&self, places: &[Located]) -> Vec<v::Located> {
-        let total: f64 = places.iter().map(|l| l.evidence.max(0.0)).sum();
-        let located = |l: &Located| {
-            let place = &self.problem.disturbances[l.disturbance].attachments[0].place;
-            v::Located {
-                place: place.place.clone(),
-                node: place.node.clone(),
-                kind: place.kind.word(),
-                evidence: l.evidence,
-                share: if total > 0.0 { l.evidence.max(0.0) / total } else { 0.0 },
-            }
-        };
-        places.iter().filter(|l| l.evidence > 0.0).map(located).collect()
-    }
-
-    fn effects(&self, held: &[Recording], tolerated: f64) -> Vec<v::Effect> {
-        let s = self.search;
-        let full = self.gap(&s.last.setting, held).total;
-        (0..s.accepted.len())
-            .map(|i| {
-                let (alone, last) = self.closing(i, held, tolerated, full);
-                let h = self.hypothesis(&s.accepted[i].chosen);
-                let found = &s.found[i];
-                v::Effect {
-                    effect: h.effect.clone(),
-                    family: h.family.clone(),
-                    places: spots(h),
-                    evidence: found.gain,
-                    t: found.t,
-                    closes_alone: alone,
-                    closes_last: last,
-                    parameters: self.estimates(i, h),
-                    indistinguishable: found
-                        .alternatives
-                        .iter()
-                        .map(|(c, behind)| self.alternative(c, *behind))
-                        .collect(),
-                }
-            })
-            .collect()
-    }
-
-    fn hypothesis(&self, chosen: &Chosen) -> &Hypothesis {
-        &self.problem.hypotheses[chosen.hypothesis]
-    }
-
-    fn alternative(&self, chosen: &Chosen, behind: f64) -> v::Alternative {
-        let h = self.hypothesis(chosen);
-        v::Alternative { effect: h.effect.clone(), family: h.family.clone(), places: spots(h), behind }
-    }
-
-    /// What an effect closes alone, and what opens again without it, of the gap within tolerances.
-    fn closing(&self, i: usize, held: &[Recording], tolerated: f64, full: f64) -> (v::Maybe, v::Maybe) {
-        let s = self.search;
-        if tolerated <= 0.0 {
-            return (None, None);
-        }
-        if s.accepted.len() == 1 {
-            let closes = Some(1.0 - full / tolerated);
-            return (closes, closes);
-        }
-        let without: Vec<Accepted> = (0..s.accepted.len()).filter(|k| *k != i).map(|k| s.accepted[k].clone()).collect();
-        let gap = |set: &[Accepted]| Some(self.gap(&fitted(self.problem, &s.base, set)?.0.setting, held).total);
-        let alone = gap(&s.accepted[i..=i]).map(|g| 1.0 - g / tolerated);
-        (alone, gap(&without).map(|g| (g - full) / tolerated))
-    }
-
-    fn estimates(&self, i: usize, h: &Hypothesis) -> BTreeMap<String, v::Estimate> {
-        let s = self.search;
-        let places = &s.last_model.attached[i];
-        let names =
-            h.coefficients.iter().map(|c| (&c.name, &c.unit)).chain(h.shapes.iter().map(|s| (&s.name, &s.unit)));
-        let estimate = |(&place, (name, unit)): (&usize, (&String, &String))| {
-            let prior = s.last.priors.iter().position(|p| p.parameter == place);
-            let std = prior.map_or(0.0, |k| s.last.deviation(k));
-            (name.clone(), v::Estimate { value: s.last.setting.theta[place], std, unit: unit.clone() })
-        };
-        places.iter().zip(names).map(estimate).collect()
-    }
-
-    fn drifts(&self) -> Vec<v::Drift> {
-        let fit = &self.search.last;
-        let drift = |(i, t): (usize, &super::problem::Tolerance)| {
-            let value = fit.setting.theta[i];
-            v::Drift {
-                parameter: t.name.clone(),
-                nominal: t.nominal,
-                value,
-                std: fit.deviation(i),
-                tolerances: (value - t.nominal) / t.sigma,
-            }
-        };
-        self.problem.tolerances.iter().enumerate().map(drift).collect()
-    }
-}
-
-/// Noise in parts of the full scales, RMS over the signals.
-fn relative(noise: &[f64], full_scale: &[f64]) -> f64 {
-    let square: f64 = noise.iter().zip(full_scale).map(|(n, f)| (n / f).powi(2)).sum();
-    (square / noise.len().max(1) as f64).sqrt()
-}
-
-fn spots(h: &Hypothesis) -> Vec<v::Spot> {
-    h.places().into_iter().map(|p: &Place| v::Spot { place: p.place.clone(), node: p.node.clone() }).collect()
 }

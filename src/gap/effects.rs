@@ -44,6 +44,8 @@ pub struct Interface {
     pub drop: Option<Quantity>,
     /// Potentials of further ports of the same component.
     pub sense: Vec<Quantity>,
+    /// They may belong to any port of the network.
+    pub anywhere: bool,
     /// A temperature that it reads, in kelvin.
     pub temperature: Option<String>,
 }
@@ -76,14 +78,31 @@ pub struct Shape {
     pub unit: String,
     /// Values to try; for `relative` ones in full scales of the signal.
     pub grid: Vec<f64>,
+    /// Least value that the effect allows.
+    pub min: Option<f64>,
+    /// Greatest value that the effect allows.
+    pub max: Option<f64>,
     /// Counts in the unit of the signal, `grid` in its full scales.
     pub relative: bool,
     /// Compared with the potential of the site, or with the difference of its two: values beyond the range that occurs
     /// make no difference.
     pub threshold: bool,
+    /// The same, compared with the first potential alone.
+    pub level: bool,
     /// A size of the signal at a sensor or command beyond which the effect acts: values outside of the range that occurs
     /// make no difference.
     pub limit: bool,
+}
+
+/// Parameters that take the range of a potential.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Range {
+    /// The potential, by its name in the effect.
+    pub of: String,
+    /// Parameter for its least value.
+    pub least: String,
+    /// Parameter for its greatest value.
+    pub most: String,
 }
 
 /// One effect model.
@@ -105,6 +124,8 @@ pub struct Effect {
     pub shapes: Vec<Shape>,
     /// Parameters that take the value of the component's parameter of equal unit.
     pub base: Vec<Quantity>,
+    /// A potential that it reads, with the two parameters that take the least and the greatest value that occurs.
+    pub range: Option<Range>,
     /// Effects of one group are also tried together, with one set of coefficients.
     pub group: Option<String>,
     /// A Bridge between nodes of which neither is fixed (another effect of the family covers the fixed ones).
@@ -123,6 +144,15 @@ pub struct Effect {
 
 /// The family of sources that have no form: not hypotheses, but what hypotheses are weighed against.
 const DISTURBANCE: &str = "disturbance";
+/// The family of shapes: they compete with the effects, and where one of them wins, nothing known explains the gap.
+const SHAPE: &str = "shape";
+
+impl Effect {
+    /// Whether it only says what shape a gap has that no effect explains.
+    pub fn is_shape(&self) -> bool {
+        self.family == SHAPE
+    }
+}
 
 /// Reads the shipped effects and those of a folder, in the order of their names.
 pub fn catalogue(world: &dyn World, folder: Option<&Path>) -> Checked<Vec<Arc<Effect>>> {
@@ -333,6 +363,7 @@ fn effect(found: &Found, interface: &Found, read: &Attributes<'_>, number: usize
         coefficients: coefficients(own, read, number, &relative)?,
         shapes: shapes(own, read, number, &relative)?,
         base: texts(own, "base").iter().map(|n| read.quantity(number, n)).collect::<Result<_, _>>()?,
+        range: range(own)?,
         group: text(own, "group"),
         free_ends: text(own, "ends").as_deref() == Some("free"),
         directed: text(own, "directed").is_some(),
@@ -344,6 +375,15 @@ fn effect(found: &Found, interface: &Found, read: &Attributes<'_>, number: usize
     };
     rates(&mut effect, read, number);
     Ok(effect)
+}
+
+fn range(own: &Modification) -> Result<Option<Range>, String> {
+    let mut names = texts(own, "range").into_iter();
+    match (names.next(), names.next(), names.next(), names.next()) {
+        (None, ..) => Ok(None),
+        (Some(of), Some(least), Some(most), None) => Ok(Some(Range { of, least, most })),
+        _ => Err("`range` is not a potential and the two parameters that take its range".into()),
+    }
 }
 
 /// Finds out which derivatives an effect uses.
@@ -382,6 +422,7 @@ fn interface_of(
         through: text(base, "through").map(|n| read.quantity(number, &n)).transpose()?,
         drop: text(base, "drop").map(|n| read.quantity(number, &n)).transpose()?,
         sense: all("sense")?,
+        anywhere: text(base, "anywhere").is_some(),
         temperature: text(own, "temperature").or_else(|| text(base, "temperature")),
     })
 }
@@ -445,10 +486,13 @@ fn shapes(
         };
         let grid =
             grid.filter(|g| !g.is_empty()).ok_or_else(|| format!("the grid of `{name}` is no list of numbers"))?;
-        let unit = read.quantity(number, &name)?.unit;
-        let threshold = texts(own, "threshold").contains(&name);
-        let limit = texts(own, "limit").contains(&name);
-        Ok(Shape { unit, grid, relative: relative.contains(&name), threshold, limit, name })
+        let variable = read.variable(number, &name)?;
+        let (min, max) = (read.number(variable.min), read.number(variable.max));
+        let unit = variable.unit.clone().unwrap_or_default();
+        let listed = |key: &str| texts(own, key).contains(&name);
+        let (threshold, level, limit) = (listed("threshold"), listed("level"), listed("limit"));
+        let relative = relative.contains(&name);
+        Ok(Shape { unit: unit.to_string(), grid, min, max, relative, threshold, level, limit, name })
     };
     list.arguments.iter().map(one).collect()
 }

@@ -30,6 +30,16 @@ pub struct Gap {
     pub error: f64,
 }
 
+impl Gap {
+    /// RMS over the signals of what this gap is more than another: what nothing closes (disturbances that make a signal
+    /// drift) does not count.
+    pub fn beyond(&self, other: &Gap) -> f64 {
+        let more: Vec<f64> =
+            self.signals.iter().zip(&other.signals).map(|(a, b)| (a * a - b * b).max(0.0).sqrt()).collect();
+        rms(&more)
+    }
+}
+
 /// Simulates a recording from its inputs; the state at the end of the window comes from the window's samples.
 /// `None` when the simulation does not reach the end.
 pub fn simulate(setting: &Setting, recording: &Recording) -> Option<Residuals> {

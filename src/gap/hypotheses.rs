@@ -105,7 +105,7 @@ pub struct Attachment {
     pub site: Site,
     /// Ports whose potentials are read beside.
     pub sense: Vec<usize>,
-    /// Parameters of the effect that take the value of a parameter of the model, by full name.
+    /// Parameters of the effect that take the value of a parameter of the model, by full name, or a number.
     pub base: Vec<(String, String)>,
     /// The input that is the temperature, with the offset that makes kelvins of it.
     pub temperature: Option<(String, f64)>,
@@ -150,6 +150,11 @@ impl Hypothesis {
         self.attachments.iter().map(|a| &a.place).collect()
     }
 
+    /// Whether it only says what shape a gap has that no effect explains.
+    pub fn is_shape(&self) -> bool {
+        self.attachments[0].effect.as_ref().is_some_and(|e| e.is_shape())
+    }
+
     /// Combinations of the grids of all shapes, the first shape varying slowest; one empty one without shapes.
     pub fn variants(&self) -> Vec<Vec<(String, f64)>> {
         let mut all = vec![Vec::new()];
@@ -177,7 +182,8 @@ pub fn hypotheses(circuit: &Circuit, effects: &[Arc<Effect>], signals: &[Signal]
             groups.entry(group).or_default().extend(single.iter().cloned());
         }
         all.extend(single.iter().map(|a| hypothesis(circuit, vec![a.clone()], Sharing::Single, signals)));
-        let shared = shared(circuit, effect, &candidates, &single);
+        // one shape at several places is no shape
+        let shared = if effect.is_shape() { Vec::new() } else { shared(circuit, effect, &candidates, &single) };
         all.extend(shared.into_iter().map(|(a, s)| hypothesis(circuit, a, s, signals)));
     }
     let groups = groups.into_values().filter(|g| g.iter().any(|a| a.effect != g[0].effect));
@@ -258,7 +264,7 @@ fn at_component(circuit: &Circuit, effect: &Arc<Effect>, component: usize) -> Ve
         }
         _ => Vec::new(),
     };
-    sites.into_iter().filter_map(|(site, used)| candidate(circuit, effect, component, site, &used)).collect()
+    sites.into_iter().flat_map(|(site, used)| at_site(circuit, effect, component, &site, &used)).collect()
 }
 
 fn fits(effect: &Effect, port: &Port) -> bool {
@@ -299,35 +305,47 @@ fn reservoirs(circuit: &Circuit, effect: &Effect) -> Vec<usize> {
     fixed.filter(|&p| fits(effect, &circuit.ports[p])).collect()
 }
 
-fn candidate(
-    circuit: &Circuit,
-    effect: &Arc<Effect>,
-    component: usize,
-    site: Site,
-    used: &[usize],
-) -> Option<Candidate> {
-    let sense = sensed(circuit, effect, component, used)?;
+/// An effect at a site, once for each choice of what it reads beside.
+fn at_site(circuit: &Circuit, effect: &Arc<Effect>, component: usize, site: &Site, used: &[usize]) -> Vec<Candidate> {
     let local = |p: &usize| circuit.ports[*p].name.rsplit('.').next().unwrap_or("").to_string();
     let alike = used.iter().map(local).collect::<Vec<_>>().join("|");
-    let place = place_of(circuit, effect, &site);
-    let attachment =
-        Attachment { effect: Some(effect.clone()), site, sense, base: Vec::new(), temperature: None, place };
-    Some(Candidate { component, alike, attachment })
+    let with = |sense: Vec<usize>| {
+        let place = place_of(circuit, effect, site);
+        let (base, temperature) = (Vec::new(), None);
+        let attachment =
+            Attachment { effect: Some(effect.clone()), site: site.clone(), sense, base, temperature, place };
+        Candidate { component, alike: alike.clone(), attachment }
+    };
+    sensed(circuit, effect, component, used).into_iter().map(with).collect()
 }
 
-/// Further ports of the component, one for each sensed potential.
-fn sensed(circuit: &Circuit, effect: &Effect, component: usize, used: &[usize]) -> Option<Vec<usize>> {
+/// Further ports, one for each sensed potential: of the component, or any other for effects that reach so far.
+fn sensed(circuit: &Circuit, effect: &Effect, component: usize, used: &[usize]) -> Vec<Vec<usize>> {
+    if effect.interface.anywhere {
+        return effect.interface.sense.first().map_or_else(Vec::new, |q| moving(circuit, q));
+    }
     let mut taken: Vec<usize> = used.to_vec();
     let mut sense = Vec::new();
     for q in &effect.interface.sense {
         let ports = circuit.components[component].ports.iter();
         let mut fitting =
             ports.filter(|p| !taken.contains(p) && same_kind(&circuit.ports[**p].potential.unit, &q.unit));
-        let port = *fitting.next()?;
+        let Some(&port) = fitting.next() else { return Vec::new() };
         taken.push(port);
         sense.push(port);
     }
-    Some(sense)
+    vec![sense]
+}
+
+/// First ports of all places with such a potential that is not fixed.
+fn moving(circuit: &Circuit, q: &Quantity) -> Vec<Vec<usize>> {
+    let mut places = BTreeSet::new();
+    let first = |p: &usize| {
+        let port = &circuit.ports[*p];
+        let free = !circuit.nodes[port.node].fixed && same_kind(&port.potential.unit, &q.unit);
+        free && places.insert(circuit.rigid(*p))
+    };
+    (0..circuit.ports.len()).filter(first).map(|p| vec![p]).collect()
 }
 
 /// A candidate with each choice of base parameters and of a temperature; none where there is nothing to choose.

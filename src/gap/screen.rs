@@ -262,10 +262,14 @@ impl<'a> Joint<'a> {
             max: c.max.unwrap_or(f64::INFINITY),
         };
         let mut priors: Vec<Prior> = h.coefficients.iter().zip(sigmas).map(coefficient).collect();
-        for &value in &values[h.coefficients.len()..] {
-            let size = value.abs().max(1e-300);
-            priors.push(Prior { parameter: 0, mean: value, sigma: 0.5 * size, min: 0.1 * value, max: 10.0 * value });
-        }
+        let shape = |(s, &value): (&super::effects::Shape, &f64)| Prior {
+            parameter: 0,
+            mean: value,
+            sigma: 0.5 * value.abs().max(1e-300),
+            min: (0.1 * value).min(10.0 * value).max(s.min.unwrap_or(f64::NEG_INFINITY)),
+            max: (0.1 * value).max(10.0 * value).min(s.max.unwrap_or(f64::INFINITY)),
+        };
+        priors.extend(h.shapes.iter().zip(&values[h.coefficients.len()..]).map(shape));
         priors
     }
 

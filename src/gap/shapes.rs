@@ -1,7 +1,8 @@
 //! Grids of shapes fitted to what the recordings can show: times to the sampling step, thresholds to the values that
-//! occur.
+//! occur, forms over a potential to its range.
 
-use super::hypotheses::{Hypothesis, Signal, Site};
+use super::effects::Shape;
+use super::hypotheses::{Attachment, Hypothesis, Signal, Site};
 use super::problem::Problem;
 use std::collections::BTreeMap;
 
@@ -17,17 +18,28 @@ pub fn fit(problem: &mut Problem<'_>) {
     let slower = problem.step() / STEP;
     let potentials = potentials(problem);
     let sizes = sizes(problem);
+    let ranged = |a: &mut Attachment| {
+        range(a, &potentials).is_none_or(|range| {
+            let known = !range.is_empty();
+            a.base.extend(range);
+            known
+        })
+    };
+    problem.hypotheses.retain_mut(|h| h.attachments.iter_mut().all(ranged));
     for h in &mut problem.hypotheses {
         let site = h.attachments[0].site.clone();
-        let occurs = values(&site, &potentials);
         let size = size(&site, &sizes);
         for shape in &mut h.shapes {
             if shape.unit == "s" && slower > 1.0 {
                 shape.grid.iter_mut().for_each(|x| *x *= slower);
-            } else if let (true, Some(occurs)) = (shape.threshold, &occurs) {
+            } else if let Some(occurs) = values(shape, &site, &potentials) {
                 shape.grid = QUANTILES.iter().map(|q| occurs[(q * (occurs.len() - 1) as f64) as usize]).collect();
                 shape.grid.retain(|x| *x > 0.0);
                 shape.grid.dedup();
+                // a brim makes no sense at the pressures of a press, nor a relief valve at those of a level
+                if shape.grid.iter().any(|x| shape.min.is_some_and(|m| *x < m) || shape.max.is_some_and(|m| *x > m)) {
+                    shape.grid.clear();
+                }
             } else if let (true, Some((least, most))) = (shape.limit, size) {
                 shape.grid = PARTS.iter().map(|part| least + part * (most - least)).collect();
             }
@@ -42,13 +54,40 @@ fn thresholds(h: &Hypothesis) -> impl Iterator<Item = usize> {
         Site::Across(a, b) => vec![a, b],
         _ => Vec::new(),
     };
-    let compared = h.shapes.iter().any(|s| s.threshold);
+    let compared = h.shapes.iter().any(|s| s.threshold || s.level);
     ports.into_iter().filter(move |_| compared)
 }
 
-/// Potentials of all ports that a threshold is compared with, as the nominal model has them; empty where it has none.
+/// The port whose range of potential an effect takes.
+fn ranged(a: &Attachment) -> Option<usize> {
+    let effect = a.effect.as_ref()?;
+    let range = effect.range.as_ref()?;
+    let ports = match a.site {
+        Site::Node(p) => vec![p],
+        Site::Across(x, y) => vec![x, y],
+        _ => Vec::new(),
+    };
+    let i = &effect.interface;
+    let mut read = i.potential.iter().zip(ports).chain(i.sense.iter().zip(a.sense.iter().copied()));
+    read.find(|(q, _)| q.name == range.of).map(|(_, p)| p)
+}
+
+/// The parameters that take the range of a potential, with their values; empty where it stands still or is not known,
+/// `None` for effects without.
+fn range(a: &Attachment, potentials: &BTreeMap<usize, Vec<f64>>) -> Option<Vec<(String, String)>> {
+    let names = a.effect.as_ref()?.range.as_ref()?;
+    let values = ranged(a).and_then(|p| potentials.get(&p)).map_or(&[][..], Vec::as_slice);
+    let finite = || values.iter().copied().filter(|v| v.is_finite());
+    let (least, most) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
+    let moves = most - least > 1e-9 * most.abs().max(least.abs());
+    let value = |name: &String, x: f64| (name.clone(), format!("{x:e}"));
+    Some(if moves { vec![value(&names.least, least), value(&names.most, most)] } else { Vec::new() })
+}
+
+/// Potentials of all ports that a threshold or a range needs, as the nominal model has them; empty where it has none.
 fn potentials(problem: &Problem<'_>) -> BTreeMap<usize, Vec<f64>> {
     let mut ports: Vec<usize> = problem.hypotheses.iter().flat_map(thresholds).collect();
+    ports.extend(problem.hypotheses.iter().flat_map(|h| &h.attachments).filter_map(ranged));
     ports.sort_unstable();
     ports.dedup();
     let signal = |(i, &p): (usize, &usize)| {
@@ -65,9 +104,11 @@ fn potentials(problem: &Problem<'_>) -> BTreeMap<usize, Vec<f64>> {
 }
 
 /// What a threshold at this site is compared with, sorted.
-fn values(site: &Site, potentials: &BTreeMap<usize, Vec<f64>>) -> Option<Vec<f64>> {
+fn values(shape: &Shape, site: &Site, potentials: &BTreeMap<usize, Vec<f64>>) -> Option<Vec<f64>> {
     let mut values = match site {
+        _ if !shape.threshold && !shape.level => return None,
         Site::Node(p) => potentials.get(p)?.clone(),
+        Site::Across(p, _) if shape.level => potentials.get(p)?.clone(),
         Site::Across(a, b) => potentials.get(a)?.iter().zip(potentials.get(b)?).map(|(a, b)| a - b).collect(),
         _ => return None,
     };

@@ -181,8 +181,8 @@ pub struct Unexplained {
 /// A term of the missing through variable.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Term {
-    /// In words of the neighbouring ports.
+    /// What the missing quantity follows.
     pub term: String,
-    /// Part of the variance explained up to this term, on blocks kept back.
+    /// Part of the simulated gap's square on the train recordings that it closes.
     pub r2: f64,
 }

@@ -49,6 +49,9 @@ pub fn words(v: &Verdict) -> String {
         let at = v.unexplained.place.as_ref().map(|p| format!(", most of it at `{p}`")).unwrap_or_default();
         let _ = writeln!(text, "Not explained: {} of the nominal gap{at}.", percent(share));
     }
+    for t in v.unexplained.shape.iter().flatten() {
+        let _ = writeln!(text, "What is missing there has this shape: {} (r2 = {:.2}).", lower(&t.term), t.r2);
+    }
     for d in v.drifts.iter().filter(|d| d.tolerances.abs() >= 2.0) {
         let _ = writeln!(
             text,
@@ -101,6 +104,12 @@ fn effect(i: usize, e: &Effect) -> String {
         let _ = writeln!(text, "   These data cannot tell it from {}.", others.join(", "));
     }
     text
+}
+
+/// Without the capital at its start.
+fn lower(text: &str) -> String {
+    let mut characters = text.chars();
+    characters.next().map_or_else(String::new, |c| c.to_lowercase().collect::<String>() + characters.as_str())
 }
 
 pub(super) fn number(v: f64) -> String {

@@ -1,0 +1,247 @@
+//! What the search came to, said as a verdict.
+
+use super::super::data::Recording;
+use super::super::filter::Setting;
+use super::super::held::{self, Gap};
+use super::super::hypotheses::{Hypothesis, Place};
+use super::super::locate::Located;
+use super::super::problem::{Chosen, Problem, Tolerance};
+use super::super::recording::Gross;
+use super::super::screen::Accepted;
+use super::super::verdict as v;
+use super::{Search, Shaped, fitted};
+use std::collections::BTreeMap;
+
+/// A gap of so many times the sensors' noise is one, located or not.
+const PLAIN: f64 = 4.0;
+/// Evidence for a place at which a gap counts as located, nats.
+const LOCATED: f64 = 50.0;
+/// The three models whose gaps are compared, and those for what each effect closes.
+pub(super) struct Conclusion<'a> {
+    pub problem: &'a Problem<'a>,
+    pub search: &'a Search,
+}
+
+impl Conclusion<'_> {
+    /// `held` is read here and nowhere before.
+    pub fn verdict(&self, held: &[Recording], seconds: f64) -> v::Verdict {
+        let s = self.search;
+        let problem = self.problem;
+        let held = if held.is_empty() { &problem.train[..] } else { held };
+        let nominal = self.nominal();
+        let side =
+            |recordings: &[Recording]| [&nominal, &s.base.setting, &s.last.setting].map(|f| self.gap(f, recordings));
+        let (on_held, on_train) = (side(held), side(&problem.train));
+        let [n, t, e] = &on_held;
+        let measurable = n.total > 2.0 * n.error && n.total > 0.0;
+        let closed = measurable.then(|| 1.0 - e.total / n.total);
+        let by_effects = (measurable && t.total > 0.0).then(|| 1.0 - e.total / t.total);
+        let share = measurable.then(|| e.total / n.total);
+        let place = s.left.first().filter(|l| l.evidence > LOCATED && share.is_none_or(|s| s > 0.1));
+        // what several times the noise leaves open is something, even where no place stands out
+        let noise = relative(&s.last.setting.noise, &problem.full_scale);
+        let plain = share.is_some_and(|share| share > 0.1) && e.total > PLAIN * noise;
+        let outside = s.accepted.is_empty() && (place.is_some() || plain || s.shape.is_some());
+        let verdict = match () {
+            () if !s.gross.is_empty() => "recording_error",
+            () if !s.accepted.is_empty() => "effects",
+            () if outside => "outside_library",
+            () if s.visible < 0.2 => "undecidable",
+            () => "nothing_found",
+        };
+        v::Verdict {
+            schema: 1,
+            verdict,
+            noise: self.by_signal(&s.last.setting.noise),
+            assumed: problem.tolerances.iter().filter(|t| t.assumed).map(|t| (t.name.clone(), t.sigma)).collect(),
+            recording: self.gross(),
+            places: self.places(&s.places),
+            effects: self.effects(held, t.total),
+            drifts: self.drifts(),
+            gap: v::Gaps { held: self.side(&on_held), train: self.side(&on_train) },
+            closed,
+            closed_by_effects: by_effects,
+            unexplained: v::Unexplained {
+                share,
+                place: self.left_at(place),
+                shape: s.shape.as_ref().map(|shape| vec![self.term(shape)]),
+            },
+            next_experiment: self.next_experiment(verdict),
+            seconds,
+        }
+    }
+
+    /// Where something is left: at the place of its shape, or where a source is needed.
+    fn left_at(&self, located: Option<&Located>) -> Option<String> {
+        let of_shape = self.search.shape.as_ref().map(|s| &self.problem.hypotheses[s.hypothesis]);
+        let of_source = located.map(|l| &self.problem.disturbances[l.disturbance]);
+        of_shape.or(of_source).map(|h| h.attachments[0].place.place.clone())
+    }
+
+    fn term(&self, shape: &Shaped) -> v::Term {
+        let effect = self.problem.hypotheses[shape.hypothesis].attachments[0].effect.as_ref();
+        v::Term { term: effect.map_or_else(String::new, |e| e.description.clone()), r2: shape.closes }
+    }
+
+    fn gross(&self) -> Vec<v::RecordingError> {
+        let error = |g: &Gross| v::RecordingError {
+            file: self.problem.files[g.recording].clone(),
+            signal: self.problem.signals[g.signal].name.clone(),
+            error: g.error,
+            value: g.value,
+        };
+        self.search.gross.iter().map(error).collect()
+    }
+
+    fn next_experiment(&self, verdict: &str) -> Option<String> {
+        let ambiguous = self.search.found.iter().any(|f| !f.alternatives.is_empty());
+        match verdict {
+            "undecidable" => Some(
+                "more excitation: steps of the inputs over their whole range, then slow triangles through zero".into(),
+            ),
+            "effects" if ambiguous => {
+                Some("slow triangles through zero, steps and a chirp over the whole range: what moves alike here may part there".into())
+            }
+            _ => None,
+        }
+    }
+
+    /// The model as the study gives it.
+    pub fn nominal(&self) -> Setting {
+        let model = &self.search.base_model;
+        let mut setting = model.setting(&vec![0.0; model.sources.len()], &self.search.last.setting.noise, Vec::new());
+        for (i, t) in self.problem.tolerances.iter().enumerate() {
+            setting.theta[i] = t.nominal;
+        }
+        setting
+    }
+
+    fn gap(&self, setting: &Setting, recordings: &[Recording]) -> Gap {
+        let runs = held::simulate_all(setting, recordings);
+        held::gap(&runs, recordings, &self.search.last.setting.noise, &self.problem.full_scale)
+    }
+
+    fn by_signal(&self, values: &[f64]) -> BTreeMap<String, f64> {
+        self.problem.signals.iter().zip(values).map(|(s, v)| (s.name.clone(), *v)).collect()
+    }
+
+    fn side(&self, [n, t, e]: &[Gap; 3]) -> v::Side {
+        let columns = |n, t, e| v::Columns { nominal: Some(n), tolerances: Some(t), effects: Some(e) };
+        let signals = self.problem.signals.iter().enumerate();
+        v::Side {
+            total: columns(n.total, t.total, e.total),
+            signals: signals
+                .map(|(i, s)| (s.name.clone(), columns(n.signals[i], t.signals[i], e.signals[i])))
+                .collect(),
+        }
+    }
+
+    fn places(&self, places: &[Located]) -> Vec<v::Located> {
+        // the place of a shape is better known than that of a source without any
+        let shape = self.search.shape.iter().map(|s| (&self.problem.hypotheses[s.hypothesis], s.gain));
+        let sources = places.iter().map(|l| (&self.problem.disturbances[l.disturbance], l.evidence));
+        let all: Vec<(&Hypothesis, f64)> = shape.chain(sources).filter(|(_, evidence)| *evidence > 0.0).collect();
+        let total: f64 = all.iter().map(|(_, evidence)| evidence).sum();
+        let located = |(h, evidence): &(&Hypothesis, f64)| {
+            let place = &h.attachments[0].place;
+            v::Located {
+                place: place.place.clone(),
+                node: place.node.clone(),
+                kind: place.kind.word(),
+                evidence: *evidence,
+                share: evidence / total,
+            }
+        };
+        all.iter().map(located).collect()
+    }
+
+    fn effects(&self, held: &[Recording], tolerated: f64) -> Vec<v::Effect> {
+        let s = self.search;
+        let full = self.gap(&s.last.setting, held).total;
+        (0..s.accepted.len())
+            .map(|i| {
+                let (alone, last) = self.closing(i, held, tolerated, full);
+                let h = self.hypothesis(&s.accepted[i].chosen);
+                let found = &s.found[i];
+                v::Effect {
+                    effect: h.effect.clone(),
+                    family: h.family.clone(),
+                    places: spots(h),
+                    evidence: found.gain,
+                    t: found.t,
+                    closes_alone: alone,
+                    closes_last: last,
+                    parameters: self.estimates(i, h),
+                    indistinguishable: found
+                        .alternatives
+                        .iter()
+                        .map(|(c, behind)| self.alternative(c, *behind))
+                        .collect(),
+                }
+            })
+            .collect()
+    }
+
+    fn hypothesis(&self, chosen: &Chosen) -> &Hypothesis {
+        &self.problem.hypotheses[chosen.hypothesis]
+    }
+
+    fn alternative(&self, chosen: &Chosen, behind: f64) -> v::Alternative {
+        let h = self.hypothesis(chosen);
+        v::Alternative { effect: h.effect.clone(), family: h.family.clone(), places: spots(h), behind }
+    }
+
+    /// What an effect closes alone, and what opens again without it, of the gap within tolerances.
+    fn closing(&self, i: usize, held: &[Recording], tolerated: f64, full: f64) -> (v::Maybe, v::Maybe) {
+        let s = self.search;
+        if tolerated <= 0.0 {
+            return (None, None);
+        }
+        if s.accepted.len() == 1 {
+            let closes = Some(1.0 - full / tolerated);
+            return (closes, closes);
+        }
+        let without: Vec<Accepted> = (0..s.accepted.len()).filter(|k| *k != i).map(|k| s.accepted[k].clone()).collect();
+        let gap = |set: &[Accepted]| Some(self.gap(&fitted(self.problem, &s.base, set)?.0.setting, held).total);
+        let alone = gap(&s.accepted[i..=i]).map(|g| 1.0 - g / tolerated);
+        (alone, gap(&without).map(|g| (g - full) / tolerated))
+    }
+
+    fn estimates(&self, i: usize, h: &Hypothesis) -> BTreeMap<String, v::Estimate> {
+        let s = self.search;
+        let places = &s.last_model.attached[i];
+        let names =
+            h.coefficients.iter().map(|c| (&c.name, &c.unit)).chain(h.shapes.iter().map(|s| (&s.name, &s.unit)));
+        let estimate = |(&place, (name, unit)): (&usize, (&String, &String))| {
+            let prior = s.last.priors.iter().position(|p| p.parameter == place);
+            let std = prior.map_or(0.0, |k| s.last.deviation(k));
+            (name.clone(), v::Estimate { value: s.last.setting.theta[place], std, unit: unit.clone() })
+        };
+        places.iter().zip(names).map(estimate).collect()
+    }
+
+    fn drifts(&self) -> Vec<v::Drift> {
+        let fit = &self.search.last;
+        let drift = |(i, t): (usize, &Tolerance)| {
+            let value = fit.setting.theta[i];
+            v::Drift {
+                parameter: t.name.clone(),
+                nominal: t.nominal,
+                value,
+                std: fit.deviation(i),
+                tolerances: (value - t.nominal) / t.sigma,
+            }
+        };
+        self.problem.tolerances.iter().enumerate().map(drift).collect()
+    }
+}
+
+/// Noise in parts of the full scales, RMS over the signals.
+fn relative(noise: &[f64], full_scale: &[f64]) -> f64 {
+    let square: f64 = noise.iter().zip(full_scale).map(|(n, f)| (n / f).powi(2)).sum();
+    (square / noise.len().max(1) as f64).sqrt()
+}
+
+fn spots(h: &Hypothesis) -> Vec<v::Spot> {
+    h.places().into_iter().map(|p: &Place| v::Spot { place: p.place.clone(), node: p.node.clone() }).collect()
+}
