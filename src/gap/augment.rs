@@ -75,6 +75,7 @@ pub(super) fn written(circuit: &Circuit, attached: &[Attached<'_>], signals: &[S
         plant: Body::default(),
         around: Body::default(),
         taps: BTreeMap::new(),
+        drops: BTreeMap::new(),
         cut: BTreeSet::new(),
         classes: Vec::new(),
     }
@@ -133,6 +134,8 @@ struct Writer<'a> {
     around: Body,
     /// What is drawn from the nodes that have a tap.
     taps: BTreeMap<usize, Vec<String>>,
+    /// What falls at the ports that are cut off.
+    drops: BTreeMap<usize, Vec<String>>,
     /// Ports taken out of their nodes by Series elements.
     cut: BTreeSet<usize>,
     /// Connector classes that have a tap class, each with a port as example.
@@ -155,6 +158,7 @@ impl<'a> Writer<'a> {
         }
         self.inputs(attached);
         let signals = self.signals(attached, signals);
+        self.fall();
         self.draw();
         Augmented { text: self.text(), parameters, signals }
     }
@@ -216,32 +220,52 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Puts an effect between a port that was cut off and the rest of its node.
+    /// Puts an effect between a port that was cut off and the rest of its node; several lie one behind the other.
     fn series(&mut self, a: &Attached<'_>, i: usize, at: &Attachment, effect: &Effect, port: usize) {
         let (Some(through), Some(drop)) = (&effect.interface.through, &effect.interface.drop) else { return };
         let (instance, declaration) = Self::declaration(a, i, effect, &at.base);
-        let p = &self.circuit.ports[port];
-        let node = self.tap(port);
-        let class = self.tap_class(port) + 1;
-        let far = format!("{instance}_far");
-        let _ =
-            write!(self.plant.declarations, "{declaration}    GapTap_{class} {far};\n    Real {instance}_through;\n");
-        let (potential, f) = (&p.potential, factor(&p.potential.unit));
-        let share = scaled("/", factor(&p.through.unit));
-        let fall = scaled("/", f);
-        let _ = write!(
-            self.plant.equations,
-            "    connect({far}.port, {});\n    {instance}.{} = {instance}_through;\n    {far}.drawn = -{instance}_through{share};\n    \
-             {node}.port.{v} - {far}.port.{v} = {instance}.{}{fall};\n",
-            p.name,
-            through.name,
-            drop.name,
-            v = potential.name,
-        );
+        self.plant.declarations.push_str(&declaration);
+        self.open(port);
+        let _ = writeln!(self.plant.equations, "    {instance}.{} = {};", through.name, through_of(port));
         if let (Some((input, offset)), Some(name)) = (&at.temperature, &effect.interface.temperature) {
             let _ = writeln!(self.plant.equations, "    {instance}.{name} = {input} + {offset:e};");
         }
-        self.taps.get_mut(&p.node).expect("just made").push(format!("{instance}_through{share}"));
+        self.drops.get_mut(&port).expect("just made").push(format!("{instance}.{}", drop.name));
+    }
+
+    /// Leads what flows through a port that was cut off past the place of its series elements.
+    fn open(&mut self, port: usize) {
+        if self.drops.contains_key(&port) {
+            return;
+        }
+        self.drops.insert(port, Vec::new());
+        let p = &self.circuit.ports[port];
+        self.tap(port);
+        let class = self.tap_class(port) + 1;
+        let (far, through) = (far_of(port), through_of(port));
+        let share = scaled("/", factor(&p.through.unit));
+        let _ = write!(self.plant.declarations, "    GapTap_{class} {far};\n    Real {through};\n");
+        let _ = write!(
+            self.plant.equations,
+            "    connect({far}.port, {});\n    {far}.drawn = -{through}{share};\n",
+            p.name
+        );
+        self.taps.get_mut(&p.node).expect("just made").push(format!("{through}{share}"));
+    }
+
+    /// What falls where connections are cut.
+    fn fall(&mut self) {
+        for (port, drops) in std::mem::take(&mut self.drops) {
+            let v = &self.circuit.ports[port].potential;
+            let (node, far) = (self.tap(port), far_of(port));
+            let _ = writeln!(
+                self.plant.equations,
+                "    {node}.port.{v} - {far}.port.{v} = ({}){};",
+                drops.join(" + "),
+                scaled("/", factor(&v.unit)),
+                v = v.name,
+            );
+        }
     }
 
     /// Joins what remains of a node when ports are taken out of it.
@@ -435,6 +459,14 @@ fn scaled(operator: &str, factor: f64) -> String {
 }
 
 /// An input with its type, unit and start; an array as a whole.
+fn far_of(port: usize) -> String {
+    format!("gap_far_{}", port + 1)
+}
+
+fn through_of(port: usize) -> String {
+    format!("gap_through_{}", port + 1)
+}
+
 fn input_declaration(circuit: &Circuit, base: &str, input: &ModelInput) -> String {
     let ty = match input.ty {
         Type::Integer => "Integer",

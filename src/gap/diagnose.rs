@@ -17,7 +17,7 @@ use rayon::prelude::*;
 
 /// Effects that are looked for one after another, at most.
 const MOST_EFFECTS: usize = 4;
-/// Candidates of a screen that are refined.
+/// Candidates of a screen that are refined,
 const REFINED: usize = 5;
 /// Gain that a candidate must promise to be refined, nats.
 const PROMISING: f64 = 5.0;
@@ -25,8 +25,8 @@ const PROMISING: f64 = 5.0;
 const FAR: f64 = 0.1;
 /// Deviation of the share of such an effect from the whole.
 const WHOLE: f64 = 0.3;
-/// Candidates beyond those that are there or not.
-const BOUNDED: usize = 2;
+/// Candidates that are there or not.
+const BOUNDED: usize = 4;
 /// Shapes without a name that are refined beside; and what one must be ahead of the best effect, nats and as part of that
 /// effect's gain, before nothing that is known explains the gap: a form other than the library's is no other cause.
 const SHAPES: usize = 2;
@@ -402,10 +402,11 @@ fn promising(problem: &Problem<'_>, candidates: Vec<Candidate>) -> Vec<Candidate
         candidates.into_iter().partition(|c| problem.hypotheses[c.chosen.hypothesis].is_shape());
     let front = effects.first().map_or(0.0, |c| c.gain);
     let worth = |c: &Candidate| c.gain > PROMISING.max(FAR * front);
-    let (mut chosen, rest): (Vec<Candidate>, Vec<Candidate>) = effects.into_iter().partition(worth);
-    let late = chosen.split_off(chosen.len().min(REFINED));
-    let bounded = |c: &Candidate| bounded(&problem.hypotheses[c.chosen.hypothesis]) && c.gain > PROMISING;
-    chosen.extend(late.into_iter().chain(rest).filter(bounded).take(BOUNDED));
+    let (switched, mut chosen): (Vec<Candidate>, Vec<Candidate>) =
+        effects.into_iter().partition(|c| bounded(&problem.hypotheses[c.chosen.hypothesis]));
+    chosen.retain(worth);
+    chosen.truncate(REFINED);
+    chosen.extend(switched.into_iter().filter(|c| c.gain > PROMISING).take(BOUNDED));
     chosen.extend(shapes.into_iter().filter(|c| c.gain > front.max(PROMISING)).take(SHAPES));
     chosen
 }

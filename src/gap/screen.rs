@@ -2,14 +2,17 @@
 //! factorisation.
 
 use super::evidence;
+use super::filter;
 use super::fit::{self, Fit, Prior};
 use super::hypotheses::{Hypothesis, Site};
-use super::problem::{Chosen, Problem};
+use super::problem::{Assembled, Chosen, Problem};
 use nalgebra::DMatrix;
 use std::ops::Range;
 
 /// The background is tried as fitted, and reduced: what a hypothesis explains must be allowed to leave it.
 const BACKGROUNDS: [f64; 2] = [1.0, 0.1];
+/// Samples over which a joint model is tried.
+const BEGINNING: usize = 2;
 /// Typical sizes that a coefficient may have at most, as prior deviation.
 const LARGEST: f64 = 30.0;
 
@@ -59,13 +62,12 @@ pub fn screen(problem: &Problem<'_>, base: &Fit, accepted: &[Accepted]) -> Vec<C
         .flat_map(|h| variants(&problem.hypotheses[h], h))
         .collect();
     let before: Vec<Chosen> = accepted.iter().map(|a| a.chosen.clone()).collect();
-    let chosen = attachable(problem, &before, chosen);
-    let Some(full) = Joint::new(problem, base, accepted, &before, chosen.clone(), BACKGROUNDS[0]) else {
-        return Vec::new();
-    };
+    let Some((chosen, assembled)) = attachable(problem, &before, chosen) else { return Vec::new() };
+    let joint = |background: f64| Joint::new(problem, base, accepted, &assembled, &chosen, background);
+    let Some(full) = joint(BACKGROUNDS[0]) else { return Vec::new() };
     let mut found = full.weigh(&drifts, None);
     for background in &BACKGROUNDS[1..] {
-        let Some(reduced) = Joint::new(problem, base, accepted, &before, chosen.clone(), *background) else { continue };
+        let Some(reduced) = joint(*background) else { continue };
         for c in reduced.weigh(&drifts, Some(full.floor)) {
             match found.iter_mut().find(|f| f.chosen.hypothesis == c.chosen.hypothesis) {
                 Some(f) if f.gain < c.gain => *f = c,
@@ -92,20 +94,37 @@ fn variants(h: &Hypothesis, index: usize) -> Vec<Chosen> {
     h.variants().into_iter().map(one).collect()
 }
 
-/// Those that can be attached: where all together cannot, halves are tried.
-fn attachable(problem: &Problem<'_>, before: &[Chosen], chosen: Vec<Chosen>) -> Vec<Chosen> {
-    let all: Vec<Chosen> = before.iter().chain(&chosen).cloned().collect();
-    if chosen.is_empty() || problem.assembled(&all, &[], before.len()).is_ok() {
-        return chosen;
+/// Those that can be attached, and the model with them: where all together cannot, halves are tried.
+fn attachable(problem: &Problem<'_>, before: &[Chosen], chosen: Vec<Chosen>) -> Option<(Vec<Chosen>, Assembled)> {
+    let joined = |chosen: &[Chosen]| {
+        let all: Vec<Chosen> = before.iter().chain(chosen).cloned().collect();
+        let assembled = problem.assembled(&all, &problem.node_sources(), before.len()).ok()?;
+        begins(problem, &assembled).then_some(assembled)
+    };
+    if let Some(assembled) = joined(&chosen) {
+        return Some((chosen, assembled));
     }
+    let fine = fitting(&|chosen| joined(chosen).is_some(), chosen);
+    let assembled = joined(&fine)?;
+    Some((fine, assembled))
+}
+
+/// Those of which halves of halves can be attached.
+fn fitting(joins: &dyn Fn(&[Chosen]) -> bool, mut chosen: Vec<Chosen>) -> Vec<Chosen> {
     if chosen.len() == 1 {
         return Vec::new();
     }
-    let mut left = chosen;
-    let right = left.split_off(left.len() / 2);
-    let mut fine = attachable(problem, before, left);
-    fine.extend(attachable(problem, before, right));
+    let right = chosen.split_off(chosen.len() / 2);
+    let half = |half: Vec<Chosen>| if joins(&half) { half } else { fitting(joins, half) };
+    let mut fine = half(chosen);
+    fine.extend(half(right));
     fine
+}
+
+/// Whether a model has values and derivatives at its start: what is compiled may be singular at its off value.
+fn begins(problem: &Problem<'_>, assembled: &Assembled) -> bool {
+    let setting = assembled.setting(&[], &problem.noise_floor, Vec::new());
+    problem.train.first().is_some_and(|r| filter::run(&setting, r, 0, BEGINNING, false).is_ok())
 }
 
 /// The Gram matrices of the joint model.
@@ -126,12 +145,11 @@ impl<'a> Joint<'a> {
         problem: &'a Problem<'a>,
         base: &Fit,
         accepted: &[Accepted],
-        before: &[Chosen],
-        chosen: Vec<Chosen>,
+        assembled: &Assembled,
+        chosen: &[Chosen],
         background: f64,
     ) -> Option<Self> {
-        let all: Vec<Chosen> = before.iter().chain(&chosen).cloned().collect();
-        let mut assembled = problem.assembled(&all, &problem.node_sources(), before.len()).ok()?;
+        let mut assembled = assembled.clone();
         let mut common = fit::tolerance_priors(problem);
         for prior in &common {
             assembled.theta[prior.parameter] = base.setting.theta[prior.parameter];
@@ -144,11 +162,11 @@ impl<'a> Joint<'a> {
         }
         let mut columns: Vec<usize> = common.iter().map(|p| p.parameter).collect();
         let mut entries = Vec::new();
-        for (places, c) in assembled.attached[before.len()..].iter().zip(chosen) {
+        for (places, c) in assembled.attached[accepted.len()..].iter().zip(chosen) {
             let count = problem.hypotheses[c.hypothesis].coefficients.len();
             let first = columns.len();
             columns.extend(&places[..count.min(places.len())]);
-            entries.push(Entry { hypothesis: c.hypothesis, values: c.values, columns: first..columns.len() });
+            entries.push(Entry { hypothesis: c.hypothesis, values: c.values.clone(), columns: first..columns.len() });
         }
         let levels: Vec<f64> = base.setting.sources.iter().map(|s| s.level * background).collect();
         let mut setting = assembled.setting(&levels, &base.setting.noise, columns);
