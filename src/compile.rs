@@ -129,6 +129,7 @@ pub fn inspect<T>(
     let mut roots: Vec<(&dyn World, PathBuf)> = request.libraries.iter().map(|l| (world, l.clone())).collect();
     roots.extend(Shipped::roots().map(|r| (&shipped as &dyn World, r)));
     let mut library = Library::new(&trees, roots);
+    library.set_data_folder(world, data_folder(world, &request.source));
     let mut diagnostics = Vec::new();
     let value = find_model(world, &mut library, request)
         .map_err(|d| diagnostics.push(*d))
@@ -144,6 +145,12 @@ pub fn inspect<T>(
     once(&mut all);
     let failed = all.iter().any(Diagnostic::is_error);
     Outcome { sources: std::mem::take(&mut library.sources), diagnostics: all, value: value.filter(|_| !failed) }
+}
+
+/// Where relative names of data files begin: the folder of the model's file.
+fn data_folder(world: &dyn World, source: &Path) -> PathBuf {
+    let folder = if world.list(source).is_some() { Some(source) } else { source.parent() };
+    folder.unwrap_or(Path::new("")).to_path_buf()
 }
 
 fn flatten_class<T>(

@@ -14,7 +14,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("expr", &["diag", "syntax"]),
     ("units", &["diag", "expr", "flat"]),
     // Instances speak of variables with the types of the flat model.
-    ("instance", &["diag", "expr", "flat", "resolve", "syntax", "units"]),
+    ("instance", &["diag", "expr", "flat", "resolve", "results", "syntax", "units"]),
     ("network", &["diag", "flat", "instance", "syntax", "units"]),
     ("flat", &["diag", "expr", "instance", "network", "syntax", "units"]),
     ("structure", &["diag", "expr", "flat"]),

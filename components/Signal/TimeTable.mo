@@ -1,6 +1,7 @@
 within Signal;
 block TimeTable "Polygon over time, given by a matrix"
   extends Bases.Source;
+  extends Bases.Tabular;
   parameter Real table[:, 2] = [0, 0; 1, 1] "Time, value; two rows of equal time make a jump";
   parameter Real offset = 0 "Added to the values";
   parameter SI.Time startTime = 0 "Time of the table's zero";
@@ -9,14 +10,16 @@ protected
   discrete Real slope(start = 0, fixed = true) "Slope of the segment";
   discrete Real t_0(start = 0, fixed = true) "Begin of the segment, in the table's time";
   discrete Real t_next(start = -1e60, fixed = true) "Next corner, in the table's time";
+  final parameter Integer n[2] = if fileName == "" then {size(table, 1), size(table, 2)} else Functions.tableSize(fileName, tableName) "Rows, columns";
+  final parameter Real data[n[1], 2] = if fileName == "" then table else Functions.readTable(fileName, tableName, 0, n[1], 2) "The table in use";
 equation
-  assert(size(table, 1) > 1, "A table over time needs at least two rows");
-  for i in 2:size(table, 1) loop
-    assert(table[i, 1] >= table[i - 1, 1], "The times of the table must not decrease");
+  assert(size(data, 1) > 1, "A table over time needs at least two rows");
+  for i in 2:size(data, 1) loop
+    assert(data[i, 1] >= data[i - 1, 1], "The times of the table must not decrease");
   end for;
   when {initial(), time - startTime >= pre(t_next)} then
-    (y_0, slope, t_0, t_next) = Functions.segment(table, time - startTime);
+    (y_0, slope, t_0, t_next) = Functions.segment(data, time - startTime);
   end when;
   y = offset + y_0 + slope*(time - startTime - t_0);
-  annotation(Documentation(info = "<html><p>Linear between the corners, constant outside; every corner is an event, so that integrators pass it exactly.</p></html>"));
+  annotation(Documentation(info = "<html><p>Linear between the corners, constant outside; every corner is an event, so that integrators pass it exactly. A table may also come from a file, see <code>Functions.readTable</code>.</p></html>"));
 end TimeTable;

@@ -106,7 +106,13 @@ impl<'a> Instance<'a, '_> {
         let callee = Callee { scope, template, name };
         match callee.template.kind {
             ClassKind::Record { .. } => self.construct(&callee, positional, by_name, span),
-            ClassKind::Function { .. } => self.call_function(&callee, positional, by_name, span),
+            ClassKind::Function { .. } => match self.file_function(&callee) {
+                Some(function) => {
+                    let place = self.file_place(args.first(), view, span);
+                    self.call_file_function(function, &callee, positional, by_name, place)
+                }
+                None => self.call_function(&callee, positional, by_name, span),
+            },
             _ => {
                 let message = format!("`{}` is not a function", callee.name);
                 self.fail(Code::UnknownFunction, &message, span)

@@ -3,7 +3,7 @@
 //! [`instantiate`] builds the tree; [`Instance`] is also the place where expressions are evaluated, because names have
 //! a meaning only inside an instance. The files: [`template`] (what a class holds, inherited elements included),
 //! [`modifiers`] (which modifier reaches which element), [`lookup`] (names), [`build`] (components), [`value`] and
-//! [`evaluate`] (expressions), [`builtin`], [`call`] and [`algorithm`] (functions).
+//! [`evaluate`] (expressions), [`builtin`], [`call`] and [`algorithm`] (functions), `files` (tables from files).
 
 pub mod algorithm;
 pub mod build;
@@ -11,6 +11,7 @@ pub mod builtin;
 pub mod call;
 mod errors;
 pub mod evaluate;
+mod files;
 pub mod lookup;
 pub mod modifiers;
 mod procedure;
@@ -20,10 +21,11 @@ pub mod value;
 
 pub use build::{GIVEN, ModelRequest, Override, instantiate};
 
-use crate::diag::{Diagnostic, Span};
+use crate::diag::{Diagnostic, FileId, Span};
 use crate::expr::{ExprId, Exprs, VarId};
 use crate::flat::{StateSelect, Type, Variability};
 use crate::resolve::{ClassId, Library};
+use crate::results::table::Matrix;
 use crate::syntax::ast;
 use crate::syntax::symbol::Symbol;
 use modifiers::{Arg, Binding};
@@ -211,6 +213,8 @@ pub struct Instance<'a, 'l> {
     inner_declared: FxHashMap<(ScopeId, Symbol), NodeId>,
     outer_checked: FxHashMap<(NodeId, *const ast::Component), bool>,
     procedures: FxHashMap<String, (crate::expr::FunctionId, Vec<Val>)>,
+    /// Tables read from files, by file and name.
+    tables: FxHashMap<(FileId, String), Rc<Matrix>>,
     variabilities: Vec<Variability>,
     eval: evaluate::State,
 }

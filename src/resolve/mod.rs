@@ -40,6 +40,9 @@ pub struct Library<'a> {
     pub own: Vec<ClassId>,
     roots: Vec<Folder<'a>>,
     by_ast: FxHashMap<*const ast::Class, ClassId>,
+    /// Where files that models name are looked for.
+    data_folder: Option<Folder<'a>>,
+    data: FxHashMap<String, FileId>,
     /// All texts read so far.
     pub sources: Sources,
     /// What the parser and the search for files had to say.
@@ -56,6 +59,8 @@ impl<'a> Library<'a> {
             own: Vec::new(),
             roots: roots.into_iter().map(|(world, path)| Folder { world, path }).collect(),
             by_ast: FxHashMap::default(),
+            data_folder: None,
+            data: FxHashMap::default(),
             sources: Sources::default(),
             diagnostics: Vec::new(),
         }
@@ -252,6 +257,42 @@ impl<'a> Library<'a> {
         let tree = self.parse(&file.display().to_string(), &text);
         let class = tree.classes.iter().find(|c| c.name.name == name)?;
         Some(self.enter(class, parent))
+    }
+
+    /// Says where relative names of data files begin.
+    pub fn set_data_folder(&mut self, world: &'a dyn World, path: PathBuf) {
+        self.data_folder = Some(Folder { world, path });
+    }
+
+    /// A data file that a model names: `modelica://Package/...` below the folder of a package, an absolute path, or one
+    /// that begins at the data folder or where the command runs.
+    ///
+    /// # Errors
+    /// Why it cannot be read.
+    pub fn data(&mut self, name: &str) -> Result<FileId, String> {
+        if let Some(&file) = self.data.get(name) {
+            return Ok(file);
+        }
+        let (path, text) = self.read_data(name)?;
+        let file = self.sources.add(path.display().to_string(), text);
+        self.data.insert(name.to_owned(), file);
+        Ok(file)
+    }
+
+    fn read_data(&mut self, name: &str) -> Result<(PathBuf, String), String> {
+        if let Some(address) = name.strip_prefix("modelica://") {
+            let (package, rest) = address.split_once('/').unwrap_or((address, ""));
+            let id = self.find(package).ok_or_else(|| format!("there is no package `{package}`"))?;
+            let folder = self.entries[id.0 as usize].folder.clone();
+            let folder = folder.ok_or_else(|| format!("the package `{package}` has no folder"))?;
+            let path = folder.path.join(rest);
+            return folder.world.read(&path).map(|text| (path, text));
+        }
+        let Some(folder) = &self.data_folder else { return Err("there are no files here".to_owned()) };
+        let (beside, path) = (folder.path.join(name), PathBuf::from(name));
+        let found = folder.world.read(&beside).map(|text| (beside.clone(), text));
+        // The message speaks of the first place; a file that is there but unreadable must not be passed over in words.
+        found.or_else(|why| folder.world.read(&path).map(|text| (path, text)).map_err(|_| why))
     }
 
     /// A class by its full dotted name.

@@ -8,6 +8,7 @@ pub mod glob;
 pub mod mat;
 pub mod number;
 pub mod recording;
+pub mod table;
 pub mod trajectory;
 mod tube;
 

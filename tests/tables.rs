@@ -1,0 +1,76 @@
+//! Tables that models read from files: the same as tables written in the model, and mistakes told at their place.
+
+use bramah::diag::render::{Format, render};
+use bramah::world::MemoryWorld;
+use bramah::{Request, Simulation, compile};
+
+/// A model whose table comes from `course.csv` beside it.
+fn model(block: &str) -> String {
+    format!("model M\n  {block}\n  Real x = t.y;\nend M;\n")
+}
+
+/// What is said about a block that reads `data`.
+fn said(block: &str, data: &str) -> String {
+    let mut world = MemoryWorld::single("bench/M.mo", model(block));
+    world.add("bench/t.csv", data);
+    let request = Request { source: "bench/M.mo".into(), ..Request::default() };
+    let outcome = compile(&world, &request, &bramah::lower::Options { native: false });
+    render(&outcome.sources, &outcome.diagnostics, Format::Short, 200, false)
+}
+
+const CURVE: &str = "Signal.Table1D t(u = time, fileName = \"t.csv\");";
+const MAP: &str = "Signal.Table2D t(u1 = time, u2 = time, fileName = \"t.csv\");";
+const COURSE: &str = "Signal.TimeTable t(fileName = \"t.csv\");";
+
+#[test]
+fn mistakes_are_told_at_their_place() {
+    let all = [
+        said(CURVE, "x,y\n0,0\n1,2\n1,3\n"),
+        said(CURVE, "x,y\n0,0\n1,two\n"),
+        said(CURVE, "x,y\n0,0\n1\n"),
+        said(CURVE, "x,y\n"),
+        said(CURVE, "x,y,z\n0,0,0\n1,1,1\n"),
+        said(MAP, "0,1,2\n0,1,2\n0,1,2\n"),
+        said(MAP, "0,2,1\n0,1,2\n1,1,2\n"),
+        said(MAP, "0,1\n1,2\n"),
+        said(COURSE, "0,1\n1,1\n0.5,2\n"),
+        said(COURSE, "#1\ndouble other(2, 2)\n0 1\n1 1\n"),
+        said("Signal.Table1D t(u = time, fileName = \"t.csv\", tableName = \"a\");", "#1\ndouble b(2, 2)\n0 1\n1 1\n"),
+        said("Signal.Table1D t(u = time, fileName = \"none.csv\");", ""),
+        said("Signal.Table1D t(u = time, fileName = \"modelica://Signal/none.csv\");", ""),
+        said("Signal.Table1D t(u = time, fileName = \"modelica://Nowhere/t.csv\");", ""),
+    ];
+    insta::assert_snapshot!(all.join(""));
+}
+
+/// The last value of `x` of a block.
+fn last(block: &str, data: &str, name: &str) -> f64 {
+    let mut world = MemoryWorld::single("M.mo", model(block));
+    world.add(name, data);
+    let request = Request { source: "M.mo".into(), ..Request::default() };
+    let run = Simulation::compile(&world, &request).and_then(|s| s.run()).unwrap_or_else(|e| panic!("{e}"));
+    *run.trajectory.column("x").and_then(|x| x.last()).expect("a row")
+}
+
+#[test]
+fn tables_are_the_same_from_files() {
+    let listing = "#1\n# of the bench\ndouble a(2, 2)\n0 0\n1 1\nfloat b(3, 2) # another\n0, 0\n1, 4\n2, 5\n";
+    let b = "fileName = \"t.txt\", tableName = \"b\"";
+    let written = "table = [0, 0; 1, 4; 2, 5]";
+    for (block, more) in
+        [("Table1D", ""), ("Table1D", ", hold = false"), ("AkimaTable", ""), ("AkimaTable", ", hold = true")]
+    {
+        for u in ["0.3*time", "2.5*time", "-time"] {
+            let from = |what: &str| last(&format!("Signal.{block} t(u = {u}, {what}{more});"), listing, "t.txt");
+            assert_eq!(from(b), from(written), "{block} {more} {u}");
+        }
+    }
+    let jump = "time;value\r\n0;0,5\r\n0,5;0,5\r\n0,5;2\r\n2;2\r\n";
+    assert_eq!(last("Signal.TimeTable t(fileName = \"t.csv\");", jump, "t.csv"), 2.0);
+    let map = "n\\p\t0\t1\n0\t0\t1\n2\t4\t5\n";
+    let at = |u: &str, v: &str, more: &str| {
+        last(&format!("Signal.Table2D t(u1 = {u}*time, u2 = {v}*time, fileName = \"t.csv\"{more});"), map, "t.csv")
+    };
+    assert_eq!(at("1", "0.5", ""), 2.5);
+    assert_eq!((at("3", "2", ""), at("3", "2", ", hold = false")), (5.0, 8.0));
+}
