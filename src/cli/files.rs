@@ -1,7 +1,7 @@
 //! Files written whole or not at all under their final name.
 
 use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 
 use super::Failure;
@@ -41,6 +41,8 @@ pub(super) struct NewFile {
     temporary: PathBuf,
     path: PathBuf,
     direct: bool,
+    /// Stays under its temporary name when it is left unfinished.
+    lasting: bool,
 }
 
 impl NewFile {
@@ -56,7 +58,34 @@ impl NewFile {
         let direct = path.exists() && !path.is_file();
         let temporary = if direct { path.to_owned() } else { beside(path) };
         let file = File::create(&temporary).map_err(|e| unwritable(path, &e))?;
-        Ok(NewFile { out: Some(BufWriter::with_capacity(1 << 16, file)), temporary, path: path.to_owned(), direct })
+        Ok(NewFile {
+            out: Some(BufWriter::with_capacity(1 << 16, file)),
+            temporary,
+            path: path.to_owned(),
+            direct,
+            lasting: false,
+        })
+    }
+
+    /// Begins to write, or goes on behind `written` bytes, under a name that lasts: `NAME.part`.
+    pub fn lasting(path: &Path, written: Option<u64>) -> Result<Self, Failure> {
+        if path.exists() && !path.is_file() {
+            let text = format!("`{}` cannot be written in parts: it is no plain file", path.display());
+            return Err(Failure::new(Code::FileAccess, text));
+        }
+        let temporary = part(path);
+        let file = match written {
+            None => File::create(&temporary).map_err(|e| unwritable(path, &e))?,
+            Some(bytes) => cut(&temporary, bytes)?,
+        };
+        let out = Some(BufWriter::with_capacity(1 << 16, file));
+        Ok(NewFile { out, temporary, path: path.to_owned(), direct: false, lasting: true })
+    }
+
+    /// Waits until the disk has everything that was handed to the system.
+    pub fn sync(&self) -> Result<(), Failure> {
+        let synced = self.out.as_ref().map_or(Ok(()), |out| out.get_ref().sync_data());
+        synced.map_err(|e| access(&self.temporary, "written", &e))
     }
 
     /// Everything is written: the file gets its name.
@@ -80,9 +109,7 @@ impl NewFile {
     /// Leaves what has been written as `NAME.part`, for someone who wants to rescue it.
     pub fn keep_part(mut self) -> Option<PathBuf> {
         drop(self.out.take());
-        let mut name = self.path.clone().into_os_string();
-        name.push(".part");
-        let kept = PathBuf::from(name);
+        let kept = part(&self.path);
         (!self.direct && std::fs::rename(&self.temporary, &kept).is_ok()).then_some(kept)
     }
 }
@@ -100,11 +127,32 @@ impl Write for NewFile {
 impl Drop for NewFile {
     fn drop(&mut self) {
         drop(self.out.take());
-        if !self.direct {
+        if !self.direct && !self.lasting {
             // After `finish` there is nothing to remove.
             let _ = std::fs::remove_file(&self.temporary);
         }
     }
+}
+
+/// Opens a file behind its first bytes; what follows them is lost.
+fn cut(path: &Path, bytes: u64) -> Result<File, Failure> {
+    let failed = |e: io::Error| access(path, "written", &e);
+    let mut file = File::options().write(true).open(path).map_err(|e| access(path, "continued", &e))?;
+    let length = file.metadata().map_err(failed)?.len();
+    if length < bytes {
+        let text = format!("`{}` cannot be continued: it is shorter than its checkpoint says", path.display());
+        return Err(Failure::new(Code::FileAccess, text));
+    }
+    file.set_len(bytes).map_err(failed)?;
+    file.seek(io::SeekFrom::End(0)).map_err(failed)?;
+    Ok(file)
+}
+
+/// `out.csv` grows as `out.csv.part` until it is whole.
+fn part(path: &Path) -> PathBuf {
+    let mut name = path.to_owned().into_os_string();
+    name.push(".part");
+    PathBuf::from(name)
 }
 
 /// `out.csv` becomes `.out.csv.1234.part`, in the same folder so that renaming is one step.

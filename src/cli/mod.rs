@@ -6,6 +6,7 @@
 #![allow(clippy::disallowed_methods, clippy::print_stderr, reason = "the one place that may")]
 
 mod check;
+mod checkpoint;
 mod columns;
 mod compare;
 mod completions;

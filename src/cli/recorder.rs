@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use super::Failure;
+use super::checkpoint::Written;
 use super::files::{NewFile, access, print};
 use crate::diag::{Code, Diagnostic};
 use crate::results::{CsvWriter, Signal, Trajectory, csv_bytes_per_row, mat};
@@ -74,24 +75,45 @@ impl Recorder {
             Target::Csv(path) | Target::Mat(path) => Some(NewFile::create(path)?),
             Target::Stdout => None,
         };
-        let rows = Trajectory::new(signals);
+        Ok(Self::on(target, file, signals, keep, None))
+    }
+
+    /// Rows into a CSV file that survives a run that is killed; behind those of a checkpoint, if there is one.
+    pub fn lasting(target: Target, signals: Vec<Signal>, written: Option<&Written>) -> Result<Self, Failure> {
+        let Target::Csv(path) = &target else {
+            let text = format!("a run with checkpoints writes a CSV file, and the result is `{}`", target.name());
+            return Err(Diagnostic::new(Code::BadArgument, text)
+                .help("name one with `-o`; `bramah plot` draws it afterwards")
+                .into());
+        };
+        let file = NewFile::lasting(path, written.map(|w| w.bytes))?;
+        Ok(Self::on(target, Some(file), signals, false, written))
+    }
+
+    fn on(
+        target: Target,
+        file: Option<NewFile>,
+        signals: Vec<Signal>,
+        keep: bool,
+        written: Option<&Written>,
+    ) -> Recorder {
         let mut recorder = Recorder {
             target,
             csv: None,
             file,
             waiting: Vec::new(),
-            rows,
+            rows: Trajectory::new(signals),
             keep,
             failure: None,
-            count: 0,
+            count: written.map_or(0, |w| w.rows),
             unread: false,
             writing: Duration::ZERO,
         };
-        recorder.open_csv();
-        Ok(recorder)
+        recorder.open_csv(written.map(|w| w.bytes));
+        recorder
     }
 
-    fn open_csv(&mut self) {
+    fn open_csv(&mut self, written: Option<u64>) {
         let out: Box<dyn Write> = match (&self.target, &self.file) {
             (Target::Csv(_), Some(file)) => match file.handle() {
                 Ok(handle) => Box::new(handle),
@@ -100,7 +122,11 @@ impl Recorder {
             (Target::Stdout, _) => Box::new(std::io::BufWriter::new(std::io::stdout())),
             _ => return,
         };
-        match CsvWriter::new(out, &self.rows.signals) {
+        let writer = match written {
+            Some(bytes) => Ok(CsvWriter::resume(out, &self.rows.signals, bytes)),
+            None => CsvWriter::new(out, &self.rows.signals),
+        };
+        match writer {
             Ok(csv) => self.csv = Some(csv),
             Err(error) => self.fail(&error),
         }
@@ -152,6 +178,34 @@ impl Recorder {
         }
         self.waiting.clear();
         self.writing += clock.elapsed();
+    }
+
+    /// Puts all rows on the disk and says how far they reach; `None` after a failure.
+    pub fn mark(&mut self) -> Option<Written> {
+        self.flush();
+        let bytes = match self.csv.as_mut().map(CsvWriter::flush) {
+            Some(Ok(bytes)) => bytes,
+            Some(Err(error)) => {
+                self.fail(&error);
+                return None;
+            }
+            None => return None,
+        };
+        if let Some(Err(failure)) = self.file.as_ref().map(NewFile::sync) {
+            self.failure = Some(failure);
+            return None;
+        }
+        Some(Written { file: self.target.name(), bytes, rows: self.count })
+    }
+
+    /// Notes why no checkpoint could be written.
+    pub fn failed(&mut self, failure: Failure) {
+        self.failure = Some(failure);
+    }
+
+    /// Ends without giving the file its name: what it holds up to the last mark is for another run.
+    pub fn suspend(mut self) -> Result<(), Failure> {
+        self.failure.take().map_or(Ok(()), Err)
     }
 
     /// How many rows have come.

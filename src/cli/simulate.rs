@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 
+use super::checkpoint::{Keeper, Marks, usual_distance};
 use super::inputs::{Recorded, check_cover, prepare};
 use super::messages::Messages;
 use super::progress::Bar;
@@ -15,12 +16,12 @@ use super::request::{ModelArgs, RunArgs};
 use super::statistics::{Record, peak_memory};
 use super::{Ending, Failure, columns, interrupt, model, plot};
 use crate::compile::Model;
-use crate::diag::{Code, Diagnostic};
-use crate::experiment::Experiment;
+use crate::diag::{Code, Diagnostic, Sources};
+use crate::experiment::{Experiment, duration};
 use crate::flat;
 use crate::plot::select::{Choice, Run as Drawn, figure};
-use crate::results::{Trajectory, number};
-use crate::solve::{Control, End, Progress, Run, Settings, Sink, signals, simulate};
+use crate::results::{Signal, Trajectory, number};
+use crate::solve::{Checkpoint, Control, End, Progress, Run, Settings, Sink, resume, signals, simulate};
 use crate::structure::StateChoice;
 
 /// Run a circuit
@@ -31,6 +32,7 @@ Examples:
   bramah simulate Press.mo --set relief.p_set='180 bar' --set N=20 --variables 'cyl.*,line.p'
   bramah simulate press.toml --stop-time 5          an experiment file; flags go before what stands in it
   bramah simulate ServoPump.DeadZone --plot dead.png          a model that ships with bramah
+  bramah simulate Line.mo --stop-time 1000 --checkpoint line.checkpoint       may be killed and repeated
   bramah simulate Axis.mo --input bench.csv --time-column t_s --map 'F=tau_N[N],u=u_V:linear'
 
 Exit status: 0 the run reached its end; 1 the model is wrong or the run stopped early (what it had is written);
@@ -40,12 +42,20 @@ pub(super) struct SimulateArgs {
     model: ModelArgs,
     #[command(flatten)]
     run: RunArgs,
+    /// Keep the last checkpoint here, and go on from it if the file is there; removed when the run is over.
+    /// The integrator begins afresh at each checkpoint, so that a run that was killed and taken up again gives the
+    /// same result, to the last bit, as one that was not
+    #[arg(long, value_name = "FILE")]
+    checkpoint: Option<String>,
+    /// Simulated time between two checkpoints [default: a twentieth of the run]
+    #[arg(long, value_name = "TIME", value_parser = duration, requires = "checkpoint", allow_hyphen_values = true)]
+    checkpoint_every: Option<f64>,
 }
 
 pub(super) fn run(args: &SimulateArgs, messages: &mut Messages) -> Result<Ending, Failure> {
     let experiment = args.model.experiment(Some(&args.run), messages)?;
     let mut record = Record::default();
-    let work = AssertUnwindSafe(|| execute(&experiment, &mut record, messages));
+    let work = AssertUnwindSafe(|| execute(args, &experiment, &mut record, messages));
     let outcome = catch_unwind(work);
     record.peak_memory_bytes = peak_memory();
     let written = match &experiment.statistics {
@@ -56,12 +66,18 @@ pub(super) fn run(args: &SimulateArgs, messages: &mut Messages) -> Result<Ending
     outcome.unwrap_or_else(|bug| resume_unwind(bug)).and_then(|ending| written.map(|()| ending))
 }
 
-fn execute(experiment: &Experiment, record: &mut Record, messages: &mut Messages) -> Result<Ending, Failure> {
+fn execute(
+    args: &SimulateArgs,
+    experiment: &Experiment,
+    record: &mut Record,
+    messages: &mut Messages,
+) -> Result<Ending, Failure> {
     let begun = Instant::now();
     let compiled = model::compile(experiment, messages);
     record.compile_s = Some(begun.elapsed().as_secs_f64());
     let model = compiled?;
     let dae = &model.dae;
+    let sources = if args.checkpoint.is_some() { messages.sources.clone() } else { Sources::default() };
     let recorded = prepare(experiment, dae, messages)?;
     let mut settings = settings(experiment, &dae.experiment, &recorded)?;
     let target = Target::new(&output_name(experiment, &dae.class))?;
@@ -71,9 +87,26 @@ fn execute(experiment: &Experiment, record: &mut Record, messages: &mut Messages
     if let Some(note) = announcement(&signals, intervals.max(1.0), &target) {
         messages.say(&[note]);
     }
-    let recorder = Recorder::new(target.clone(), signals, experiment.plot.is_some())?;
-    let (run, recorder) = solve(&model, &settings, &recorded, recorder);
+    let kept = match &args.checkpoint {
+        Some(path) => {
+            settings.checkpoint_every = args.checkpoint_every.unwrap_or_else(|| usual_distance(&settings));
+            Some(Keeper::new(path, Marks::new(&dae.class, &sources, &settings, &recorded.inputs)))
+        }
+        None => None,
+    };
+    let (rows, from) = Rows::open(kept, &target, signals, experiment.plot.is_some())?;
+    if let Some(from) = &from {
+        messages.remark(&format!("going on from {} s", number::text(from.state.time)));
+    }
+    let (run, rows) = solve(&model, &settings, &recorded, from.as_ref(), rows);
     fill(record, &run);
+    let recorder = match rows.close(&run) {
+        Closed::Over(recorder) => *recorder,
+        Closed::Suspended(left, name) => {
+            left?;
+            return Ok(suspended(&run, &name, messages));
+        }
+    };
     if recorder.is_unread() {
         return Ok(Ending::Fine);
     }
@@ -116,31 +149,117 @@ fn output_name(experiment: &Experiment, class: &str) -> String {
 }
 
 /// Takes rows and says when it makes no sense to go on.
-struct Rows(Recorder);
+struct Rows {
+    recorder: Recorder,
+    /// With checkpoints: where they are kept, and whether there is one.
+    kept: Option<(Keeper, bool)>,
+}
 
-impl Sink for Rows {
-    fn row(&mut self, time: f64, values: &[f64]) -> ControlFlow<()> {
-        if self.0.row(time, values) { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+/// What became of the rows of a run.
+enum Closed {
+    /// The run is over.
+    Over(Box<Recorder>),
+    /// It was interrupted and can go on from the file of this name.
+    Suspended(Result<(), Failure>, String),
+}
+
+impl Rows {
+    /// The rows of a run, and the checkpoint it goes on from.
+    fn open(
+        kept: Option<Keeper>,
+        target: &Target,
+        signals: Vec<Signal>,
+        plot: bool,
+    ) -> Result<(Self, Option<Checkpoint>), Failure> {
+        let Some(keeper) = kept else {
+            let recorder = Recorder::new(target.clone(), signals, plot)?;
+            return Ok((Rows { recorder, kept: None }, None));
+        };
+        if plot {
+            let diagnostic = Diagnostic::new(Code::BadArgument, "a run with checkpoints cannot be drawn at once");
+            return Err(diagnostic.help("draw its result with `bramah plot` afterwards").into());
+        }
+        let (from, written) = keeper.load(target)?.unzip();
+        let recorder = Recorder::lasting(target.clone(), signals, written.as_ref())?;
+        Ok((Rows { recorder, kept: Some((keeper, from.is_some())) }, from))
     }
 
-    fn writing(&self) -> Duration {
-        self.0.writing()
+    /// Ends the writing; removes checkpoints that are of no use any more.
+    fn close(self, run: &Run) -> Closed {
+        let Rows { mut recorder, kept } = self;
+        match kept {
+            Some((keeper, true)) if run.end == End::Interrupted => {
+                let name = keeper.name();
+                Closed::Suspended(recorder.suspend(), name)
+            }
+            Some((keeper, _)) => {
+                if let Err(failure) = keeper.remove() {
+                    recorder.failed(failure);
+                }
+                Closed::Over(Box::new(recorder))
+            }
+            None => Closed::Over(Box::new(recorder)),
+        }
     }
 }
 
-fn solve(model: &Model, settings: &Settings, recorded: &Recorded, recorder: Recorder) -> (Run, Recorder) {
+impl Sink for Rows {
+    fn row(&mut self, time: f64, values: &[f64]) -> ControlFlow<()> {
+        if self.recorder.row(time, values) { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    }
+
+    fn checkpoint(&mut self, at: &Checkpoint) -> ControlFlow<()> {
+        let Some((keeper, exists)) = &mut self.kept else { return ControlFlow::Continue(()) };
+        let Some(written) = self.recorder.mark() else { return ControlFlow::Break(()) };
+        match keeper.save(at, &written) {
+            Ok(()) => {
+                *exists = true;
+                ControlFlow::Continue(())
+            }
+            Err(failure) => {
+                self.recorder.failed(failure);
+                ControlFlow::Break(())
+            }
+        }
+    }
+
+    fn writing(&self) -> Duration {
+        self.recorder.writing()
+    }
+}
+
+fn solve(
+    model: &Model,
+    settings: &Settings,
+    recorded: &Recorded,
+    from: Option<&Checkpoint>,
+    mut rows: Rows,
+) -> (Run, Rows) {
     let bar = Bar::new(settings.start_time, settings.stop_time);
     let mut show = |progress: &Progress| {
         bar.show(progress.time, None, progress.events);
         true
     };
-    let mut rows = Rows(recorder);
     let mut reselect = |choice: &StateChoice| model.with_states(choice);
     let mut control =
         Control { interrupt: Some(interrupt::flag()), progress: Some(&mut show), reselect: Some(&mut reselect) };
-    let run = simulate(&model.system, settings, &recorded.inputs, None, &mut rows, &mut control);
+    let (system, inputs) = (&model.system, &recorded.inputs);
+    let run = match from {
+        Some(from) => resume(system, settings, inputs, from, &mut rows, &mut control),
+        None => simulate(system, settings, inputs, None, &mut rows, &mut control),
+    };
     bar.clear();
-    (run, rows.0)
+    (run, rows)
+}
+
+/// Says how an interrupted run goes on.
+fn suspended(run: &Run, checkpoint: &str, messages: &mut Messages) -> Ending {
+    let mut diagnostics = run.diagnostics.clone();
+    if let Some(error) = diagnostics.iter_mut().find(|d| d.is_error()) {
+        error.help.push(format!("the same command goes on from the last checkpoint in `{checkpoint}`"));
+    }
+    messages.say(&diagnostics);
+    Ending::Wrong
 }
 
 fn fill(record: &mut Record, run: &Run) {

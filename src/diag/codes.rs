@@ -114,6 +114,7 @@ codes! {
     LargeResult = "N603", Note, "the result will be large";
     BadStudy = "E604", Error, "a study cannot be used";
     StuckSignal = "W605", Warning, "a measured signal never changes";
+    BadCheckpoint = "E606", Error, "a run cannot go on from a checkpoint";
     // 9xx command line
     BadArgument = "E901", Error, "an argument cannot be used";
     FileAccess = "E902", Error, "a file cannot be read or written";

@@ -35,6 +35,21 @@ impl<W: Write> CsvWriter<W> {
         Ok(writer)
     }
 
+    /// Goes on behind `bytes` that an earlier writer of the same signals has written.
+    pub fn resume(out: W, signals: &[Signal], bytes: u64) -> Self {
+        let kinds = signals.iter().map(|s| s.kind.clone()).collect();
+        CsvWriter { out, kinds, line: String::new(), bytes }
+    }
+
+    /// Hands everything to the system and returns how many bytes were written so far.
+    ///
+    /// # Errors
+    /// What `out` reports.
+    pub fn flush(&mut self) -> io::Result<u64> {
+        self.out.flush()?;
+        Ok(self.bytes)
+    }
+
     /// Writes one row; `values` are in the order of the signals.
     ///
     /// # Errors

@@ -64,19 +64,19 @@ pub enum From<'a> {
     Switch(&'a State, Grid),
 }
 
-/// A request for other states.
+/// Why a run stands before its end, and how it goes on.
 pub struct Switch {
-    /// What to prefer.
-    pub choice: StateChoice,
+    /// The states to go on with; `None` at a checkpoint.
+    pub choice: Option<StateChoice>,
     /// The rows that are out.
     pub grid: Grid,
 }
 
-/// A run, or the part of it up to a change of states.
+/// A run, or the part of it up to a checkpoint or a change of states.
 pub struct Leg {
     /// What it came to.
     pub run: Run,
-    /// Set when the run is to go on with other states.
+    /// Set when the run is to go on.
     pub switch: Option<Switch>,
 }
 
@@ -132,18 +132,20 @@ pub struct Driver<'a, 'c> {
     diagnostics: Vec<Diagnostic>,
 }
 
-/// Runs a system from its initial values, or from a saved state.
+/// Runs a system from its initial values, or from a saved state, until a time at most.
 pub fn run<'a>(
     system: &'a System,
     settings: &'a Settings,
     inputs: &[Input],
     from: Option<From<'_>>,
+    until: f64,
     sink: &'a mut dyn Sink,
     control: &'a mut Control<'_>,
 ) -> Leg {
     let clock = now();
     let resumed = from.is_some();
-    let (driver, model, solved) = prepare(system, settings, inputs, from, Some(sink), Some(control));
+    let (mut driver, model, solved) = prepare(system, settings, inputs, from, Some(sink), Some(control));
+    driver.until = until;
     driver.complete(model, solved, resumed, clock)
 }
 
@@ -194,6 +196,7 @@ fn prepare<'a, 'c>(
     let solved = match from {
         Some(state) => {
             state.restore(system, &mut values);
+            system.parameters_changed(&mut values);
             playback.seek(start, &mut values);
             modes.after = true;
             Ok(())
@@ -262,6 +265,7 @@ impl<'a> Driver<'a, '_> {
     }
 
     fn finish(mut self, end: Flow, values: &[f64]) -> Leg {
+        let stands = end.is_ok() && (self.choice.is_some() || self.pauses());
         let end = match end {
             Ok(()) => End::Reached,
             Err(stop) => {
@@ -277,8 +281,12 @@ impl<'a> Driver<'a, '_> {
             statistics: self.statistics,
             state: State::save(self.system, self.t, values),
         };
-        let grid = self.grid;
-        Leg { run, switch: self.choice.map(|choice| Switch { choice, grid }) }
+        Leg { run, switch: stands.then_some(Switch { choice: self.choice, grid: self.grid }) }
+    }
+
+    /// Whether the run goes on behind where this leg ends.
+    fn pauses(&self) -> bool {
+        self.until < self.settings.stop_time
     }
 
     /// Brings the statistics up to date.

@@ -4,6 +4,7 @@
 
 mod algebraic;
 mod blocks;
+mod checkpoint;
 pub(crate) mod driver;
 mod events;
 pub mod ida;
@@ -23,6 +24,7 @@ mod selection;
 mod settings;
 mod state;
 
+pub use checkpoint::Checkpoint;
 pub use inputs::{Input, Interpolation};
 pub use output::{Sink, signals};
 pub use point::Point;
@@ -72,7 +74,8 @@ pub struct Run {
 
 /// Runs a system: from its initial values, or from a saved state (then `settings.start_time` is not used).
 ///
-/// Where the chosen states become singular and `control.reselect` is given, the run goes on with others.
+/// Where the chosen states become singular and `control.reselect` is given, the run goes on with others. With
+/// `settings.checkpoint_every`, the integrator begins afresh at each checkpoint, and the sink gets it.
 pub fn simulate(
     system: &System,
     settings: &Settings,
@@ -81,28 +84,109 @@ pub fn simulate(
     sink: &mut dyn Sink,
     control: &mut Control<'_>,
 ) -> Run {
-    let mut leg = driver::run(system, settings, inputs, from.map(driver::From::State), sink, control);
-    let mut known: Vec<(StateChoice, Arc<System>)> = Vec::new();
-    let mut present: Option<Arc<System>> = None;
-    while let Some(switch) = leg.switch.take() {
-        let found = known.iter().find(|(choice, _)| *choice == switch.choice).map(|(_, system)| system.clone());
+    let first = settings.checkpoint(1);
+    let leg = driver::run(system, settings, inputs, from.map(driver::From::State), first, sink, control);
+    let course = Course { system, settings, inputs, states: States::default(), number: 0 };
+    course.complete(leg, sink, control)
+}
+
+/// Goes on from a checkpoint of a run of the same system with the same settings and inputs. The rows are, bit for bit,
+/// those that the whole run brings after the checkpoint.
+pub fn resume(
+    system: &System,
+    settings: &Settings,
+    inputs: &[Input],
+    from: &Checkpoint,
+    sink: &mut dyn Sink,
+    control: &mut Control<'_>,
+) -> Run {
+    let mut course = Course { system, settings, inputs, states: States::default(), number: from.number };
+    if from.settled {
+        control.reselect = None;
+    }
+    if let Some(choice) = &from.choice {
+        course.states.choose(choice, control);
+    }
+    let grid = output::Grid::after(settings.start_time, settings.stop_time, settings.interval, from.rows);
+    let mut leg = course.leg(driver::From::Switch(&from.state, grid), sink, control);
+    leg.run.statistics.add(&from.statistics);
+    course.complete(leg, sink, control)
+}
+
+/// The states chosen so far, with the systems made for them.
+#[derive(Default)]
+struct States {
+    known: Vec<(StateChoice, Arc<System>)>,
+    present: Option<(StateChoice, Arc<System>)>,
+}
+
+impl States {
+    /// Goes on with other states if there are any, else with these as long as it lasts.
+    fn choose(&mut self, choice: &StateChoice, control: &mut Control<'_>) {
+        let found = self.known.iter().find(|(known, _)| known == choice).map(|(_, system)| system.clone());
         let found = found.or_else(|| {
-            let made = control.reselect.as_mut().and_then(|analyze| analyze(&switch.choice))?;
-            known.push((switch.choice.clone(), made.clone()));
+            let made = control.reselect.as_mut().and_then(|analyze| analyze(choice))?;
+            self.known.push((choice.clone(), made.clone()));
             Some(made)
         });
         match found {
-            Some(next) => present = Some(next),
-            // no other states: go on with these as long as it lasts
+            Some(next) => self.present = Some((choice.clone(), next)),
             None => control.reselect = None,
         }
-        let before = leg.run;
-        let from = driver::From::Switch(&before.state, switch.grid);
-        leg = driver::run(present.as_deref().unwrap_or(system), settings, inputs, Some(from), sink, control);
-        leg.run.statistics.add(&before.statistics);
-        leg.run.diagnostics.splice(0..0, before.diagnostics);
     }
-    leg.run
+}
+
+/// A run in parts: each ends at a checkpoint, or where other states are needed.
+struct Course<'a> {
+    system: &'a System,
+    settings: &'a Settings,
+    inputs: &'a [Input],
+    states: States,
+    /// Checkpoints made.
+    number: u64,
+}
+
+impl Course<'_> {
+    fn leg(&self, from: driver::From<'_>, sink: &mut dyn Sink, control: &mut Control<'_>) -> driver::Leg {
+        let system = self.states.present.as_ref().map_or(self.system, |(_, system)| system);
+        let until = self.settings.checkpoint(self.number + 1);
+        driver::run(system, self.settings, self.inputs, Some(from), until, sink, control)
+    }
+
+    /// From the end of the first part to the end of the run.
+    fn complete(mut self, mut leg: driver::Leg, sink: &mut dyn Sink, control: &mut Control<'_>) -> Run {
+        while let Some(switch) = leg.switch.take() {
+            match &switch.choice {
+                Some(choice) => self.states.choose(choice, control),
+                None => {
+                    self.number += 1;
+                    let at = self.checkpoint(&leg.run, &switch.grid, control);
+                    if sink.checkpoint(&at).is_break() {
+                        return Run { end: End::Interrupted, ..leg.run };
+                    }
+                }
+            }
+            let before = leg.run;
+            leg = self.leg(driver::From::Switch(&before.state, switch.grid), sink, control);
+            leg.run.statistics.add(&before.statistics);
+            // a warning is said once
+            let said = |d: &Diagnostic| before.diagnostics.iter().any(|b| b.code == d.code && b.labels == d.labels);
+            leg.run.diagnostics.retain(|d| d.is_error() || !said(d));
+            leg.run.diagnostics.splice(0..0, before.diagnostics);
+        }
+        leg.run
+    }
+
+    fn checkpoint(&self, run: &Run, grid: &output::Grid, control: &Control<'_>) -> Checkpoint {
+        Checkpoint {
+            state: run.state.clone(),
+            number: self.number,
+            statistics: run.statistics,
+            rows: grid.rows(),
+            choice: self.states.present.as_ref().map(|(choice, _)| choice.clone()),
+            settled: control.reselect.is_none(),
+        }
+    }
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! Where rows go, and the grid of output times.
 
+use super::checkpoint::Checkpoint;
 use super::modes::same_time;
 use crate::expr::VarId;
 use crate::flat::Type;
@@ -12,6 +13,11 @@ use std::time::Duration;
 pub trait Sink {
     /// A row; the values are in the order of `Settings::wanted`. `Break` ends the run as interrupted.
     fn row(&mut self, time: f64, values: &[f64]) -> ControlFlow<()>;
+
+    /// A point from which the run can be taken up; all rows before it have come. `Break` ends the run as interrupted.
+    fn checkpoint(&mut self, _at: &Checkpoint) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
 
     /// How long it has been writing to a slow place, for statistics: only the sink knows when it does, and a clock
     /// around every row would cost as much as the row.
@@ -92,6 +98,16 @@ impl Grid {
     pub fn new(start: f64, stop: f64, interval: f64) -> Self {
         let interval = if interval > 0.0 { interval } else { f64::INFINITY };
         Grid { start, stop, interval, decimal: Decimal::new(start, interval), next: 0 }
+    }
+
+    /// Standing behind some rows.
+    pub fn after(start: f64, stop: f64, interval: f64, rows: u64) -> Self {
+        Grid { next: rows, ..Grid::new(start, stop, interval) }
+    }
+
+    /// How many rows of the grid are out.
+    pub fn rows(&self) -> u64 {
+        self.next
     }
 
     /// The next output time; infinite when all rows are out.

@@ -1,5 +1,6 @@
 //! What a run is asked to do, and what it reports about its work.
 
+use super::modes::same_time;
 use crate::expr::VarId;
 use crate::flat::Experiment;
 
@@ -24,6 +25,8 @@ pub struct Settings {
     pub event_rows: bool,
     /// How many events may happen in a billionth of the run before it counts as chattering.
     pub events_at_once: u32,
+    /// Distance of checkpoints, at which the integrator begins afresh; infinite for none.
+    pub checkpoint_every: f64,
 }
 
 impl Default for Settings {
@@ -38,6 +41,7 @@ impl Default for Settings {
             wanted: Vec::new(),
             event_rows: true,
             events_at_once: 200,
+            checkpoint_every: f64::INFINITY,
         }
     }
 }
@@ -55,6 +59,13 @@ impl Settings {
             tolerance: experiment.tolerance.unwrap_or(standard.tolerance),
             ..standard
         }
+    }
+
+    /// When the `number`-th checkpoint is due, counted from 1; the stop time when it does not come before that.
+    pub(super) fn checkpoint(&self, number: u64) -> f64 {
+        let due = self.start_time + number as f64 * self.checkpoint_every;
+        let before_end = self.checkpoint_every > 0.0 && due < self.stop_time && !same_time(due, self.stop_time);
+        if before_end { due } else { self.stop_time }
     }
 }
 

@@ -20,7 +20,7 @@ const SHORTEST_STEP: f64 = 1e-15;
 impl<'a> Driver<'a, '_> {
     pub(super) fn integrate(&mut self) -> Flow {
         self.reach()?;
-        if self.choice.is_some() {
+        if self.choice.is_some() || self.pauses() {
             return Ok(());
         }
         if self.uses_terminal() { self.event(Cause::Terminal) } else { Ok(()) }
