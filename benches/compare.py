@@ -6,7 +6,12 @@ usage: compare.py BRAMAH [--full] [--out FOLDER]
 Peers that are not installed are named, with how to get them. Writes results.md and one SVG a problem into FOLDER
 (target/bench). Times are medians over interleaved runs, each in a process of its own; errors are the largest of all
 values at the end, each relative to its reference of tests/stiff/references.toml."""
-import argparse, datetime, glob, json, os, platform, shutil, statistics, subprocess, sys, tempfile, time, tomllib
+import argparse, datetime, glob, json, math, os, platform, shutil, statistics, subprocess, sys, tempfile, time
+
+try:
+    import tomllib
+except ImportError:
+    sys.exit('error: the benches need Python 3.11 or newer\nhelp: name one with PYTHON=...')
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(HERE)
@@ -48,7 +53,7 @@ def bramah_run(binary, model, tolerance, end, names, extra=()):
         s = json.load(open(stats))
         lines = open(out).read().splitlines()
         row = dict(zip(split(lines[0]), split(lines[-1])))
-        return s, [float(row[n]) for n in names]
+        return s, [float(row[n] or 'nan') for n in names]
 
 def split(line):
     import csv
@@ -122,6 +127,15 @@ def references():
     found["Robertson"] = (40.0, [0.7158270687194032, 9.185534764557798e-6, 0.2841637457458286])
     return found
 
+def attempt(run, model, tolerance, end):
+    """A run of a peer; one that fails, in whatever way, or has no finite values is no point of the comparison."""
+    try:
+        got = run(model, tolerance, end)
+    except Exception as why:
+        print(f'{model} at {tolerance:.0e}: {type(why).__name__}: {why}', file=sys.stderr)
+        return None
+    return got if got and all(math.isfinite(y) for y in got[1]) else None
+
 def work_precision(peers, tolerances, repeats):
     rows = []
     for model in WORK_PRECISION:
@@ -130,7 +144,7 @@ def work_precision(peers, tolerances, repeats):
             times, last = {p: [] for p in peers}, {}
             for _ in range(repeats):
                 for name, run in peers.items():
-                    got = run(model, tolerance, end)
+                    got = attempt(run, model, tolerance, end)
                     if got:
                         times[name].append(got[0]['solve_s'])
                         last[name] = got
@@ -143,21 +157,22 @@ def work_precision(peers, tolerances, repeats):
 
 def at_error(rows, model, peer, error):
     """The time that a peer needs for an error, by a straight line between its runs in logarithms."""
-    import math
-    points = sorted((r[3], r[4]) for r in rows if r[0] == model and r[1] == peer and r[3] > 0)
+    points = sorted((r[3], r[4]) for r in rows if r[0] == model and r[1] == peer and r[3] > 0 and r[4] > 0)
     for (e0, t0), (e1, t1) in zip(points, points[1:]):
-        if e0 <= error <= e1:
+        if e0 <= error <= e1 and e0 < e1:
             w = (math.log(error) - math.log(e0))/(math.log(e1) - math.log(e0))
             return math.exp(math.log(t0) + w*(math.log(t1) - math.log(t0)))
     return None
 
 def picture(rows, model, path):
-    import math
     colours = ['#0b62a4', '#c1440e', '#2e8540', '#7a4fa3', '#8a6d00']
-    points = [r for r in rows if r[0] == model and r[3] > 0]
+    points = [r for r in rows if r[0] == model and r[3] > 0 and r[4] > 0]
+    if not points:
+        return
     x = [math.log10(r[3]) for r in points]
     y = [math.log10(r[4]) for r in points]
     x0, x1, y0, y1 = math.floor(min(x)), math.ceil(max(x)), math.floor(min(y)), math.ceil(max(y))
+    x1, y1 = max(x1, x0 + 1), max(y1, y0 + 1)
     px = lambda v: 70 + 520*(x1 - v)/(x1 - x0)
     py = lambda v: 350 - 310*(v - y0)/(y1 - y0)
     svg = ['<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 760 410" font-family="sans-serif" font-size="12">',
@@ -194,7 +209,7 @@ def growth(binary, full):
                         runs.append((got['compile_s'], got['solve_s']))
             if got:
                 rows.append((f'{model} {parameter} = {n}', got['unknowns'], statistics.median(r[0] for r in runs),
-                             statistics.median(r[1] for r in runs), got['steps'], got['events'], got['peak_memory_bytes']/2**20))
+                             statistics.median(r[1] for r in runs), got['steps'], got['events'], (got['peak_memory_bytes'] or math.nan)/2**20))
     return rows
 
 def main():
@@ -214,7 +229,7 @@ def main():
     else:
         skipped.append(('C on IDA', 'apt-get install gcc cmake make, and build bramah once'))
     try:
-        import scipy
+        import scipy.integrate
         for method in ('LSODA', 'BDF', 'Radau'):
             peers[f'scipy {method}'] = scipy_run(method)
         versions.append(f'scipy {scipy.__version__}, exact Jacobian')
@@ -230,6 +245,8 @@ def main():
                 ('OpenModelica', 'https://openmodelica.org: reads models/stiff as they are')]
     tolerances = [10.0**-k for k in (range(3, 11) if a.full else range(3, 10, 2))]
     rows = work_precision(peers, tolerances, 11 if a.full else 5)
+    if not any(r[1] == 'bramah' for r in rows):
+        sys.exit(f'error: `{a.bramah}` runs none of the models in models/stiff')
     text = [f'Run on {datetime.date.today().isoformat()}: {platform.processor() or platform.machine()}, {os.cpu_count()} cores, {platform.system()}; '
             + '; '.join(versions) + '.', '', '## Time for an error', '',
             'Milliseconds of solving, at the same error, by a line between the measured points in logarithms; in brackets as a multiple of bramah.', '',
