@@ -35,6 +35,12 @@ const AHEAD_PART: f64 = 0.2;
 /// Iterations with which candidates are compared before the front is polished, and candidates polished.
 const RACE: usize = 2;
 const POLISHED: usize = 5;
+/// Mean square of whitened innovations beyond which the levels of the nominal model are no levels.
+const BROKEN: f64 = 100.0;
+/// Rounds at most in which the levels of the nominal model settle.
+const SETTLING: usize = 5;
+/// Factor by which they grow in one of them.
+const GROWTH: f64 = 30.0;
 /// Part of the sources' levels with which a candidate is tried as well.
 const QUIET: f64 = 0.1;
 /// A candidate that is so much worse than the model without it is not tried further, nats.
@@ -196,10 +202,17 @@ fn anchor(problem: &Problem<'_>, noise: &[f64]) -> Result<(Fit, Assembled), Trou
     let model = problem.assemble(&[], &problem.node_sources()).map_err(Trouble::Model)?;
     let diverges = || Trouble::Diverges(0.0, "the model has no values on the way".into());
     let levels = fit::first_levels(&model, noise, &problem.train).ok_or_else(|| why(problem, &model, noise))?;
-    let mut setting = model.setting(&levels, noise, Vec::new());
-    fit::adjust(&mut setting, &problem.train, 1).ok_or_else(diverges)?;
     let priors = fit::tolerance_priors(problem);
-    let first = fit::fit(setting, &priors, &problem.train, None, fit::ITERATIONS).ok_or_else(diverges)?;
+    let settled = |rounds: usize, growth: f64| {
+        let mut setting = model.setting(&levels, noise, Vec::new());
+        fit::adjust_slowly(&mut setting, &problem.train, rounds, growth)?;
+        fit::fit(setting, &priors, &problem.train, None, fit::ITERATIONS)
+    };
+    let first = match settled(1, f64::INFINITY) {
+        Some(first) if first.misfit() < BROKEN => first,
+        // levels that were found far from where they lead are found step by step
+        broken => settled(SETTLING, GROWTH).or(broken).ok_or_else(diverges)?,
+    };
     Ok((fit::polish(first, &problem.train, None), model))
 }
 
@@ -247,7 +260,9 @@ impl Search {
         let t = vuong(&best.fit.blocks, &self.last.blocks);
         let count = problem.tolerances.len();
         let returned = self.last.prior_cost(count) - best.fit.prior_cost(count);
-        let consistent = t > CONSISTENT || returned > 0.5 * gain || rare(&best.fit, &self.last, gain);
+        // a parameter that is let go always returns from its bound
+        let drift = problem.hypotheses[best.accepted.chosen.hypothesis].family == "parameter";
+        let consistent = t > CONSISTENT || !drift && returned > 0.5 * gain || rare(&best.fit, &self.last, gain);
         if gain < ACCEPTED || !consistent {
             return false;
         }
@@ -470,7 +485,7 @@ fn fitted(problem: &Problem<'_>, from: &Fit, accepted: &[Accepted]) -> Option<(F
     }
     // sources as strong as the model before needed them may hide how right this one is: weaker ones are tried too
     let mut adjusted = setting.clone();
-    fit::adjust(&mut adjusted, &problem.train, 1);
+    fit::adjust(&mut adjusted, &problem.train);
     let mut quiet = setting;
     quiet.sources.iter_mut().for_each(|s| s.level *= QUIET);
     let fits = [first, fit(adjusted), fit(quiet)];

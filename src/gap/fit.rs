@@ -17,6 +17,8 @@ const MISFIT: f64 = 4.0;
 const TURNS: usize = 4;
 /// The log likelihood that another iteration must promise, nats.
 const WORTHWHILE: f64 = 0.3;
+/// Levels that stay so far below the greatest growth of a round are settled.
+const SETTLED: f64 = 3.0;
 /// Samples of each recording on which levels are fitted, at least, and part of the recording.
 const LEVEL_SAMPLES: usize = 1200;
 const LEVEL_PART: usize = 3;
@@ -99,26 +101,40 @@ pub fn first_levels(assembled: &Assembled, noise: &[f64], train: &[Recording]) -
 }
 
 /// Adjusts levels and noise at the present values of the parameters.
-pub fn adjust(setting: &mut Setting, train: &[Recording], rounds: usize) -> Option<()> {
+pub fn adjust(setting: &mut Setting, train: &[Recording]) -> Option<()> {
+    adjust_slowly(setting, train, 1, f64::INFINITY)
+}
+
+/// The same in so many rounds at most, in each of which levels grow by a factor at most: steps are linearised where the
+/// sources of the round before led the states.
+pub fn adjust_slowly(setting: &mut Setting, train: &[Recording], rounds: usize, growth: f64) -> Option<()> {
     let columns = std::mem::take(&mut setting.columns);
     for _ in 0..rounds {
         let longest = train.iter().map(Recording::len).max().unwrap_or(0);
         let found = passes(setting, train, LEVEL_SAMPLES.max(longest / LEVEL_PART), true)?;
         let tapes: Vec<&[filter::Step]> = found.iter().map(|p| &p.tape[..]).collect();
-        let (factors, _) = levels::fit(setting, &tapes);
-        // what the sources can take is not noise
-        for (i, noise) in levels::noise(setting, &tapes, &factors).into_iter().enumerate() {
-            if noise.misfit > MISFIT {
-                setting.most_noise[i] *= 2.0;
-            }
-            if noise.variance > 0.0 {
-                setting.noise[i] = noise.variance.sqrt().max(0.2 * setting.noise[i]).min(setting.most_noise[i]);
-            }
-        }
+        let (factors, _) = levels::fit(setting, &tapes, growth);
+        let settled = factors.iter().all(|f| *f < growth / SETTLED);
+        adjust_noise(setting, &tapes, &factors);
         setting.sources.iter_mut().zip(factors).for_each(|(s, f)| s.level *= f);
+        if settled {
+            break;
+        }
     }
     setting.columns = columns;
     Some(())
+}
+
+/// What the sources can take is not noise.
+fn adjust_noise(setting: &mut Setting, tapes: &[&[filter::Step]], factors: &[f64]) {
+    for (i, noise) in levels::noise(setting, tapes, factors).into_iter().enumerate() {
+        if noise.misfit > MISFIT {
+            setting.most_noise[i] *= 2.0;
+        }
+        if noise.variance > 0.0 {
+            setting.noise[i] = noise.variance.sqrt().max(0.2 * setting.noise[i]).min(setting.most_noise[i]);
+        }
+    }
 }
 
 /// Fits the parameters of `priors` from the values in `setting`. `share` scales the evidence; `None` finds it.
@@ -198,7 +214,7 @@ pub fn fit(
 pub fn polish(mut best: Fit, train: &[Recording], share: Option<f64>) -> Fit {
     for _ in 0..TURNS {
         let mut setting = best.setting.clone();
-        if adjust(&mut setting, train, 1).is_none() {
+        if adjust(&mut setting, train).is_none() {
             break;
         }
         let Some(next) = fit(setting, &best.priors, train, share, ITERATIONS) else { break };
@@ -268,6 +284,12 @@ impl Fit {
     /// Effective share of independent samples that its own innovations show.
     pub fn own_share(&self) -> f64 {
         evidence::independent_share(&self.white.iter().collect::<Vec<_>>())
+    }
+
+    /// Mean square of the whitened innovations: 1 where the model is right.
+    pub fn misfit(&self) -> f64 {
+        let (sum, count) = self.white.iter().fold((0.0, 0), |(s, n), w| (s + w.norm_squared(), n + w.len()));
+        sum / count.max(1) as f64
     }
 
     /// The part of the log posterior that the priors take, nats.

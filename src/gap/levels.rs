@@ -14,11 +14,11 @@ const FURTHER: usize = 5;
 const REACH: f64 = 0.5;
 
 /// Adjusts the levels of the sources, relative to those in the setting, so that the tapes become most likely.
-/// Returns the factors and the log likelihood reached.
-pub fn fit(setting: &Setting, tapes: &[&[Step]]) -> (Vec<f64>, f64) {
+/// Returns the factors, at most `growth`, and the log likelihood reached.
+pub fn fit(setting: &Setting, tapes: &[&[Step]], growth: f64) -> (Vec<f64>, f64) {
     let mut factors = vec![1.0; setting.sources.len()];
     let value = |factors: &[f64]| tapes.par_iter().map(|t| likelihood(setting, t, factors)).sum::<f64>();
-    let most = most(tapes, factors.len());
+    let most: Vec<f64> = most(tapes, factors.len()).into_iter().map(|m| m.min(growth)).collect();
     let mut best = value(&factors);
     for round in ROUNDS {
         for i in 0..factors.len() {
