@@ -74,3 +74,16 @@ fn tables_are_the_same_from_files() {
     assert_eq!(at("1", "0.5", ""), 2.5);
     assert_eq!((at("3", "2", ""), at("3", "2", ", hold = false")), (5.0, 8.0));
 }
+
+/// Akima's curves are exact for parabolas away from the edges, and straight beyond them.
+#[test]
+fn a_smooth_map() {
+    let map = "x,0,1,2,3,4\n0,0,1,4,9,16\n1,1,2,5,10,17\n2,4,5,8,13,20\n3,9,10,13,18,25\n4,16,17,20,25,32\n";
+    let at = |u: &str, v: &str, more: &str| {
+        last(&format!("Signal.AkimaTable2D t(u1 = {u}*time, u2 = {v}*time, fileName = \"t.csv\"{more});"), map, "t.csv")
+    };
+    assert!((at("1.7", "2.2", "") - (1.7 * 1.7 + 2.2 * 2.2)).abs() < 1e-12);
+    assert_eq!((at("4", "4", ""), at("9", "9", "")), (32.0, 32.0));
+    // the slope at the edge is that of a parabola through the last points
+    assert!((at("5", "2", ", hold = false") - (4.0 + 16.0 + 8.0)).abs() < 1e-9);
+}
