@@ -90,6 +90,20 @@ pub(super) fn write(
     Ok(())
 }
 
+/// Writes a picture that is drawn already; a page shows the curves of `figure` below it.
+pub(super) fn write_picture(picture: &str, figure: &Figure, path: &Path, messages: &Messages) -> Result<(), Failure> {
+    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let bytes = match extension.as_str() {
+        "svg" => picture.as_bytes().to_vec(),
+        "png" => png::write(picture).map_err(|e| Failure::new(Code::BadArgument, e))?,
+        "html" | "htm" => html::write_around(figure, &[], picture).into_bytes(),
+        _ => return write(figure, &[], path, messages),
+    };
+    files::write(path, &bytes)?;
+    messages.remark(&format!("wrote {}", path.display()));
+    Ok(())
+}
+
 /// A file's name without folder and extension.
 pub(super) fn stem(path: &Path) -> String {
     path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default()

@@ -12,11 +12,12 @@ use super::files::{self, access};
 use super::messages::Messages;
 use super::request::ModelArgs;
 use super::{Ending, Failure, columns, interrupt, model, plot};
-use crate::analysis::sweep::{Plan, Table, fingerprint, indices, scatter};
+use crate::analysis::sweep::{Plan, Table, fingerprint, indices, matrix, scatter};
 use crate::compile::Model;
 use crate::diag::{Code, Diagnostic};
 use crate::experiment::{Experiment, Sampling, Sweep};
 use crate::flat;
+use crate::plot::matrix::write as draw;
 use crate::results::{CsvWriter, Trajectory, number};
 use crate::solve::{Settings, signals};
 
@@ -247,7 +248,8 @@ fn report(
     }
     if let Some(path) = &args.plot {
         let title = format!("{} runs", table.rows.len());
-        plot::write(&scatter(table, plan.varied.len(), &title), &[], path, messages)?;
+        let drawn = draw(&matrix(table, plan.varied.len(), &title));
+        plot::write_picture(&drawn, &scatter(table, plan.varied.len(), &title), path, messages)?;
     }
     Ok(Ending::Fine)
 }

@@ -6,7 +6,7 @@ mod sampling;
 mod sobol;
 mod table;
 
-pub use picture::scatter;
+pub use picture::{matrix, scatter};
 pub use result::Expression;
 pub use sampling::{Random, Varied, quantile, samples};
 pub use sobol::{Index, indices};

@@ -1,10 +1,24 @@
-//! The results of a sweep over its parameters, one panel a pair.
+//! The results of a sweep over its parameters: a scatter matrix, and one panel a pair.
 
 use super::Table;
+use crate::plot::matrix::Matrix;
 use crate::plot::{Figure, Panel, Series};
 
 /// Panels drawn at most.
 const PANELS: usize = 12;
+/// Columns in the matrix at most.
+const COLUMNS: usize = 8;
+
+/// Parameters and results against each other, dots coloured by the first result: the cell of two parameters is a map of
+/// it. Where there are too many columns, results and parameters beyond the first ones are left out.
+pub fn matrix(table: &Table, parameters: usize, title: &str) -> Matrix {
+    let results = (table.columns.len() - parameters).min(COLUMNS / 2);
+    let shown = (0..parameters.min(COLUMNS - results)).chain(parameters..parameters + results);
+    let (names, columns): (Vec<String>, Vec<Vec<f64>>) =
+        shown.map(|k| (table.columns[k].clone(), table.column(k))).unzip();
+    let shade = (results > 0).then(|| columns.len() - results);
+    Matrix { title: title.to_owned(), names, columns, shade }
+}
 
 /// One panel for each parameter and result, with a cross a run.
 pub fn scatter(table: &Table, parameters: usize, title: &str) -> Figure {
