@@ -107,7 +107,7 @@ impl Lift {
     /// Real parameters whose bindings read a lifted one, however indirectly: their bindings, over the states, stand in
     /// their place.
     fn dependents(&mut self, lifted: &[VarId]) {
-        let mut open = self.reading(lifted);
+        let mut open = reading(&self.flat, lifted);
         loop {
             let ready = |&(_, binding): &(VarId, ExprId)| {
                 !self.flat.exprs.variables(binding).iter().any(|w| open.iter().any(|(v, _)| v == w))
@@ -122,27 +122,6 @@ impl Lift {
                 self.replacements.push((self.flat.exprs.var(v), value));
             }
             open = rest;
-        }
-    }
-
-    /// Real parameters with bindings that read one of these, however indirectly.
-    fn reading(&self, lifted: &[VarId]) -> Vec<(VarId, ExprId)> {
-        let mut moved = vec![false; self.flat.variables.len()];
-        lifted.iter().for_each(|p| moved[p.index()] = true);
-        let mut found = Vec::new();
-        loop {
-            let before = found.len();
-            for (v, variable) in (0..).map(VarId).zip(&self.flat.variables) {
-                let real = variable.variability == Variability::Parameter && variable.ty == Type::Real;
-                let Some(binding) = variable.binding.filter(|_| real && !moved[v.index()]) else { continue };
-                if self.flat.exprs.variables(binding).iter().any(|w| moved[w.index()]) {
-                    moved[v.index()] = true;
-                    found.push((v, binding));
-                }
-            }
-            if found.len() == before {
-                return found;
-            }
         }
     }
 
@@ -184,6 +163,27 @@ impl Lift {
         let (der, value) = (self.flat.exprs.der(sum), self.flat.exprs.var(y));
         self.equation(der, value, y);
         sum
+    }
+}
+
+/// Real parameters with bindings that read one of these, however indirectly.
+pub(super) fn reading(flat: &FlatModel, lifted: &[VarId]) -> Vec<(VarId, ExprId)> {
+    let mut moved = vec![false; flat.variables.len()];
+    lifted.iter().for_each(|p| moved[p.index()] = true);
+    let mut found = Vec::new();
+    loop {
+        let before = found.len();
+        for (v, variable) in (0..).map(VarId).zip(&flat.variables) {
+            let real = variable.variability == Variability::Parameter && variable.ty == Type::Real;
+            let Some(binding) = variable.binding.filter(|_| real && !moved[v.index()]) else { continue };
+            if flat.exprs.variables(binding).iter().any(|w| moved[w.index()]) {
+                moved[v.index()] = true;
+                found.push((v, binding));
+            }
+        }
+        if found.len() == before {
+            return found;
+        }
     }
 }
 

@@ -1,8 +1,12 @@
 //! Trajectory sensitivities: how the course of variables moves with parameters and start values.
 //!
-//! By central differences of tight runs, which hold across events: the run itself finds the moved event times. Where a
-//! jump moves in time, the difference between the two events is the jump over the step, as it must be.
+//! By the variational equations, in one run, where they describe the model: that is checked against one difference in
+//! which all parameters move. Else by central differences of tight runs, which hold across events: the run itself finds
+//! the moved event times. Where a jump moves in time, the difference between the two events is the jump over the step, as
+//! it must be.
 
+use super::Variation;
+use super::lift::reading;
 use crate::Model;
 use crate::expr::VarId;
 use crate::results::Trajectory;
@@ -20,6 +24,8 @@ pub struct Sensitivity {
     pub parameters: Vec<(String, f64)>,
     /// By parameter: one column a variable, the change of the variable per change of the parameter by its size.
     pub columns: Vec<Vec<Vec<f64>>>,
+    /// Why they are differences; `None` where the variational equations gave them.
+    pub differences: Option<String>,
 }
 
 /// A parameter that is moved.
@@ -50,24 +56,112 @@ pub fn sensitivity(
 ) -> Result<Sensitivity, String> {
     let settings = Settings { event_rows: false, ..settings.clone() };
     let plain = run(model, &settings, None, interrupt)?;
-    let columns: Result<Vec<Vec<Vec<f64>>>, String> = moved
+    let parameters = moved.iter().map(|m| (m.name.clone(), m.size)).collect();
+    match by_equations(model, &settings, moved, &plain, interrupt) {
+        Ok(columns) => Ok(Sensitivity { plain, parameters, columns, differences: None }),
+        Err(why) => {
+            let columns = by_differences(model, &settings, moved, interrupt)?;
+            Ok(Sensitivity { plain, parameters, columns, differences: Some(why) })
+        }
+    }
+}
+
+/// How far the variational equations may be from a difference, as a part of its largest value.
+const AGREE: f64 = 1e-3;
+
+/// By the variational equations; the error says why they do not hold.
+fn by_equations(
+    model: &Model,
+    settings: &Settings,
+    moved: &[Moved],
+    plain: &Trajectory,
+    interrupt: &AtomicBool,
+) -> Result<Vec<Vec<Vec<f64>>>, String> {
+    let directions: Vec<(VarId, f64)> = moved.iter().map(|m| (m.variable, m.size)).collect();
+    let variation = Variation::new(&model.flat, &directions, &[], 0)?;
+    let pairs = (0..moved.len()).flat_map(|j| settings.wanted.iter().map(move |v| (j, *v)));
+    let companions: Vec<Option<VarId>> = pairs.map(|(j, v)| variation.companion(v, j)).collect();
+    let all = Settings { wanted: companions.iter().flatten().copied().collect(), ..settings.clone() };
+    let mut rows = Trajectory::new(signals(&variation.system.dae, &all.wanted));
+    let mut control = Control { interrupt: Some(interrupt), ..Control::default() };
+    let run = simulate(&variation.system, &all, &[], None, &mut rows, &mut control);
+    let finite = rows.columns.iter().flatten().all(|v| v.is_finite());
+    if !run.end.is_success() || rows.times.len() != plain.times.len() || !finite {
+        return Err("the run with derivatives did not reach its end".to_owned());
+    }
+    let still = vec![0.0; plain.times.len()];
+    let mut found = rows.columns.into_iter();
+    let each = companions.iter().map(|c| c.and_then(|_| found.next()).unwrap_or_else(|| still.clone()));
+    let flat: Vec<Vec<f64>> = each.collect();
+    let columns: Vec<Vec<Vec<f64>>> = flat.chunks(settings.wanted.len()).map(<[_]>::to_vec).collect();
+    agrees(model, settings, moved, &columns, interrupt)?;
+    Ok(columns)
+}
+
+/// Compares with the difference along one direction in which all parameters move.
+fn agrees(
+    model: &Model,
+    settings: &Settings,
+    moved: &[Moved],
+    columns: &[Vec<Vec<f64>>],
+    interrupt: &AtomicBool,
+) -> Result<(), String> {
+    // those that follow others stay with them: moved themselves they would follow no more
+    let follows = |m: &Moved| {
+        let others = moved.iter().filter(|o| o.variable != m.variable);
+        others.into_iter().any(|o| reading(&model.flat, &[o.variable]).iter().any(|(v, _)| *v == m.variable))
+    };
+    let share = |(k, m): (usize, &Moved)| if follows(m) { 0.0 } else { (1.0 + k as f64).cos() };
+    let share: Vec<f64> = moved.iter().enumerate().map(share).collect();
+    let at = |sign: f64| {
+        let movers = moved.iter().zip(&share).filter(|(_, s)| **s != 0.0);
+        let changes = movers.map(|(m, s)| (m.variable, m.value + sign * STEP * s * m.size));
+        run(model, settings, changes, interrupt)
+    };
+    let (up, down) = (at(1.0)?, at(-1.0)?);
+    let rows = columns.first().and_then(|c| c.first()).map_or(0, Vec::len);
+    if up.times.len() != rows || down.times.len() != rows {
+        return Err("moved runs end elsewhere".to_owned());
+    }
+    for v in 0..settings.wanted.len() {
+        let (mut most, mut apart) = (0.0f64, 0.0f64);
+        for row in 0..rows {
+            let difference = (up.columns[v][row] - down.columns[v][row]) / (2.0 * STEP);
+            let sum: f64 = columns.iter().zip(&share).map(|(c, s)| s * c[v][row]).sum();
+            most = most.max(difference.abs());
+            apart = apart.max((difference - sum).abs());
+        }
+        let size = up.columns[v].iter().fold(0.0f64, |m, x| m.max(x.abs()));
+        if apart > AGREE * most + 1e-6 * size {
+            let name = &model.flat.variables[settings.wanted[v].index()].name;
+            return Err(format!("`{name}` or its derivatives jump"));
+        }
+    }
+    Ok(())
+}
+
+fn by_differences(
+    model: &Model,
+    settings: &Settings,
+    moved: &[Moved],
+    interrupt: &AtomicBool,
+) -> Result<Vec<Vec<Vec<f64>>>, String> {
+    moved
         .par_iter()
         .map(|m| {
-            let at = |sign: f64| run(model, &settings, Some((m.variable, m.value + sign * STEP * m.size)), interrupt);
+            let at = |sign: f64| run(model, settings, [(m.variable, m.value + sign * STEP * m.size)], interrupt);
             let (up, down) = (at(1.0)?, at(-1.0)?);
             let difference =
                 |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(a, b)| (a - b) / (2.0 * STEP)).collect();
             Ok(up.columns.iter().zip(&down.columns).map(difference).collect())
         })
-        .collect();
-    let parameters = moved.iter().map(|m| (m.name.clone(), m.size)).collect();
-    Ok(Sensitivity { plain, parameters, columns: columns? })
+        .collect()
 }
 
 fn run(
     model: &Model,
     settings: &Settings,
-    change: Option<(VarId, f64)>,
+    change: impl IntoIterator<Item = (VarId, f64)>,
     interrupt: &AtomicBool,
 ) -> Result<Trajectory, String> {
     let mut settings = settings.clone();
@@ -112,8 +206,20 @@ mod tests {
     use crate::world::MemoryWorld;
 
     fn found(text: &str, parameters: &[&str], variable: &str, stop: f64) -> Sensitivity {
+        let (model, settings, moved) = asked("m.mo", text, parameters, variable, stop);
+        sensitivity(&model, &settings, &moved, &AtomicBool::new(false)).expect("runs")
+    }
+
+    /// A file's text, or a shipped class, and what is asked of it.
+    fn asked(
+        source: &str,
+        text: &str,
+        parameters: &[&str],
+        variable: &str,
+        stop: f64,
+    ) -> (Model, Settings, Vec<Moved>) {
         let world = MemoryWorld::single("m.mo", text);
-        let request = crate::Request { source: "m.mo".into(), ..crate::Request::default() };
+        let request = crate::Request { source: source.into(), ..crate::Request::default() };
         let model = crate::compile(&world, &request, &crate::lower::Options { native: false }).value.expect("sound");
         let id = |n: &str| {
             let i = model.flat.variables.iter().position(|v| v.name == n).expect("there");
@@ -135,7 +241,7 @@ mod tests {
             wanted: vec![id(variable)],
             ..Settings::default()
         };
-        sensitivity(&model, &settings, &moved, &AtomicBool::new(false)).expect("runs")
+        (model, settings, moved)
     }
 
     #[test]
@@ -148,8 +254,45 @@ mod tests {
             assert!((s.columns[1][0][row] + 2.0 * t * x).abs() < 3e-4, "{t}");
             assert!((s.columns[2][0][row] - x).abs() < 3e-4, "{t}");
         }
-        assert_eq!(s.ranking(), [2, 1, 0]);
+        assert_eq!((s.ranking(), s.differences.as_deref()), (vec![2, 1, 0], None));
         assert_eq!(s.weight(0, 0), 0.0);
+    }
+
+    /// Both ways of very tight runs: a pressure with a valve that opens (a bend at an event), and shipped tanks.
+    #[test]
+    fn equations_and_differences_agree() {
+        let valve = "model M parameter Real c = 3, G = 2, p_set = 0.4, a = 2*c; Real p(start = 0.1, fixed = true), v(start = 0, fixed = true), q;
+            equation der(p) = c - a*v - q; der(v) = 4*p - v*abs(v); q = if p > p_set then G*(p - p_set) else 0; end M;";
+        let tanks = ["outlet_1.a", "lower.A", "h_2_start"];
+        for (source, parameters, variable, stop) in
+            [("m.mo", &["c", "G", "p_set", "a"][..], "p", 4.0), ("CascadedTanks.Nominal", &tanks[..], "lower.h", 200.0)]
+        {
+            let (model, settings, moved) = asked(source, valve, parameters, variable, stop);
+            let settings = Settings { event_rows: false, tolerance: 1e-12, ..settings };
+            let quiet = AtomicBool::new(false);
+            let plain = run(&model, &settings, None, &quiet).expect("runs");
+            let exact = by_equations(&model, &settings, &moved, &plain, &quiet).expect("hold");
+            let differences = by_differences(&model, &settings, &moved, &quiet).expect("run");
+            for ((exact, other), m) in exact.iter().zip(&differences).zip(&moved) {
+                let most = exact[0].iter().fold(0.0f64, |m, v| m.max(v.abs()));
+                let apart = exact[0].iter().zip(&other[0]).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+                assert!(apart <= 1e-6 * most && most > 0.0, "{source} {}: {apart} of {most}", m.name);
+            }
+        }
+    }
+
+    /// The rate jumps where the state passes a threshold that moves, and a jump without event.
+    #[test]
+    fn jumps_are_left_to_differences() {
+        for law in ["if x < p then 1 else 3", "noEvent(if x < p then 1 else 3)"] {
+            let text = format!(
+                "model M parameter Real p = 1; Real x(start = 0, fixed = true); equation der(x) = {law}; end M;"
+            );
+            let s = found(&text, &["p"], "x", 2.0);
+            assert_eq!(s.differences.as_deref(), Some("`x` or its derivatives jump"));
+            // x = p + 3 (t - p) in the end
+            assert!((s.columns[0][0][50] + 2.0).abs() < 1e-3, "{}", s.columns[0][0][50]);
+        }
     }
 
     /// The height of a bouncing ball after its first bounce, exact: h = v1 s - g s^2/2 with s since the bounce.
@@ -159,6 +302,7 @@ mod tests {
             "model M parameter Real g = 9.81, e = 0.7; Real h(start = 1, fixed = true), v(start = 0, fixed = true);
             equation der(h) = v; der(v) = -g; when h < 0 then reinit(v, -e*pre(v)); end when; end M;";
         let s = found(text, &["g", "e"], "h", 0.8);
+        assert_eq!(s.differences.as_deref(), Some("states are set anew at events"));
         let height = |g: f64, e: f64, t: f64| {
             let fall = (2.0 / g).sqrt();
             if t < fall { 1.0 - g * t * t / 2.0 } else { e * g * fall * (t - fall) - g * (t - fall).powi(2) / 2.0 }

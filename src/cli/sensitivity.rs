@@ -24,7 +24,7 @@ use crate::solve::Settings;
 #[command(after_help = "\
 Each number belongs to a relative change: the variable's change over the parameter's, times the parameter's own size. The
 ranking on stdout tells by how many per cent of its range a variable moves (root mean square) when a parameter moves by
-1 %. Central differences of runs with a tolerance of 1e-9, also across events.
+1 %. Exact derivatives in one run; central differences of runs where events make derivatives jump, which is then said.
 
 Examples:
   bramah sensitivity Press.mo --variables cyl.v,pump.b.p
@@ -120,6 +120,9 @@ fn parameters(args: &SensitivityArgs, model: &Model) -> Result<Vec<Moved>, Failu
 fn words(found: &Sensitivity) -> String {
     let names: Vec<&str> = found.plain.signals.iter().map(|s| s.name.as_str()).collect();
     let mut out = format!("per cent of the range for 1 % of the parameter: {}\n", names.join(", "));
+    if let Some(why) = &found.differences {
+        out += &format!("by differences of runs: {why}\n");
+    }
     let width = found.parameters.iter().map(|p| p.0.len()).max().unwrap_or(0);
     let order = found.ranking();
     for &p in order.iter().take(RANKED) {

@@ -26,6 +26,11 @@ impl Differentiator {
         Differentiator { memo: std::iter::once((leaf, Exprs::ONE)).collect() }
     }
 
+    /// Derivatives along a direction: pairs of leaves and their derivatives, every other leaf counting as constant.
+    pub fn along(leaves: impl IntoIterator<Item = (ExprId, ExprId)>) -> Self {
+        Differentiator { memo: leaves.into_iter().collect() }
+    }
+
     /// The derivative of `e`.
     pub fn derive(&mut self, pool: &mut Exprs, e: ExprId) -> ExprId {
         for node in pool.reachable(&[e], |node| !self.memo.contains_key(&node)) {
