@@ -146,7 +146,7 @@ fn identified(file: &str, folder: &str) -> Option<Report> {
     let found = Identification::new(&problem, &train, Method::Auto).expect("runs");
     let fit = found.fit().expect("runs");
     let held = found.judge_held(&fit, &recordings(&bound, folder, Role::Held)?).expect("runs");
-    Some(Report::new(&problem, &found, &fit, &held))
+    Some(Report::new(&problem, &found, &fit, &held, &[]))
 }
 
 /// The published values, within what the publication and ours differ in filtering.

@@ -7,8 +7,12 @@ use clap::{Args, ValueEnum};
 use super::messages::Messages;
 use super::recorder::write_text;
 use super::study::{Opened, open};
-use super::{Ending, Failure};
-use crate::analysis::identify::{Identification, Method, Problem, Report, fit_words, separation_words};
+use super::{Ending, Failure, plot};
+use crate::analysis::identify::{
+    Fit, Identification, Method, Problem, Profile, Report, fit_words, picture, profile_words, separation_words,
+};
+use crate::diag::{Code, Diagnostic};
+use crate::results::Globs;
 use crate::study::Role;
 
 /// Find parameters from recordings of a bench
@@ -34,6 +38,13 @@ pub(super) struct IdentifyArgs {
     /// The result as JSON, `-` for stdout
     #[arg(short, long, visible_alias = "output-file", default_value = "-", value_name = "FILE")]
     output: String,
+    /// How far each parameter can be moved while the others are searched for anew: the 95 % interval by the profile
+    /// likelihood; all parameters, or those that match
+    #[arg(long, value_name = "GLOB,...", num_args = 0..=1, require_equals = true, default_missing_value = "*")]
+    profile: Option<String>,
+    /// Signals, autocorrelation of the errors, confidence ellipses and profiles: .svg, .png or .html
+    #[arg(long, value_name = "FILE")]
+    plot: Option<PathBuf>,
     /// `inverse`: the force that the measured motion needs; `output`: runs from the inputs alone
     #[arg(long, value_enum, default_value_t = MethodArg::Auto)]
     method: MethodArg,
@@ -76,8 +87,37 @@ pub(super) fn run(args: &IdentifyArgs, messages: &mut Messages) -> Result<Ending
         found.judge_held(&fit, &held).map_err(|d| fail(d, &opened, messages))?
     };
     messages.remark(fit_words(&problem, &fit, &held).trim_end());
-    let report = Report::new(&problem, &found, &fit, &held);
+    let profiles = profiles(args, &problem, &found, &fit).map_err(|d| fail(d, &opened, messages))?;
+    if !profiles.is_empty() {
+        messages.remark(profile_words(&problem, &profiles).trim_end());
+    }
+    if let Some(path) = &args.plot {
+        plot::write(&picture(&problem, &fit, &profiles), &facts(&problem, &fit), path, messages)?;
+    }
+    let report = Report::new(&problem, &found, &fit, &held, &profiles);
     let text = serde_json::to_string_pretty(&report).expect("numbers and texts always serialize");
     write_text(&args.output, &format!("{text}\n"))?;
     Ok(if fit.converged { Ending::Fine } else { Ending::Wrong })
+}
+
+fn profiles(
+    args: &IdentifyArgs,
+    problem: &Problem<'_>,
+    found: &Identification<'_>,
+    fit: &Fit,
+) -> Result<Vec<Profile>, Diagnostic> {
+    let Some(asked) = &args.profile else { return Ok(Vec::new()) };
+    let globs = Globs::new(std::slice::from_ref(asked));
+    let chosen: Vec<usize> = (0..problem.free.len()).filter(|&j| globs.matches(&problem.free[j].name)).collect();
+    if chosen.is_empty() {
+        let d = Diagnostic::new(Code::BadArgument, format!("no parameter of the study fits `--profile={asked}`"));
+        return Err(d);
+    }
+    chosen.into_iter().map(|j| found.profile(fit, j)).collect()
+}
+
+/// What stands below the picture in a page.
+fn facts(problem: &Problem<'_>, fit: &Fit) -> Vec<(String, String)> {
+    let words = fit_words(problem, fit, &[]);
+    words.lines().filter_map(|l| l.trim().split_once([' ', ':'])).map(|(a, b)| (a.into(), b.trim().into())).collect()
 }

@@ -8,7 +8,7 @@
 use super::filter::{LowPass, derivative, filled};
 use super::least_squares::LeastSquares;
 use super::weights::{Series, Weights};
-use super::{Problem, Residuals};
+use super::{Course, Problem, Residuals};
 use crate::analysis::local::Plan;
 use crate::analysis::{Local, lift};
 use crate::expr::VarId;
@@ -189,6 +189,22 @@ impl<'a> InverseModel<'a> {
         of.flat_map(|s| &self.measured[s.rows.clone()]).map(|f| f * f).sum()
     }
 
+    /// The forces along the first recording with the errors of `residual`.
+    pub fn courses(&self, residual: &[f64]) -> Vec<Course> {
+        let one = |s: &Series| {
+            let input = &self.problem.bound.inputs[self.inverse.inputs[s.signal]];
+            let sigma = self.weights.sigma[s.signal];
+            Course {
+                name: input.name.clone(),
+                unit: input.unit.clone(),
+                times: self.motions[0].thin_times(),
+                measured: self.measured[s.rows.clone()].to_vec(),
+                errors: residual[s.rows.clone()].iter().map(|r| r * sigma).collect(),
+            }
+        };
+        self.weights.series.iter().filter(|s| s.recording == 0).map(one).collect()
+    }
+
     /// Thinned force errors of all recordings; `None` where few samples tell a force.
     fn errors(&self, theta: &[f64]) -> Option<Vec<f64>> {
         let mut out = Vec::new();
@@ -284,6 +300,11 @@ impl Motion {
     fn thin(&self, values: &[f64]) -> Vec<f64> {
         let filtered = self.low_pass.apply(values);
         filtered[self.margin..filtered.len() - self.margin].iter().copied().step_by(self.stride).collect()
+    }
+
+    /// The times of thinned values.
+    fn thin_times(&self) -> Vec<f64> {
+        self.times[self.margin..self.times.len() - self.margin].iter().copied().step_by(self.stride).collect()
     }
 }
 

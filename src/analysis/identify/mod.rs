@@ -1,18 +1,28 @@
 //! Parameters from recordings: what can be found at all, the fit, its uncertainty, and how it does on held recordings.
 
+mod chance;
+mod exact;
 mod filter;
+mod fit;
 mod free;
 mod inverse;
 mod least_squares;
 mod output_error;
+mod picture;
+mod profile;
 mod report;
+mod residuals;
 pub mod runs;
 mod separate;
 mod weights;
 
+pub use fit::{Course, Fit, SignalFit};
 pub use free::Free;
 pub use least_squares::{Bounds, Effort, LeastSquares, Minimum, minimise};
-pub use report::{Report, fit_words, separation_words};
+pub use picture::picture;
+pub use profile::Profile;
+pub use report::{Report, fit_words, profile_words, separation_words};
+pub use residuals::{Dependence, ResidualTest};
 pub use runs::Broken;
 pub use separate::{Blind, Separation};
 
@@ -20,10 +30,13 @@ use crate::Model;
 use crate::analysis::noise;
 use crate::diag::{Code, Diagnostic};
 use crate::study::{Bound, Recording, full_scales};
+use exact::Exact;
+use fit::signal_fits;
 use inverse::{Inverse, InverseModel};
 use nalgebra::{DMatrix, DVector};
 use output_error::OutputError;
 use separate::{separate, without_rest};
+use std::sync::{Arc, OnceLock};
 use weights::Weights;
 
 /// How parameters are found.
@@ -57,42 +70,6 @@ trait Residuals: LeastSquares {
     fn weights(&mut self) -> &mut Weights;
     /// How many unknowns: the parameters, then initial states.
     fn unknowns(&self) -> usize;
-}
-
-/// What the fit found. Vectors are in the order of [`Problem::free`].
-#[derive(Clone, Debug)]
-pub struct Fit {
-    /// [`Method::Output`] or [`Method::Inverse`].
-    pub method: Method,
-    /// Values in the parameters' units.
-    pub values: Vec<f64>,
-    /// One standard deviation of each.
-    pub deviations: Vec<f64>,
-    /// Correlations of the estimates.
-    pub correlation: DMatrix<f64>,
-    /// Parameters that ended at a bound.
-    pub at_bound: Vec<bool>,
-    /// False where the search ended before a least value was reached.
-    pub converged: bool,
-    /// Steps of the search.
-    pub iterations: usize,
-    /// Per signal (or input, for the inverse model) the errors on the train recordings.
-    pub train: Vec<SignalFit>,
-}
-
-/// How well one signal is met.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SignalFit {
-    /// The signal's name; for the inverse model the input's.
-    pub name: String,
-    /// Its unit.
-    pub unit: String,
-    /// Root mean square of the errors.
-    pub rmse: f64,
-    /// The same over the signal's own root mean square about its mean (about zero for forces).
-    pub relative: f64,
-    /// Over how many samples the errors resemble each other; 1 for white ones.
-    pub correlation: f64,
 }
 
 impl<'a> Problem<'a> {
@@ -195,6 +172,8 @@ pub struct Identification<'a> {
     problem: &'a Problem<'a>,
     train: &'a [Recording],
     inverse: Option<Inverse>,
+    /// The variational equations, or why there are none.
+    exact: OnceLock<Result<Arc<Exact>, String>>,
     /// What can be found at all, judged at the start values.
     pub separation: Separation,
     /// Variables whose measurement would tell the members of each blind group apart, best first.
@@ -219,6 +198,7 @@ impl<'a> Identification<'a> {
             problem,
             train,
             inverse,
+            exact: OnceLock::new(),
             separation: Separation { rank: 0, condition: 1.0, blind: Vec::new(), deviation: Vec::new() },
             advice: Vec::new(),
         };
@@ -250,7 +230,10 @@ impl<'a> Identification<'a> {
     }
 
     fn output_error(&self) -> Result<OutputError<'_>, Diagnostic> {
-        OutputError::new(self.problem, self.train, None).map_err(|b| cannot_follow(Some(&b)))
+        let mut model = OutputError::new(self.problem, self.train, None).map_err(|b| cannot_follow(Some(&b)))?;
+        let exact = self.exact.get_or_init(|| Exact::new(self.problem, model.most_states()).map(Arc::new));
+        model.differentiate_by(exact.clone());
+        Ok(model)
     }
 
     /// Variables that move most, against their range, when the parameters of a blind group move against each other.
@@ -281,53 +264,25 @@ impl<'a> Identification<'a> {
             Some(mut model) => {
                 let minimum = search(self.problem, &mut model, &[]).ok_or_else(|| cannot_follow(None))?;
                 let train = self.force_fits(&mut model, &minimum);
-                Ok(self.estimate(&mut model, &minimum, train))
+                let courses = model.courses(minimum.residual.as_slice());
+                let mut fit = self.estimate(&mut model, &minimum, train, courses);
+                fit.residuals = self.judge_residuals(&fit, minimum.residual.as_slice());
+                fit.differences = Some("of the inverse model".to_owned());
+                Ok(fit)
             }
             None => {
                 let mut model = self.output_error()?;
                 let floor: Vec<f64> = self.problem.full_scale.iter().map(|f| 1e-6 * f).collect();
                 let found = search(self.problem, &mut model, &floor);
                 let minimum = found.ok_or_else(|| cannot_follow(model.broken.as_ref()))?;
-                let train = signal_fits(self.problem, model.weights(), minimum.residual.as_slice(), self.train);
-                Ok(self.estimate(&mut model, &minimum, train))
+                let residual = minimum.residual.as_slice();
+                let train = signal_fits(self.problem, model.weights(), residual, self.train);
+                let courses = model.courses(self.train, residual);
+                let mut fit = self.estimate(&mut model, &minimum, train, courses);
+                fit.residuals = self.judge_residuals(&fit, residual);
+                fit.differences = model.differences().map(str::to_owned);
+                Ok(fit)
             }
-        }
-    }
-
-    fn force_fits(&self, model: &mut InverseModel<'_>, minimum: &Minimum) -> Vec<SignalFit> {
-        let weights = model.weights().clone();
-        let one = |(k, input): (usize, &crate::study::BoundInput)| {
-            let rmse = weights.rms(k, minimum.residual.as_slice())?;
-            let count: usize = weights.series.iter().filter(|s| s.signal == k).map(|s| s.rows.len()).sum();
-            let relative = rmse / (model.power(k) / count as f64).sqrt();
-            let (name, unit) = (input.name.clone(), input.unit.clone());
-            Some(SignalFit { name, unit, rmse, relative, correlation: weights.correlation[k] })
-        };
-        self.problem.bound.inputs.iter().enumerate().filter_map(one).collect()
-    }
-
-    fn estimate(&self, model: &mut dyn Residuals, minimum: &Minimum, train: Vec<SignalFit>) -> Fit {
-        let p = self.problem.free.len();
-        let covariance = covariance(model.weights(), minimum);
-        let free = self.problem.free.iter().zip(&minimum.z);
-        let slope: Vec<f64> = free.clone().map(|(f, &z)| f.slope(z).abs()).collect();
-        let deviation = |j: usize| covariance[(j, j)].max(0.0).sqrt();
-        let correlation = DMatrix::from_fn(p, p, |i, j| {
-            if i == j {
-                return 1.0;
-            }
-            let scale = deviation(i) * deviation(j);
-            if scale > 0.0 { covariance[(i, j)] / scale } else { f64::from(u8::from(i == j)) }
-        });
-        Fit {
-            method: self.method(),
-            values: free.map(|(f, &z)| f.value(z)).collect(),
-            deviations: (0..p).map(|j| slope[j] * deviation(j)).collect(),
-            correlation,
-            at_bound: minimum.at_bound[..p].to_vec(),
-            converged: minimum.converged,
-            iterations: minimum.iterations,
-            train,
         }
     }
 
@@ -407,8 +362,11 @@ fn search(problem: &Problem<'_>, model: &mut dyn Residuals, floor: &[f64]) -> Op
         iterations += minimum.iterations;
         minimum.iterations = iterations;
         z.clone_from(&minimum.z);
+        let sigma = model.weights().sigma.clone();
         let change = model.weights().learn(minimum.residual.as_slice(), &floor);
         if change < 0.02 || round == 4 {
+            // those by which the residual was divided
+            model.weights().sigma = sigma;
             return Some(minimum);
         }
     }
@@ -426,41 +384,6 @@ impl LeastSquares for Shared<'_> {
     fn jacobian(&mut self, z: &[f64], residual: &DVector<f64>) -> Option<DMatrix<f64>> {
         self.0.jacobian(z, residual)
     }
-}
-
-/// The covariance of the unknowns in z: the residuals' own spread between two inverses of the information.
-fn covariance(weights: &Weights, minimum: &Minimum) -> DMatrix<f64> {
-    let (jacobian, residual) = (&minimum.jacobian, &minimum.residual);
-    let n = minimum.z.len();
-    let data = weights.series.iter().map(|s| s.rows.end).max().unwrap_or(0);
-    let known = jacobian.rows(data, jacobian.nrows() - data);
-    let mut information = jacobian.tr_mul(jacobian);
-    let small = 1e-12 * information.diagonal().max().max(f64::MIN_POSITIVE);
-    (0..n).for_each(|j| information[(j, j)] += small);
-    let mut spread = weights.spread(jacobian, residual);
-    spread *= data as f64 / (data.saturating_sub(n)).max(1) as f64;
-    spread += known.tr_mul(&known);
-    match information.cholesky() {
-        Some(c) => {
-            let half = c.solve(&spread);
-            c.solve(&half.transpose())
-        }
-        None => DMatrix::from_element(n, n, f64::INFINITY),
-    }
-}
-
-fn signal_fits(problem: &Problem<'_>, weights: &Weights, residual: &[f64], recordings: &[Recording]) -> Vec<SignalFit> {
-    let one = |(k, signal): (usize, &crate::study::BoundSignal)| {
-        let rmse = weights.rms(k, residual)?;
-        let values: Vec<f64> = recordings.iter().flat_map(|r| &r.signals[k]).copied().filter(|v| !v.is_nan()).collect();
-        let mean = values.iter().sum::<f64>() / values.len() as f64;
-        let spread = (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt();
-        let of_signal = weights.series.iter().filter(|s| s.signal == k);
-        let correlation = of_signal.map(|s| weights::correlation_time(&residual[s.rows.clone()])).fold(1.0, f64::max);
-        let (name, unit) = (signal.name.clone(), signal.unit.clone());
-        Some(SignalFit { name, unit, rmse, relative: rmse / spread, correlation })
-    };
-    problem.bound.signals.iter().enumerate().filter_map(one).collect()
 }
 
 /// The largest change over the range of the first.

@@ -1,15 +1,20 @@
 //! Output error: runs from the inputs alone against what was measured, with the initial states among the unknowns.
+//!
+//! Derivatives come from the variational equations where these describe the model along a recording, which is checked once
+//! against a difference; else from central differences.
 
+use super::exact::Exact;
 use super::least_squares::LeastSquares;
 use super::runs::{Broken, Runner, Track};
 use super::weights::{Series, Weights};
-use super::{Problem, Residuals};
+use super::{Course, Problem, Residuals};
 use crate::expr::VarId;
 use crate::solve::State;
 use crate::study::Recording;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// A state at the start of a recording that is searched for: z is its distance from the model's own value over `size`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,7 +39,8 @@ struct Case {
 /// Residual and derivatives of runs along recordings.
 pub struct OutputError<'a> {
     problem: &'a Problem<'a>,
-    runner: Runner<'a>,
+    /// How runs are made.
+    pub(super) runner: Runner<'a>,
     wanted: Vec<VarId>,
     cases: Vec<Case>,
     weights: Weights,
@@ -42,12 +48,29 @@ pub struct OutputError<'a> {
     parameters: usize,
     /// Parameter values where they are not searched for.
     fixed: Vec<f64>,
+    /// The variational equations, where there are any.
+    exact: Option<Arc<Exact>>,
+    /// Per recording whether they hold: not known yet, or why they do not.
+    trust: Vec<Trust>,
     /// Why the last run failed.
     pub broken: Option<Broken>,
 }
 
+/// Whether the variational equations hold along a recording.
+#[derive(Clone, Debug, PartialEq)]
+enum Trust {
+    Unknown,
+    Holds,
+    /// Why not.
+    Fails(String),
+}
+
 /// Step of the differences in z.
 const STEP: f64 = 1e-4;
+/// How far the variational equations may be from a difference, as a part of its largest value.
+const AGREE: f64 = 2e-3;
+/// Step of that difference: long, so that the error of the runs does not show.
+const CHECK: f64 = 1e-3;
 
 impl<'a> OutputError<'a> {
     /// For recordings: with parameters among the unknowns, or with parameters at `fixed` and initial states alone.
@@ -74,7 +97,26 @@ impl<'a> OutputError<'a> {
         }
         let weights = Weights::new(series(&cases), problem.first_deviations());
         let wanted = problem.bound.signals.iter().map(|s| s.variable).collect();
-        Ok(OutputError { problem, runner, wanted, cases, weights, parameters, fixed, broken: None })
+        let trust = vec![Trust::Unknown; cases.len()];
+        Ok(OutputError { problem, runner, wanted, cases, weights, parameters, fixed, exact: None, trust, broken: None })
+    }
+
+    /// Takes derivatives from the variational equations, or from differences for the reason given.
+    pub fn differentiate_by(&mut self, exact: Result<Arc<Exact>, String>) {
+        match exact {
+            Ok(exact) => self.exact = Some(exact),
+            Err(why) => self.trust.fill(Trust::Fails(why)),
+        }
+    }
+
+    /// Why derivatives were differences along some recording.
+    pub fn differences(&self) -> Option<&str> {
+        self.trust.iter().find_map(|t| if let Trust::Fails(why) = t { Some(why.as_str()) } else { None })
+    }
+
+    /// The most initial states that a recording leaves open.
+    pub fn most_states(&self) -> usize {
+        self.cases.iter().map(|c| c.states.len()).max().unwrap_or(0)
     }
 
     /// The same with only the first seconds of each recording.
@@ -156,15 +198,22 @@ impl LeastSquares for OutputError<'_> {
     }
 
     fn jacobian(&mut self, z: &[f64], residual: &DVector<f64>) -> Option<DMatrix<f64>> {
-        let this = &*self;
-        let jobs: Vec<(usize, usize)> =
-            (0..this.cases.len()).flat_map(|c| this.moves(c).map(move |j| (c, j))).collect();
-        let columns: Vec<Option<Vec<f64>>> = jobs.par_iter().map(|&(c, j)| this.difference(c, j, z)).collect();
         let mut jacobian = DMatrix::zeros(residual.len(), z.len());
+        let by_equations = self.by_equations(z);
+        let this = &*self;
+        let left = (0..this.cases.len()).filter(|&c| by_equations[c].is_none());
+        let jobs: Vec<(usize, usize)> = left.flat_map(|c| this.moves(c).map(move |j| (c, j))).collect();
+        let columns: Vec<Option<Vec<f64>>> = jobs.par_iter().map(|&(c, j)| this.difference(c, j, z)).collect();
+        let mut fill = |c: usize, j: usize, column: Vec<f64>| {
+            let rows = jacobian.view_mut((this.first_row(c), j), (column.len(), 1));
+            rows.into_iter().zip(column).for_each(|(entry, value)| *entry = value);
+        };
         for ((c, j), column) in jobs.into_iter().zip(columns) {
-            let first = this.first_row(c);
-            for (i, value) in column?.into_iter().enumerate() {
-                jacobian[(first + i, j)] = value;
+            fill(c, j, column?);
+        }
+        for (c, columns) in by_equations.into_iter().enumerate() {
+            for (j, column) in this.moves(c).zip(columns.into_iter().flatten()) {
+                fill(c, j, column);
             }
         }
         if self.parameters > 0 {
@@ -179,8 +228,99 @@ impl LeastSquares for OutputError<'_> {
 }
 
 impl OutputError<'_> {
+    /// The signals along the first recording with the errors of `residual`.
+    pub fn courses(&self, recordings: &[Recording], residual: &[f64]) -> Vec<Course> {
+        let one = |s: &Series| {
+            let signal = &self.problem.bound.signals[s.signal];
+            let measured = &recordings[0].signals[s.signal];
+            let known = || recordings[0].times.iter().zip(measured).filter(|(_, m)| !m.is_nan());
+            let sigma = self.weights.sigma[s.signal];
+            Course {
+                name: signal.name.clone(),
+                unit: signal.unit.clone(),
+                times: known().map(|k| *k.0).collect(),
+                measured: known().map(|k| *k.1).collect(),
+                errors: residual[s.rows.clone()].iter().map(|r| r * sigma).collect(),
+            }
+        };
+        self.weights.series.iter().filter(|s| s.recording == 0).map(one).collect()
+    }
+
     fn first_row(&self, case: usize) -> usize {
         self.weights.series.iter().filter(|s| s.recording < case).map(|s| s.rows.len()).sum()
+    }
+
+    /// Per recording one column an unknown that moves it, where the variational equations hold.
+    fn by_equations(&mut self, z: &[f64]) -> Vec<Option<Vec<Vec<f64>>>> {
+        let this = &*self;
+        let found: Vec<Result<Vec<Vec<f64>>, String>> = (0..this.cases.len())
+            .into_par_iter()
+            .map(|c| {
+                let columns = this.exactly(c, z)?;
+                if this.trust[c] == Trust::Unknown {
+                    this.agrees(c, z, &columns).map(|()| columns)
+                } else {
+                    Ok(columns)
+                }
+            })
+            .collect();
+        let judged = found.into_iter().zip(&mut self.trust).map(|(result, trust)| match result {
+            Ok(columns) => {
+                *trust = Trust::Holds;
+                Some(columns)
+            }
+            Err(why) => {
+                *trust = Trust::Fails(why);
+                None
+            }
+        });
+        judged.collect()
+    }
+
+    /// Derivatives of the weighed errors of a recording by the variational equations.
+    fn exactly(&self, case: usize, z: &[f64]) -> Result<Vec<Vec<f64>>, String> {
+        if let Trust::Fails(why) = &self.trust[case] {
+            return Err(why.clone());
+        }
+        let exact = self.exact.as_ref().filter(|_| self.parameters > 0).ok_or("they were not asked for")?;
+        let of = &self.cases[case];
+        let (free, states) = (&self.problem.free, &of.states);
+        let z = (&z[..self.parameters], &z[of.places.clone()]);
+        let columns = exact.columns(&of.track, free, states, z, &self.wanted, self.runner.tolerance)?;
+        let weighed = |signals: Vec<Vec<f64>>| {
+            let mut out = Vec::new();
+            for (k, (column, measured)) in signals.iter().zip(&of.measured).enumerate() {
+                let known = column.iter().zip(measured).filter(|(_, m)| !m.is_nan());
+                out.extend(known.map(|(s, _)| s / self.weights.sigma[k]));
+            }
+            out
+        };
+        let columns: Vec<Vec<f64>> = columns.into_iter().map(weighed).collect();
+        let finite = columns.iter().flatten().all(|v| v.is_finite());
+        if finite { Ok(columns) } else { Err("a derivative is not finite".to_owned()) }
+    }
+
+    /// Compares with the difference along one direction in which all unknowns move.
+    fn agrees(&self, case: usize, z: &[f64], columns: &[Vec<f64>]) -> Result<(), String> {
+        // each as far as it moves the errors alike, so that none hides behind another
+        let size = |c: &Vec<f64>| c.iter().map(|v| v * v).sum::<f64>().sqrt();
+        let largest = columns.iter().map(size).fold(0.0, f64::max);
+        let reach = |c: &Vec<f64>| if largest > 0.0 { (largest / size(c).max(1e-3 * largest)).min(10.0) } else { 1.0 };
+        let share: Vec<f64> = columns.iter().enumerate().map(|(k, c)| reach(c) * (1.0 + k as f64).cos()).collect();
+        let at = |step: f64| {
+            let mut moved = z.to_vec();
+            self.moves(case).zip(&share).for_each(|(j, s)| moved[j] += step * s);
+            self.errors(case, &moved).map_err(|_| "a run with moved parameters failed".to_owned())
+        };
+        let (up, down) = (at(CHECK)?, at(-CHECK)?);
+        let (mut most, mut apart) = (0.0f64, 0.0f64);
+        for i in 0..up.len() {
+            let difference = (up[i] - down[i]) / (2.0 * CHECK);
+            let sum: f64 = columns.iter().zip(&share).map(|(c, s)| s * c[i]).sum();
+            most = most.max(difference.abs());
+            apart = apart.max((difference - sum).abs());
+        }
+        if apart <= AGREE * most { Ok(()) } else { Err("signals or their derivatives jump".to_owned()) }
     }
 
     /// By central differences of tight runs, which are right across events too; one-sided where a run fails.

@@ -1,6 +1,6 @@
 //! The result of an identification in numbers and in words.
 
-use super::{Fit, Identification, Method, Problem, SignalFit};
+use super::{Fit, Identification, Method, Problem, Profile, ResidualTest, SignalFit};
 use crate::results::number::rounded;
 use serde::Serialize;
 use serde_json::{Map, json};
@@ -11,7 +11,7 @@ use std::fmt::Write;
 pub struct Report {
     /// `output error` or `inverse model`.
     pub method: &'static str,
-    /// The parameters found: value, one standard deviation (null where the data say nothing) and unit.
+    /// The parameters found: value, one standard deviation and 95 % interval (null where the data say nothing) and unit.
     pub parameters: Map<String, serde_json::Value>,
     /// Groups that the data cannot tell apart; a group of one has no influence.
     pub inseparable: Vec<Vec<String>>,
@@ -21,8 +21,15 @@ pub struct Report {
     pub fit_relative: Errors,
     /// Over how many samples the errors on the train recordings resemble each other.
     pub residual_correlation: Map<String, serde_json::Value>,
+    /// What the errors on the train recordings look like.
+    pub residuals: Map<String, serde_json::Value>,
     /// Correlations of the estimates, in the order of `parameters`.
     pub correlation: Vec<Vec<f64>>,
+    /// Profiles asked for: 95 % interval (null on a side that the data leave open) and points.
+    #[serde(skip_serializing_if = "Map::is_empty")]
+    pub profiles: Map<String, serde_json::Value>,
+    /// `exact`, or `differences` and why.
+    pub derivatives: String,
     /// Whether a least value was reached.
     pub converged: bool,
     /// Parameters that ended at a bound.
@@ -42,10 +49,18 @@ pub struct Errors {
 
 impl Report {
     /// Puts the result together.
-    pub fn new(problem: &Problem<'_>, found: &Identification<'_>, fit: &Fit, held: &[SignalFit]) -> Report {
+    pub fn new(
+        problem: &Problem<'_>,
+        found: &Identification<'_>,
+        fit: &Fit,
+        held: &[SignalFit],
+        profiles: &[Profile],
+    ) -> Report {
         let values = problem.free.iter().enumerate().map(|(j, f)| {
-            let std = Some(fit.deviations[j]).filter(|s| s.is_finite());
-            (f.name.clone(), json!({"value": fit.values[j], "std": std, "unit": f.unit}))
+            let std = finite(fit.deviations[j]);
+            let (low, high) = fit.interval(problem, j);
+            let interval = [finite(low), finite(high)];
+            (f.name.clone(), json!({"value": fit.values[j], "std": std, "interval": interval, "unit": f.unit}))
         });
         let by = |fits: &[SignalFit], of: fn(&SignalFit) -> f64| {
             fits.iter().map(|f| (f.name.clone(), json!(of(f)))).collect()
@@ -60,12 +75,42 @@ impl Report {
             fit: errors(|f| f.rmse),
             fit_relative: errors(|f| f.relative),
             residual_correlation: by(&fit.train, |f| f.correlation),
+            residuals: fit.residuals.iter().map(residual).collect(),
+            profiles: profiles.iter().map(|p| (problem.free[p.parameter].name.clone(), profile(p))).collect(),
             correlation: fit.correlation.row_iter().map(|r| r.iter().copied().collect()).collect(),
+            derivatives: derivatives(fit),
             converged: fit.converged,
             at_bound: ends.map(|(f, _)| f.name.clone()).collect(),
             iterations: fit.iterations,
         }
     }
+}
+
+fn derivatives(fit: &Fit) -> String {
+    fit.differences.as_ref().map_or_else(|| "exact".to_owned(), |why| format!("differences: {why}"))
+}
+
+/// JSON knows no infinity.
+fn finite(value: f64) -> Option<f64> {
+    Some(value).filter(|v| v.is_finite())
+}
+
+fn residual(test: &ResidualTest) -> (String, serde_json::Value) {
+    let follow = |d: &super::Dependence| {
+        (d.input.clone(), json!({"lag": d.lag, "correlation": d.correlation, "chance": d.chance}))
+    };
+    let inputs: Map<String, serde_json::Value> = test.inputs.iter().map(follow).collect();
+    let (white, chance) = (test.white(), test.chance);
+    let all = json!({
+        "samples": test.samples, "white": white, "chance": chance, "statistic": test.statistic,
+        "autocorrelation": test.autocorrelation, "inputs": inputs,
+    });
+    (test.name.clone(), all)
+}
+
+fn profile(p: &Profile) -> serde_json::Value {
+    let (value, rise): (Vec<f64>, Vec<f64>) = p.points.iter().copied().unzip();
+    json!({"interval": [finite(p.interval.0), finite(p.interval.1)], "value": value, "rise": rise})
 }
 
 fn word(method: Method) -> &'static str {
@@ -122,5 +167,39 @@ pub fn fit_words(problem: &Problem<'_>, fit: &Fit, held: &[SignalFit]) -> String
             let _ = writeln!(text, "  {role}: {} rmse {rmse} {} ({share} %){coloured}", f.name, f.unit);
         }
     }
+    if fit.method == Method::Output {
+        let _ = writeln!(text, "  derivatives: {}", derivatives(fit));
+    }
+    for test in &fit.residuals {
+        let _ = writeln!(text, "  {}", residual_words(test));
+    }
     text
+}
+
+/// What the errors of a signal look like.
+fn residual_words(test: &ResidualTest) -> String {
+    let (name, chance) = (&test.name, rounded(test.chance, 2));
+    let lags = test.autocorrelation.len();
+    let mut text = if test.white() {
+        format!("errors of {name} may be white (chance {chance}, {lags} lags)")
+    } else {
+        format!("errors of {name} are not white (chance {chance}, {lags} lags); deviations are corrected for it")
+    };
+    for d in test.followed() {
+        let (correlation, chance) = (rounded(d.correlation, 2), rounded(d.chance, 2));
+        let _ = write!(text, "\n    they follow {} after {} samples: correlation {correlation}", d.input, d.lag);
+        let _ = write!(text, " (chance {chance}); something is missing in the model");
+    }
+    text
+}
+
+/// Profiles, in words.
+pub fn profile_words(problem: &Problem<'_>, profiles: &[Profile]) -> String {
+    let end = |v: f64| if v.is_finite() { rounded(v, 6) } else { "open".to_owned() };
+    let line = |p: &Profile| {
+        let free = &problem.free[p.parameter];
+        format!("  {}: 95 % from {} to {} {}\n", free.name, end(p.interval.0), end(p.interval.1), free.unit)
+    };
+    let lines: String = profiles.iter().map(line).collect();
+    if lines.is_empty() { lines } else { format!("profile likelihood:\n{lines}") }
 }

@@ -128,7 +128,7 @@ impl Runner<'_> {
 }
 
 /// Takes the rows of a run and keeps the values at given times: at an event those after it, between rows straight lines.
-struct Samples<'a> {
+pub(super) struct Samples<'a> {
     times: &'a [f64],
     next: usize,
     before: Option<(f64, Vec<f64>)>,
@@ -136,7 +136,8 @@ struct Samples<'a> {
 }
 
 impl<'a> Samples<'a> {
-    fn new(times: &'a [f64], wanted: &[VarId]) -> Self {
+    /// For the columns of `wanted`.
+    pub(super) fn new(times: &'a [f64], wanted: &[VarId]) -> Self {
         Samples { times, next: 0, before: None, columns: vec![Vec::with_capacity(times.len()); wanted.len()] }
     }
 
@@ -159,7 +160,8 @@ impl<'a> Samples<'a> {
         }
     }
 
-    fn finish(mut self) -> Vec<Vec<f64>> {
+    /// One column a variable, as long as the times.
+    pub(super) fn finish(mut self) -> Vec<Vec<f64>> {
         if let Some((_, values)) = self.before.take() {
             self.pass(f64::INFINITY, &values);
         }

@@ -44,6 +44,11 @@ pub fn separate(information: &DMatrix<f64>) -> Separation {
     let alike = DMatrix::from_fn(seen.len(), seen.len(), |a, b| {
         information[(seen[a], seen[b])] / (size[seen[a]] * size[seen[b]])
     });
+    // an empty matrix has no decomposition
+    if seen.is_empty() {
+        let deviation = size.iter().map(|s| 1.0 / s).collect();
+        return Separation { rank: 0, condition: f64::INFINITY, blind, deviation };
+    }
     let eigen = alike.symmetric_eigen();
     let largest = eigen.eigenvalues.iter().copied().fold(0.0, f64::max);
     let smallest = eigen.eigenvalues.iter().copied().fold(f64::INFINITY, f64::min);
@@ -112,6 +117,13 @@ mod tests {
         let groups: Vec<Vec<usize>> = found.blind.iter().map(|b| b.group.clone()).collect();
         assert!(groups[0] == [3] && (groups[1] == [0, 1] || groups[1] == [1, 0]), "{groups:?}");
         assert!(found.deviation[2] < 1e-2 && found.deviation[3].is_infinite());
+    }
+
+    #[test]
+    fn parameters_that_all_have_no_influence() {
+        let found = separate(&DMatrix::zeros(2, 2));
+        assert_eq!((found.rank, found.blind.len()), (0, 2));
+        assert!(found.blind.iter().all(|b| b.deviation.is_infinite()));
     }
 
     #[test]

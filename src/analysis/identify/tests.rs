@@ -51,8 +51,12 @@ fn world(model: &str, study: &str, train: String, held: String) -> MemoryWorld {
     world
 }
 
-/// Runs everything and hands the report to `see`.
-fn identified<T>(world: &MemoryWorld, method: Method, see: impl FnOnce(&Report, &str) -> T) -> T {
+/// Runs everything and hands the fit to `see`.
+fn with_fit<T>(
+    world: &MemoryWorld,
+    method: Method,
+    see: impl FnOnce(&Problem<'_>, &Identification<'_>, &Fit) -> T,
+) -> T {
     let mut sources = Sources::default();
     let study = Study::read(world, Path::new("study.toml"), &mut sources).value.expect("a study");
     let outcome = crate::compile(world, &study.request(), &crate::lower::Options { native: false });
@@ -62,10 +66,60 @@ fn identified<T>(world: &MemoryWorld, method: Method, see: impl FnOnce(&Report, 
     let problem = Problem::new(&model, &bound, &train).expect("can be asked");
     let found = Identification::new(&problem, &train, method).expect("runs");
     let fit = found.fit().expect("runs");
-    let held = bound.load(world, None, Role::Held, &mut sources).value.expect("readable");
-    let held = found.judge_held(&fit, &held).expect("runs");
-    let words = separation_words(&problem, &found) + &fit_words(&problem, &fit, &held);
-    see(&Report::new(&problem, &found, &fit, &held), &words)
+    see(&problem, &found, &fit)
+}
+
+/// Runs everything and hands the report to `see`.
+fn identified<T>(world: &MemoryWorld, method: Method, see: impl FnOnce(&Report, &str) -> T) -> T {
+    with_fit(world, method, |problem, found, fit| {
+        let mut sources = Sources::default();
+        let held = problem.bound.load(world, None, Role::Held, &mut sources).value.expect("readable");
+        let held = found.judge_held(fit, &held).expect("runs");
+        let words = separation_words(problem, found) + &fit_words(problem, fit, &held);
+        see(&Report::new(problem, found, fit, &held, &[]), &words)
+    })
+}
+
+/// Normal numbers that resemble their neighbours: each is 0.7 of the one before plus new noise; deviation about 1.
+struct Coloured(Dice, f64);
+
+impl Coloured {
+    fn next(&mut self) -> f64 {
+        let fresh: f64 = (0..12).map(|_| self.0.roll()).sum::<f64>() / 2.0;
+        self.1 = 0.7 * self.1 + (1.0 - 0.7f64 * 0.7).sqrt() * fresh;
+        self.1
+    }
+}
+
+/// Over many recordings with coloured noise the 95 % intervals hold the truth about as often as they say. The truth
+/// starts at the model's own state.
+#[test]
+fn intervals_cover_the_truth_under_coloured_noise() {
+    const RUNS: u64 = 100;
+    let text = study("T = { min = 0.01 }\nk = { min = 0.1 }\n");
+    let covered: usize = (0..RUNS)
+        .map(|seed| {
+            let mut noise = Coloured(Dice(977 * seed + 13), 0.0);
+            let clean = lag_recording(seed, 0.0);
+            let mut lines = clean.lines();
+            let mut noisy = format!("{}\n", lines.next().expect("the names"));
+            for line in lines {
+                let (head, x) = line.rsplit_once(',').expect("three columns");
+                let x: f64 = x.parse().expect("a number");
+                noisy.push_str(&format!("{head},{}\n", x + 0.05 * noise.next()));
+            }
+            let world = world(LAG, &text, noisy, clean);
+            with_fit(&world, Method::Output, |problem, _, fit| {
+                let holds = |j: usize, truth: f64| {
+                    let (low, high) = fit.interval(problem, j);
+                    usize::from(low <= truth && truth <= high)
+                };
+                holds(0, 0.5) + holds(1, 2.0)
+            })
+        })
+        .sum();
+    // 190 of 200 expected; the two parameters of one run are not independent
+    assert!((178..=200).contains(&covered), "{covered} of {}", 2 * RUNS);
 }
 
 fn number(report: &Report, name: &str, what: &str) -> f64 {
@@ -77,7 +131,7 @@ fn parameters_and_the_unknown_initial_state_are_found() {
     let text = study("T = { min = 0.01 }\nk = { sigma = \"80 %\" }\n");
     let world = world(LAG, &text, lag_recording(1, 0.02), lag_recording(2, 0.02));
     identified(&world, Method::Auto, |report, _| {
-        assert_eq!((report.method, report.converged), ("output error", true));
+        assert_eq!((report.method, report.converged, report.derivatives.as_str()), ("output error", true, "exact"));
         for (name, truth) in [("T", 0.5), ("k", 2.0)] {
             let (value, std) = (number(report, name, "value"), number(report, name, "std"));
             assert!((value - truth).abs() < 3.0 * std && std < 0.01 * truth, "{name}: {value} +- {std}");
@@ -141,6 +195,47 @@ fn the_inverse_model_finds_mass_and_friction() {
     });
 }
 
+/// Derivatives by parameters and by an unknown initial state, with gaps in the data, against differences.
+#[test]
+fn derivatives_of_runs_agree_with_differences() {
+    let model = "model Tank parameter Real a = 1, k(min = 0) = 2; input Real u; Real x(start = 0.5, fixed = true);
+        equation der(x) = k*u - a*x^3 - sin(x); end Tank;";
+    let text = study("a = { min = -5.0, max = 5.0 }\nk = { sigma = \"10 %\" }\n");
+    let line = |(k, line): (usize, &str)| match line.rsplit_once(',') {
+        Some((head, _)) if k % 7 == 3 => format!("{head},\n"),
+        _ => format!("{line}\n"),
+    };
+    let gap: String = lag_recording(1, 0.02).lines().enumerate().map(line).collect();
+    let world = world(model, &text, gap, lag_recording(2, 0.02));
+    with_fit(&world, Method::Output, |problem, found, fit| {
+        assert_eq!(fit.differences, None);
+        let mut exact = found.output_error().expect("starts");
+        let mut plain = OutputError::new(problem, found.train, None).expect("starts");
+        (exact.runner.tolerance, plain.runner.tolerance) = (1e-11, 1e-11);
+        let z = [0.2, -0.1, 0.3];
+        let (r, s) = (exact.residual(&z).expect("runs"), plain.residual(&z).expect("runs"));
+        let (j, d) = (exact.jacobian(&z, &r).expect("runs"), plain.jacobian(&z, &s).expect("runs"));
+        assert!(exact.differences().is_none() && plain.differences().is_some());
+        for k in 0..3 {
+            let apart = (j.column(k) - d.column(k)).amax() / d.column(k).amax();
+            assert!(apart < 1e-6, "{k}: {apart}");
+        }
+    });
+}
+
+/// A sampled value that depends on a parameter is left to differences, which is said.
+#[test]
+fn sampled_models_are_fitted_by_differences() {
+    let model = "model Held parameter Real k(min = 0) = 1; input Real u; discrete Real g(start = 0, fixed = true);
+        Real x(start = 0.7, fixed = true);
+        equation when sample(0, 0.1) then g = k*u; end when; 0.5*der(x) = g - x; end Held;";
+    let world = world(model, &study("k = { min = 0.1 }\n"), lag_recording(1, 0.02), lag_recording(2, 0.02));
+    identified(&world, Method::Output, |report, words| {
+        assert_eq!(report.derivatives, "differences: sampled values depend on what moves");
+        assert!(words.contains("derivatives: differences: sampled values depend on what moves"));
+    });
+}
+
 #[test]
 fn questions_without_sense() {
     let said = |text: &str| {
@@ -158,4 +253,44 @@ fn questions_without_sense() {
     assert_eq!(said(&study("T = \"exact\"\n")), "the study has no parameters to find");
     assert_eq!(said(&study("T = { min = 2 }\n")), "the bounds of `T` exclude its value in the model, 1");
     assert_eq!(said(&study("T = { min = 0.1 }\n")), "the model cannot be inverted with this study");
+}
+
+/// In a model whose output is linear in its parameters the profile is the parabola that the deviations say.
+#[test]
+fn profiles_of_a_linear_fit_agree_with_the_deviations_and_open_ones_are_open() {
+    let model =
+        "model Line parameter Real a = 1, b = 1, idle = 1; input Real u; Real x; Real y(start = 0, fixed = true);
+        equation der(y) = 0; x = a*u + b*time + y; end Line;";
+    let mut dice = Dice(5);
+    let rows: String = (0..200)
+        .map(|k| {
+            let (t, u) = (f64::from(k) * 0.01, (f64::from(k) * 0.3).sin());
+            format!("{t},{u},{}\n", 2.0 * u + 3.0 * t + 0.1 * dice.roll())
+        })
+        .collect();
+    let text =
+        study("a = { min = -9.0, max = 9.0 }\nb = { min = -9.0, max = 9.0 }\nidle = { min = -2.0, max = 2.0 }\n");
+    let world = world(model, &text, format!("time,u,x\n{rows}"), format!("time,u,x\n{rows}"));
+    with_fit(&world, Method::Output, |problem, found, fit| {
+        for (j, truth) in [2.0, 3.0].into_iter().enumerate() {
+            let profile = found.profile(fit, j).expect("runs");
+            let (value, half) = (fit.values[j], 1.96 * fit.deviations[j]);
+            let (low, high) = profile.interval;
+            assert!(
+                (low - value + half).abs() < 0.04 * half && (high - value - half).abs() < 0.04 * half,
+                "{profile:?}"
+            );
+            assert!(low < truth && truth < high);
+            let (low, high) = fit.interval(problem, j);
+            assert!((low - value + half).abs() < 1e-3 * half && (high - value - half).abs() < 1e-3 * half);
+        }
+        let idle = found.profile(fit, 2).expect("runs");
+        assert_eq!(idle.interval, (f64::NEG_INFINITY, f64::INFINITY), "{idle:?}");
+        assert!(fit.residuals[0].white(), "{:?}", fit.residuals);
+        let (x, y) = fit.ellipse(problem, 0, 1).expect("both are found");
+        let reach = x.iter().fold(0.0f64, |m, v| m.max((v - fit.values[0]).abs()));
+        assert!((reach - 2.4477 * fit.deviations[0]).abs() < 0.01 * reach && y.len() == x.len());
+        assert!(fit.deviations[2].is_infinite() && fit.ellipse(problem, 0, 2).is_none());
+        assert_eq!(picture(problem, fit, &[idle]).panels.len(), 1 + 1 + 1 + 1);
+    });
 }

@@ -1,0 +1,203 @@
+//! What a fit found: values, their uncertainty, and how well the signals are met.
+
+use super::chance::NORMAL;
+use super::inverse::InverseModel;
+use super::least_squares::Minimum;
+use super::residuals::inputs_beside;
+use super::separate::{separate, without_rest};
+use super::weights::{self, Weights};
+use super::{Identification, Method, Problem, ResidualTest, Residuals};
+use crate::study::Recording;
+use nalgebra::DMatrix;
+
+/// What the fit found. Vectors are in the order of [`Problem::free`].
+#[derive(Clone, Debug)]
+pub struct Fit {
+    /// [`Method::Output`] or [`Method::Inverse`].
+    pub method: Method,
+    /// Values in the parameters' units.
+    pub values: Vec<f64>,
+    /// One standard deviation of each.
+    pub deviations: Vec<f64>,
+    /// Correlations of the estimates.
+    pub correlation: DMatrix<f64>,
+    /// Parameters that ended at a bound.
+    pub at_bound: Vec<bool>,
+    /// False where the search ended before a least value was reached.
+    pub converged: bool,
+    /// Steps of the search.
+    pub iterations: usize,
+    /// Per signal (or input, for the inverse model) the errors on the train recordings.
+    pub train: Vec<SignalFit>,
+    /// What the errors on the train recordings look like, one a signal (or input, for the inverse model).
+    pub residuals: Vec<ResidualTest>,
+    /// Measured and modelled course of each signal along the first train recording.
+    pub courses: Vec<Course>,
+    /// Why derivatives were differences along some recording; `None` where the variational equations gave them all.
+    pub differences: Option<String>,
+    /// All unknowns: the parameters on the scale of the search, then initial states.
+    pub(super) z: Vec<f64>,
+    /// Variances of the parameters on that scale.
+    pub(super) spread: Vec<f64>,
+    /// What they would be if the errors were white.
+    pub(super) plain: Vec<f64>,
+    /// The sum of squares.
+    pub(super) cost: f64,
+    /// How errors were weighed.
+    pub(super) weights: Weights,
+}
+
+/// A signal along a recording.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Course {
+    /// The signal's name; for the inverse model the input's.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// Seconds.
+    pub times: Vec<f64>,
+    /// What was measured.
+    pub measured: Vec<f64>,
+    /// Model minus measurement.
+    pub errors: Vec<f64>,
+}
+
+impl Fit {
+    /// The 95 % interval of a parameter, in its unit, from its deviation on the scale of the search: on a logarithmic one
+    /// it lies about the value by a factor. Infinite where the data say nothing.
+    pub fn interval(&self, problem: &Problem<'_>, parameter: usize) -> (f64, f64) {
+        let (free, z) = (&problem.free[parameter], self.z[parameter]);
+        let half = NORMAL * self.spread[parameter].sqrt();
+        (free.value(z - half), free.value(z + half))
+    }
+}
+
+/// How well one signal is met.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SignalFit {
+    /// The signal's name; for the inverse model the input's.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// Root mean square of the errors.
+    pub rmse: f64,
+    /// The same over the signal's own root mean square about its mean (about zero for forces).
+    pub relative: f64,
+    /// Over how many samples the errors resemble each other; 1 for white ones.
+    pub correlation: f64,
+}
+
+impl Identification<'_> {
+    pub(super) fn force_fits(&self, model: &mut InverseModel<'_>, minimum: &Minimum) -> Vec<SignalFit> {
+        let weights = model.weights().clone();
+        let one = |(k, input): (usize, &crate::study::BoundInput)| {
+            let rmse = weights.rms(k, minimum.residual.as_slice())?;
+            let count: usize = weights.series.iter().filter(|s| s.signal == k).map(|s| s.rows.len()).sum();
+            let relative = rmse / (model.power(k) / count as f64).sqrt();
+            let (name, unit) = (input.name.clone(), input.unit.clone());
+            Some(SignalFit { name, unit, rmse, relative, correlation: weights.correlation[k] })
+        };
+        self.problem.bound.inputs.iter().enumerate().filter_map(one).collect()
+    }
+
+    pub(super) fn estimate(
+        &self,
+        model: &mut dyn Residuals,
+        minimum: &Minimum,
+        train: Vec<SignalFit>,
+        courses: Vec<Course>,
+    ) -> Fit {
+        let p = self.problem.free.len();
+        let (mut covariance, inverse) = covariance(model.weights(), minimum);
+        // what nothing is known about has no finite deviation
+        let told = separate(&without_rest(&minimum.jacobian.tr_mul(&minimum.jacobian), p));
+        let hidden = told.blind.iter().filter(|b| b.deviation.is_infinite());
+        hidden.flat_map(|b| &b.group).for_each(|&j| covariance[(j, j)] = f64::INFINITY);
+        let free = self.problem.free.iter().zip(&minimum.z);
+        let slope: Vec<f64> = free.clone().map(|(f, &z)| f.slope(z).abs()).collect();
+        let deviation = |j: usize| covariance[(j, j)].max(0.0).sqrt();
+        let correlation = DMatrix::from_fn(p, p, |i, j| {
+            if i == j {
+                return 1.0;
+            }
+            let scale = deviation(i) * deviation(j);
+            if scale > 0.0 && scale.is_finite() { covariance[(i, j)] / scale } else { f64::from(u8::from(i == j)) }
+        });
+        Fit {
+            method: self.method(),
+            values: free.map(|(f, &z)| f.value(z)).collect(),
+            deviations: (0..p).map(|j| slope[j] * deviation(j)).collect(),
+            correlation,
+            at_bound: minimum.at_bound[..p].to_vec(),
+            converged: minimum.converged,
+            iterations: minimum.iterations,
+            train,
+            residuals: Vec::new(),
+            courses,
+            differences: None,
+            z: minimum.z.clone(),
+            spread: (0..p).map(|j| covariance[(j, j)].max(0.0)).collect(),
+            plain: (0..p).map(|j| inverse[(j, j)].max(0.0)).collect(),
+            cost: minimum.residual.norm_squared(),
+            weights: model.weights().clone(),
+        }
+    }
+
+    /// Tests what is left over.
+    pub(super) fn judge_residuals(&self, fit: &Fit, residual: &[f64]) -> Vec<ResidualTest> {
+        let bound = self.problem.bound;
+        if self.method() == Method::Inverse {
+            let all = bound.inputs.iter().enumerate();
+            return all
+                .filter_map(|(k, input)| ResidualTest::new(&input.name, k, &fit.weights, residual, &[]))
+                .collect();
+        }
+        let one = |(k, signal): (usize, &crate::study::BoundSignal)| {
+            let beside = inputs_beside(bound, k, self.train);
+            ResidualTest::new(&signal.name, k, &fit.weights, residual, &beside)
+        };
+        bound.signals.iter().enumerate().filter_map(one).collect()
+    }
+}
+
+/// The covariance of the unknowns in z, the residuals' own spread between two inverses of the information, and the one
+/// inverse alone.
+fn covariance(weights: &Weights, minimum: &Minimum) -> (DMatrix<f64>, DMatrix<f64>) {
+    let (jacobian, residual) = (&minimum.jacobian, &minimum.residual);
+    let n = minimum.z.len();
+    let data = weights.series.iter().map(|s| s.rows.end).max().unwrap_or(0);
+    let known = jacobian.rows(data, jacobian.nrows() - data);
+    let mut information = jacobian.tr_mul(jacobian);
+    let small = 1e-12 * information.diagonal().max().max(f64::MIN_POSITIVE);
+    (0..n).for_each(|j| information[(j, j)] += small);
+    let mut spread = weights.spread(jacobian, residual);
+    spread *= data as f64 / (data.saturating_sub(n)).max(1) as f64;
+    spread += known.tr_mul(&known);
+    match information.cholesky() {
+        Some(c) => {
+            let half = c.solve(&spread);
+            (c.solve(&half.transpose()), c.inverse())
+        }
+        None => (DMatrix::from_element(n, n, f64::INFINITY), DMatrix::from_element(n, n, f64::INFINITY)),
+    }
+}
+
+/// How well each signal is met.
+pub(super) fn signal_fits(
+    problem: &Problem<'_>,
+    weights: &Weights,
+    residual: &[f64],
+    recordings: &[Recording],
+) -> Vec<SignalFit> {
+    let one = |(k, signal): (usize, &crate::study::BoundSignal)| {
+        let rmse = weights.rms(k, residual)?;
+        let values: Vec<f64> = recordings.iter().flat_map(|r| &r.signals[k]).copied().filter(|v| !v.is_nan()).collect();
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        let spread = (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt();
+        let of_signal = weights.series.iter().filter(|s| s.signal == k);
+        let correlation = of_signal.map(|s| weights::correlation_time(&residual[s.rows.clone()])).fold(1.0, f64::max);
+        let (name, unit) = (signal.name.clone(), signal.unit.clone());
+        Some(SignalFit { name, unit, rmse, relative: rmse / spread, correlation })
+    };
+    problem.bound.signals.iter().enumerate().filter_map(one).collect()
+}
