@@ -260,9 +260,10 @@ impl Search {
         let t = vuong(&best.fit.blocks, &self.last.blocks);
         let count = problem.tolerances.len();
         let returned = self.last.prior_cost(count) - best.fit.prior_cost(count);
-        // a parameter that is let go always returns from its bound
+        // a parameter that is let go always returns from its bound, and acts at all times
         let drift = problem.hypotheses[best.accepted.chosen.hypothesis].family == "parameter";
-        let consistent = t > CONSISTENT || !drift && returned > 0.5 * gain || rare(&best.fit, &self.last, gain);
+        let seldom = || !drift && (returned > 0.5 * gain || rare(&best.fit, &self.last, gain));
+        let consistent = t > CONSISTENT || seldom();
         if gain < ACCEPTED || !consistent {
             return false;
         }
