@@ -45,7 +45,8 @@
 //! ```
 //!
 //! `examples/` has a program for each use: `simulate`, `build`, `watch` (rows as they come), `cosimulate` (inputs set from
-//! outside at 1 kHz), `trajectories`, `linearize`, `identify`, `diagnose`.
+//! outside at 1 kHz), `trajectories`, `linearize`, `identify`, `coverage` (how often its
+//! intervals hold the truth), `diagnose`.
 //!
 //! # Features
 //!

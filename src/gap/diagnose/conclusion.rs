@@ -139,7 +139,12 @@ impl Conclusion<'_> {
     fn places(&self, places: &[Located]) -> Vec<v::Located> {
         // the place of a shape is better known than that of a source without any
         let shape = self.search.shape.iter().map(|s| (&self.problem.hypotheses[s.hypothesis], s.gain));
-        let sources = places.iter().map(|l| (&self.problem.disturbances[l.disturbance], l.evidence));
+        let place = |h: &Hypothesis| h.attachments[0].place.place.clone();
+        let shaped: Vec<String> = shape.clone().map(|(h, _)| place(h)).collect();
+        let sources = places
+            .iter()
+            .map(|l| (&self.problem.disturbances[l.disturbance], l.evidence))
+            .filter(|(h, _)| !shaped.contains(&place(h)));
         let all: Vec<(&Hypothesis, f64)> = shape.chain(sources).filter(|(_, evidence)| *evidence > 0.0).collect();
         let total: f64 = all.iter().map(|(_, evidence)| evidence).sum();
         let located = |(h, evidence): &(&Hypothesis, f64)| {
