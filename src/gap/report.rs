@@ -36,7 +36,8 @@ pub fn report(problem: &Problem<'_>, search: &Search, verdict: &Verdict, held: &
 
 /// Everything above the curves.
 fn before(problem: &Problem<'_>, v: &Verdict) -> String {
-    let mut out = format!("<pre class=\"words\">{}</pre>\n", escape(words(v).trim_end()));
+    let line = |line: &str| format!("<p>{}</p>\n", escape(line));
+    let mut out: String = words(v).lines().map(line).collect();
     out.push_str(&picture(problem, v));
     out.push_str(&table("Effects", EFFECTS, &effects(v)));
     out.push_str(&table("Gap in parts of full scale", GAPS, &gaps(v)));
