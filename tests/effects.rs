@@ -40,7 +40,7 @@ fn listed(all: &[Hypothesis]) -> String {
 fn check(world: &dyn World, request: &Request, signals: &[Signal]) -> String {
     let effects = catalogue(world, None);
     assert!(effects.diagnostics.is_empty(), "{:?}", effects.diagnostics);
-    let effects = effects.value.expect("a catalogue");
+    let effects = effects.value.expect("a catalogue").effects;
     assert!(effects.iter().any(|e| e.interface.attach == Attach::Shunt));
     let places = value(circuit(world, request));
     let all = hypotheses(&places, &effects, signals, &[]);
@@ -170,7 +170,7 @@ fn difference(a: &Trajectory, b: &Trajectory, of: &str, in_b: &str) -> f64 {
 
 fn axis() -> (Request, Circuit, Vec<Hypothesis>) {
     let request = Request { source: "GapAxis.Nominal".into(), ..Request::default() };
-    let effects = catalogue(&MemoryWorld::default(), None).value.expect("a catalogue");
+    let effects = catalogue(&MemoryWorld::default(), None).value.expect("a catalogue").effects;
     let places = value(circuit(&MemoryWorld::default(), &request));
     let all = hypotheses(&places, &effects, &gap_axis_signals(), &[]);
     (request, places, all)
@@ -207,7 +207,7 @@ fn series_elements_add_up() {
     end Loop;";
     let world = MemoryWorld::single("Loop.mo", text);
     let request = Request { source: "Loop.mo".into(), ..Request::default() };
-    let effects = catalogue(&world, None).value.expect("a catalogue");
+    let effects = catalogue(&world, None).value.expect("a catalogue").effects;
     let places = value(circuit(&world, &request));
     let all = hypotheses(&places, &effects, &[], &[]);
     let series: Vec<&Hypothesis> = all.iter().filter(|h| matches!(h.attachments[0].site, Site::Into(_))).collect();
@@ -272,7 +272,7 @@ fn the_corrected_model_stands_alone() {
 /// Effects that only lose power do so at every moment, whatever moves their ports.
 #[test]
 fn losses_lose() {
-    let effects = catalogue(&MemoryWorld::default(), None).value.expect("a catalogue");
+    let effects = catalogue(&MemoryWorld::default(), None).value.expect("a catalogue").effects;
     let families = [
         "dry_friction",
         "viscous_friction",
@@ -343,7 +343,7 @@ fn own_effects() {
     let folder = Path::new("own");
     let effects = catalogue(&world, Some(folder));
     assert!(effects.diagnostics.is_empty(), "{:?}", effects.diagnostics);
-    let effects: Vec<_> = effects.value.unwrap().into_iter().filter(|e| e.class == "Sticky").collect();
+    let effects: Vec<_> = effects.value.unwrap().effects.into_iter().filter(|e| e.class == "Sticky").collect();
     let request = Request { source: "GapAxis.Nominal".into(), ..Request::default() };
     let places = value(circuit(&world, &request));
     let all = hypotheses(&places, &effects, &[], &[]);

@@ -215,6 +215,11 @@ impl<'a> Writer<'a> {
             let tap = self.tap(*port);
             self.read(&instance, &potential.name, &tap, *port);
         }
+        self.warm(&instance, at, effect);
+    }
+
+    /// Gives an effect the temperature that it reads, in kelvin.
+    fn warm(&mut self, instance: &str, at: &Attachment, effect: &Effect) {
         if let (Some((input, offset)), Some(name)) = (&at.temperature, &effect.interface.temperature) {
             let _ = writeln!(self.plant.equations, "    {instance}.{name} = {input} + {offset:e};");
         }
@@ -227,9 +232,7 @@ impl<'a> Writer<'a> {
         self.plant.declarations.push_str(&declaration);
         self.open(port);
         let _ = writeln!(self.plant.equations, "    {instance}.{} = {};", through.name, through_of(port));
-        if let (Some((input, offset)), Some(name)) = (&at.temperature, &effect.interface.temperature) {
-            let _ = writeln!(self.plant.equations, "    {instance}.{name} = {input} + {offset:e};");
-        }
+        self.warm(&instance, at, effect);
         self.drops.get_mut(&port).expect("just made").push(format!("{instance}.{}", drop.name));
     }
 

@@ -256,7 +256,7 @@ impl Search {
             return false;
         }
         let best = refined.remove(simplest(problem, &refined));
-        let gain = best.fit.evidence - self.last.evidence;
+        let gain = self.gain(&best.fit);
         let t = vuong(&best.fit.blocks, &self.last.blocks);
         let count = problem.tolerances.len();
         let returned = self.last.prior_cost(count) - best.fit.prior_cost(count);
@@ -279,17 +279,28 @@ impl Search {
             .collect();
         self.found.push(Found { gain, t, alternatives });
         self.accepted.push(best.accepted);
-        let chosen: Vec<Vec<f64>> = best.assembled.attached.iter().map(|a| values(&best.fit, a)).collect();
-        self.accepted.iter_mut().zip(chosen).for_each(|(a, values)| a.chosen.values = values);
-        self.last = best.fit;
-        self.last_model = best.assembled;
+        self.adopt(best.fit, best.assembled);
         true
+    }
+
+    /// Nats that a fit is ahead of the last one.
+    fn gain(&self, fit: &Fit) -> f64 {
+        fit.evidence - self.last.evidence
+    }
+
+    /// Takes a fit of the accepted effects as the last one, with their values.
+    fn adopt(&mut self, fit: Fit, model: Assembled) {
+        for (a, places) in self.accepted.iter_mut().zip(&model.attached) {
+            a.chosen.values = values(&fit, places);
+        }
+        self.last = fit;
+        self.last_model = model;
     }
 
     /// Whether a shape explains so much more than the best effect that the effect is not the cause.
     fn nothing_known(&self, shape: &Refined, best: Option<&Refined>) -> bool {
-        let gain = shape.fit.evidence - self.last.evidence;
-        let named = best.map_or(0.0, |b| b.fit.evidence - self.last.evidence).max(0.0);
+        let gain = self.gain(&shape.fit);
+        let named = best.map_or(0.0, |b| self.gain(&b.fit)).max(0.0);
         let blocks = best.map_or(&self.last.blocks, |b| &b.fit.blocks);
         gain > ACCEPTED && gain - named > AHEAD.max(AHEAD_PART * named) && vuong(&shape.fit.blocks, blocks) > CONSISTENT
     }
@@ -298,7 +309,7 @@ impl Search {
     /// than they do: they only stood near it.
     fn shaped(&mut self, problem: &Problem<'_>, shape: Refined) {
         let hypothesis = shape.accepted.chosen.hypothesis;
-        let gain = shape.fit.evidence - self.last.evidence;
+        let gain = self.gain(&shape.fit);
         let mut with = shape.fit;
         if !self.accepted.is_empty()
             && let Some((alone, _)) = fitted(problem, &self.base, std::slice::from_ref(&shape.accepted))
@@ -307,8 +318,7 @@ impl Search {
             if alone.evidence > self.last.evidence {
                 self.accepted.clear();
                 self.found.clear();
-                self.last = self.base.clone().at_share(self.last.share);
-                self.last_model = self.base_model.clone();
+                self.adopt(self.base.clone().at_share(self.last.share), self.base_model.clone());
                 with = alone;
             }
         }
@@ -322,14 +332,9 @@ impl Search {
         Trial {
             round,
             chosen: r.accepted.chosen.clone(),
-            gain: r.fit.evidence - self.last.evidence,
+            gain: self.gain(&r.fit),
             t: vuong(&r.fit.blocks, &self.last.blocks),
-            won_and_lost: r
-                .fit
-                .blocks
-                .iter()
-                .zip(&self.last.blocks)
-                .fold((0.0, 0.0), |(won, lost), (a, b)| if a > b { (won + a - b, lost) } else { (won, lost + b - a) }),
+            won_and_lost: won_and_lost(&r.fit, &self.last),
         }
     }
 
@@ -395,10 +400,7 @@ impl Search {
                 Some((closes, i, fit, model)) if closes < CLOSES => {
                     self.accepted.remove(i);
                     self.found.remove(i);
-                    let values: Vec<Vec<f64>> = model.attached.iter().map(|a| values(&fit, a)).collect();
-                    self.accepted.iter_mut().zip(values).for_each(|(a, v)| a.chosen.values = v);
-                    self.last = fit;
-                    self.last_model = model;
+                    self.adopt(fit, model);
                 }
                 _ => break,
             }
@@ -439,10 +441,14 @@ fn bounded(h: &Hypothesis) -> bool {
 /// An effect that acts in few blocks gains much there and loses next to nothing elsewhere; the mean over all blocks
 /// does not show it.
 fn rare(with: &Fit, without: &Fit, gain: f64) -> bool {
-    let d = || with.blocks.iter().zip(&without.blocks).map(|(a, b)| a - b);
-    let won: f64 = d().filter(|d| *d > 0.0).sum();
-    let lost: f64 = -d().filter(|d| *d < 0.0).sum::<f64>();
+    let (won, lost) = won_and_lost(with, without);
     gain > RARE && won > RARE_RATIO * lost
+}
+
+/// Log likelihood won in the blocks that gain, and lost in the others, not scaled.
+fn won_and_lost(with: &Fit, without: &Fit) -> (f64, f64) {
+    let blocks = with.blocks.iter().zip(&without.blocks);
+    blocks.fold((0.0, 0.0), |(won, lost), (a, b)| if a > b { (won + a - b, lost) } else { (won, lost + b - a) })
 }
 
 /// Among the candidates that are practically as good as the first, the one with the fewest parameters.

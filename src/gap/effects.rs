@@ -154,22 +154,24 @@ impl Effect {
     }
 }
 
-/// Reads the shipped effects and those of a folder, in the order of their names.
-pub fn catalogue(world: &dyn World, folder: Option<&Path>) -> Checked<Vec<Arc<Effect>>> {
-    let mut all = everything(world, folder);
-    if let Some(effects) = &mut all.value {
-        effects.retain(|e| e.family != DISTURBANCE);
-    }
-    all
+/// What may be missing, in the order of the names.
+#[derive(Clone, Debug)]
+pub struct Catalogue {
+    /// Explanations.
+    pub effects: Vec<Arc<Effect>>,
+    /// The shipped sources without form, one for each kind of place.
+    pub disturbances: Vec<Arc<Effect>>,
 }
 
-/// The shipped sources, one for each kind of place.
-pub fn disturbances(world: &dyn World) -> Checked<Vec<Arc<Effect>>> {
-    let mut all = everything(world, None);
-    if let Some(effects) = &mut all.value {
-        effects.retain(|e| e.family == DISTURBANCE);
-    }
-    all
+/// Reads the shipped effects and those of a folder.
+pub fn catalogue(world: &dyn World, folder: Option<&Path>) -> Checked<Catalogue> {
+    let Checked { value, diagnostics } = everything(world, folder);
+    let parted = |all: Vec<Arc<Effect>>| {
+        let (mut disturbances, effects): (Vec<_>, Vec<_>) = all.into_iter().partition(|e| e.family == DISTURBANCE);
+        disturbances.retain(|d| d.class.starts_with("Effects."));
+        Catalogue { effects, disturbances }
+    };
+    Checked { value: value.map(parted), diagnostics }
 }
 
 fn everything(world: &dyn World, folder: Option<&Path>) -> Checked<Vec<Arc<Effect>>> {

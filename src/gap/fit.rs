@@ -150,7 +150,8 @@ pub fn fit(
     let set: Vec<usize> = (0..priors.len()).collect();
     let sigmas: Vec<f64> = priors.iter().map(|p| p.sigma).collect();
     let mut found = passes(&setting, train, usize::MAX, false)?;
-    let share = share.unwrap_or_else(|| share_of(&found));
+    let share =
+        share.unwrap_or_else(|| evidence::independent_share(&found.iter().map(|p| &p.white).collect::<Vec<_>>()));
     for _ in 0..iterations {
         let (likelihood, gram) = total(&found);
         let (gram, before) = (gram * share, objective(&setting, priors, likelihood * share));
@@ -219,9 +220,7 @@ pub fn polish(mut best: Fit, train: &[Recording], share: Option<f64>) -> Fit {
         }
         let Some(next) = fit(setting, &best.priors, train, share, ITERATIONS) else { break };
         // noise and levels may move the constant of the likelihood: only what is more likely is kept
-        let gain = next.likelihood * best.share + (next.evidence - next.share * next.likelihood)
-            - best.likelihood * best.share
-            - (best.evidence - best.share * best.likelihood);
+        let gain = next.evidence_at(best.share) - best.evidence;
         if gain <= 0.0 {
             break;
         }
@@ -231,10 +230,6 @@ pub fn polish(mut best: Fit, train: &[Recording], share: Option<f64>) -> Fit {
         }
     }
     best
-}
-
-fn share_of(found: &[Pass]) -> f64 {
-    evidence::independent_share(&found.iter().map(|p| &p.white).collect::<Vec<_>>())
 }
 
 fn explain(
@@ -270,10 +265,12 @@ const LEAST_SHARE: f64 = 0.1;
 
 impl Fit {
     /// The same fit with its evidence counted at another share of independent samples.
-    pub fn at_share(mut self, share: f64) -> Fit {
-        self.evidence += (share - self.share) * self.likelihood;
-        self.share = share;
-        self
+    pub fn at_share(self, share: f64) -> Fit {
+        Fit { evidence: self.evidence_at(share), share, ..self }
+    }
+
+    fn evidence_at(&self, share: f64) -> f64 {
+        self.evidence + (share - self.share) * self.likelihood
     }
 
     /// The share at which models that are to explain more are weighed.

@@ -2,7 +2,7 @@
 
 use super::circuit::{self, Circuit};
 use super::data::Recording;
-use super::effects;
+use super::effects::{self, Effect};
 use super::hypotheses::{self, Free, Hypothesis, Signal};
 use super::problem::{Problem, Tolerance};
 use super::shapes;
@@ -76,8 +76,7 @@ pub fn question<'a>(
     let tolerances = tolerances(&flat, &bound, &parameter_values(dae));
     let offer = offer(world, study, &signals, &free(&tolerances))?;
     diagnostics.extend(offer.diagnostics);
-    let Some(sources) = effects::disturbances(world).value else { return Err(Unusable::study(Vec::new())) };
-    let mut disturbances = hypotheses::hypotheses(&offer.circuit, &sources, &signals, &[]);
+    let mut disturbances = hypotheses::hypotheses(&offer.circuit, &offer.sources, &signals, &[]);
     disturbances.retain(|d| d.attachments.len() == 1);
     let files = train.iter().map(|r| r.file.clone()).collect();
     let train: Vec<Recording> = train.into_iter().map(|r| recording(&flat, &bound, r)).collect();
@@ -122,6 +121,8 @@ struct Offer {
     circuit: Circuit,
     folder: Option<PathBuf>,
     hypotheses: Vec<Hypothesis>,
+    /// Disturbances, before they are attached.
+    sources: Vec<Arc<Effect>>,
     diagnostics: Vec<Diagnostic>,
 }
 
@@ -131,9 +132,9 @@ fn offer(world: &dyn World, study: &Study, signals: &[Signal], free: &[Free]) ->
     let folder = study.effects.folder.as_ref().map(|f| study.folder.join(f));
     let checked = effects::catalogue(world, folder.as_deref());
     let Some(catalogue) = checked.value else { return Err(Unusable::study(checked.diagnostics)) };
-    let mut hypotheses = hypotheses::hypotheses(&circuit, &catalogue, signals, free);
+    let mut hypotheses = hypotheses::hypotheses(&circuit, &catalogue.effects, signals, free);
     hypotheses::narrow(&mut hypotheses, &study.effects);
-    Ok(Offer { circuit, folder, hypotheses, diagnostics: checked.diagnostics })
+    Ok(Offer { circuit, folder, hypotheses, sources: catalogue.disturbances, diagnostics: checked.diagnostics })
 }
 
 fn signals(flat: &FlatModel, bound: &Bound, ranges: &[f64]) -> Vec<Signal> {

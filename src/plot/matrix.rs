@@ -1,7 +1,7 @@
 //! A scatter matrix: every column of a table against every other one, each column's spread on the diagonal.
 
 use super::figure::colour;
-use super::svg::escape;
+use super::svg::{begin, escape};
 use super::ticks::ticks;
 use crate::results::number;
 use std::fmt::Write as _;
@@ -55,15 +55,8 @@ pub fn write(matrix: &Matrix) -> String {
     let side = (WIDTH - MARGIN - 12.0 - GAP * (n - 1) as f64) / n as f64;
     let height = top + (side + GAP) * n as f64 + MARGIN * 0.7;
     let ranges: Vec<(f64, f64)> = matrix.columns.iter().map(|c| range(c)).collect();
-    let mut out = String::new();
     let title = if matrix.title.is_empty() { "Scatter matrix" } else { &matrix.title };
-    let _ = writeln!(
-        out,
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{WIDTH}\" height=\"{height:.0}\" viewBox=\"0 0 {WIDTH} {height:.0}\" \
-         role=\"img\" font-family=\"Ubuntu, 'Segoe UI', Helvetica, Arial, sans-serif\" font-size=\"12\">\n\
-         <title>{}</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>",
-        escape(title)
-    );
+    let mut out = begin(WIDTH, height.round(), 12, title);
     if !matrix.title.is_empty() {
         let x = WIDTH / 2.0;
         let _ =

@@ -1,6 +1,6 @@
 //! A figure as SVG.
 
-use std::fmt::Write as _;
+use std::fmt::{Display, Write as _};
 
 use super::decimate::{Points, decimate, staircase};
 use super::figure::{Figure, Panel, Series, colour};
@@ -47,15 +47,7 @@ pub fn write(figure: &Figure) -> String {
         y = plot.draw(&mut body, i, y, left, last || !figure.shared_x);
     }
     let height = y + 8.0;
-    let mut out = String::new();
-    let title = if figure.title.is_empty() { "Plot" } else { &figure.title };
-    let _ = write!(
-        out,
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{WIDTH}\" height=\"{height}\" viewBox=\"0 0 {WIDTH} {height}\" \
-         role=\"img\" font-family=\"Ubuntu, 'Segoe UI', Helvetica, Arial, sans-serif\" font-size=\"{TEXT}\">\n\
-         <title>{}</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n",
-        escape(title)
-    );
+    let mut out = begin(WIDTH, height, TEXT, if figure.title.is_empty() { "Plot" } else { &figure.title });
     if !figure.title.is_empty() {
         let _ = writeln!(
             out,
@@ -67,6 +59,16 @@ pub fn write(figure: &Figure) -> String {
     out.push_str(&body);
     out.push_str("</svg>\n");
     out
+}
+
+/// How every picture begins: its size, the size of its letters, its title for readers, white paper.
+pub(super) fn begin(width: impl Display, height: impl Display, text: impl Display, title: &str) -> String {
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
+         role=\"img\" font-family=\"Ubuntu, 'Segoe UI', Helvetica, Arial, sans-serif\" font-size=\"{text}\">\n\
+         <title>{}</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n",
+        escape(title)
+    )
 }
 
 /// Text with the characters escaped that mean something in XML; control characters are dropped.

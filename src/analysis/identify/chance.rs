@@ -1,5 +1,6 @@
 //! Tail probabilities of the normal and the chi-square distribution.
 
+use libm::erfc;
 use std::f64::consts::PI;
 
 /// The point that a chi-square variable with one degree of freedom stays below in 95 % of all cases.
@@ -33,21 +34,6 @@ pub fn beyond(x: f64, degrees: usize) -> f64 {
         at += 1.0;
     }
     sum.min(1.0)
-}
-
-/// The complementary error function of a number that is not negative: a series up to 2, beyond it a continued fraction.
-fn erfc(x: f64) -> f64 {
-    let scale = (-x * x).exp() / PI.sqrt();
-    if x < 2.0 {
-        let (mut sum, mut term, mut n) = (0.0, 2.0 * x * scale, 1.0);
-        while term > 1e-17 {
-            sum += term;
-            term *= 2.0 * x * x / (n + n + 1.0);
-            n += 1.0;
-        }
-        return 1.0 - sum;
-    }
-    scale / (1..60).rev().fold(x, |below, k| x + 0.5 * f64::from(k) / below)
 }
 
 #[cfg(test)]

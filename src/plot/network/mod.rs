@@ -10,7 +10,7 @@ use indexmap::IndexSet;
 use petgraph::visit::EdgeRef;
 
 use super::figure::colour;
-use super::svg::escape;
+use super::svg::{begin, escape};
 use crate::network::{ComponentBox, Graph};
 use layout::{Layout, Side};
 
@@ -40,14 +40,10 @@ pub fn write_marked(graph: &Graph, title: &str, marks: &[Mark]) -> String {
     let connectors: IndexSet<&str> = graph.edge_weights().map(|w| w.connector.as_str()).collect();
     let legend = 24.0 * connectors.len().div_ceil(4) as f64;
     let (width, height) = (layout.width.max(420.0), layout.height + 56.0 + legend);
-    let mut out = String::new();
+    let mut out = begin(width.round(), height.round(), 13, title);
     let _ = write!(
         out,
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" \
-         viewBox=\"0 0 {width:.0} {height:.0}\" role=\"img\" \
-         font-family=\"Ubuntu, 'Segoe UI', Helvetica, Arial, sans-serif\" font-size=\"13\">\n\
-         <title>{0}</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n\
-         <text x=\"20\" y=\"28\" font-size=\"16\">{0}</text>\n<g transform=\"translate(0 44)\">\n",
+        "<text x=\"20\" y=\"28\" font-size=\"16\">{}</text>\n<g transform=\"translate(0 44)\">\n",
         escape(title)
     );
     for edge in graph.edge_references().filter(|_| !marks.is_empty()) {
