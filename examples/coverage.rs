@@ -1,7 +1,8 @@
 //! How often do 95 % intervals hold the truth? A bench is simulated many times with coloured noise, and its parameters
 //! are found each time.
 //!
-//! `cargo run --release --example coverage -- [REPETITIONS] [SEED]`
+//! `cargo run --release --example coverage -- [REPETITIONS] [SEED] [INHERITED] [RECORDINGS]`: how much of an error the next
+//! sample inherits (0.8), and from how many recordings together the parameters are found each time (1).
 
 #![allow(clippy::print_stdout, clippy::disallowed_methods, reason = "an example is asked and shows what it found")]
 
@@ -59,9 +60,8 @@ q0 = { min = -1, max = 1 }
 const TRUTH: [(&str, f64); 3] = [("T", 0.04), ("G", 0.03), ("q0", 0.05)];
 /// Samples, every 5 ms.
 const SAMPLES: u32 = 400;
-/// Noise: 0.5 % of the range, and how much of it the next sample inherits.
+/// Noise, as a part of the range.
 const NOISE: f64 = 0.005;
-const INHERITED: f64 = 0.8;
 
 /// Normal numbers from a congruential generator.
 struct Dice(u64);
@@ -96,14 +96,14 @@ fn clean() -> Result<Vec<[f64; 4]>, Box<dyn Error>> {
 }
 
 /// The same with noise on flow and pressure.
-fn noisy(clean: &[[f64; 4]], dice: &mut Dice) -> Recording {
+fn noisy(clean: &[[f64; 4]], inherited: f64, dice: &mut Dice) -> Recording {
     let mut columns = vec![Vec::new(), Vec::new()];
     for (s, column) in columns.iter_mut().enumerate() {
         let values = || clean.iter().map(|r| r[2 + s]);
         let range = values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min);
         let mut error = dice.normal();
         column.extend(values().map(|v| {
-            error = INHERITED * error + (1.0 - INHERITED * INHERITED).sqrt() * dice.normal();
+            error = inherited * error + (1.0 - inherited * inherited).sqrt() * dice.normal();
             v + NOISE * range * error
         }));
     }
@@ -128,6 +128,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let repetitions: u32 = arguments.next().map_or(Ok(20), |a| a.parse())?;
     let mut dice = Dice(arguments.next().map_or(Ok(1), |a| a.parse())?);
+    let inherited: f64 = arguments.next().map_or(Ok(0.8), |a| a.parse())?;
+    let recordings: usize = arguments.next().map_or(Ok(1), |a| a.parse())?;
     let clean = clean()?;
     let mut header = String::from("t,n_c,q,p\n");
     clean.iter().try_for_each(|[t, n, q, p]| writeln!(header, "{t},{n},{q},{p}"))?;
@@ -141,7 +143,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let bound = checked(study.bind(&model.flat))?;
     let mut inside = [0u32; TRUTH.len()];
     for _ in 0..repetitions {
-        let train = [noisy(&clean, &mut dice)];
+        let train: Vec<Recording> = (0..recordings).map(|_| noisy(&clean, inherited, &mut dice)).collect();
         let problem = Problem::new(&model, &bound, &train).map_err(said)?;
         let found = Identification::new(&problem, &train, Method::Output).map_err(|d| d.message)?;
         let fit = found.fit().map_err(|d| d.message)?;

@@ -1,12 +1,8 @@
-//! Tail probabilities of the normal and the chi-square distribution.
+//! Tail probabilities of the normal, the chi-square and Student's distribution.
 
-use libm::erfc;
+use libm::{erfc, lgamma};
 use std::f64::consts::PI;
 
-/// The point that a chi-square variable with one degree of freedom stays below in 95 % of all cases.
-pub const LEVEL_1: f64 = 3.841_458_820_694_124;
-/// The same with two degrees of freedom, 2 ln 20.
-pub const LEVEL_2: f64 = 5.991_464_547_107_979;
 /// The normal distribution's 97.5 % point.
 pub const NORMAL: f64 = 1.959_963_984_540_054;
 
@@ -36,6 +32,56 @@ pub fn beyond(x: f64, degrees: usize) -> f64 {
     sum.min(1.0)
 }
 
+/// Degrees of freedom from which on Student's distribution is as good as normal.
+const MANY: f64 = 1e6;
+
+/// The point that a variable of Student's distribution stays below in 97.5 % of all cases; degrees of freedom, at least
+/// 1, need not be whole.
+pub fn student(degrees: f64) -> f64 {
+    if degrees >= MANY {
+        return NORMAL;
+    }
+    let outside = |t: f64| incomplete_beta(0.5 * degrees, 0.5, degrees / (degrees + t * t));
+    let (mut low, mut high) = (NORMAL, 13.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if outside(middle) > 0.05 { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
+}
+
+/// How many deviations the edge of the region reaches in which two normal variables lie together with 95 %, where their
+/// variances have been found with these degrees of freedom: the root of twice Fisher's 95 % point.
+pub fn pair_size(degrees: f64) -> f64 {
+    let part = if degrees >= MANY { -2.0 * 0.05f64.ln() } else { degrees * (0.05f64.powf(-2.0 / degrees) - 1.0) };
+    part.sqrt()
+}
+
+/// The regularised incomplete beta function, by its continued fraction. Source: W. H. Press et al., Numerical Recipes,
+/// 2007, section 6.4.
+fn incomplete_beta(a: f64, b: f64, x: f64) -> f64 {
+    if x >= (a + 1.0) / (a + b + 2.0) {
+        return if x >= 1.0 { 1.0 } else { 1.0 - incomplete_beta(b, a, 1.0 - x) };
+    }
+    let front = (lgamma(a + b) - lgamma(a) - lgamma(b) + a * x.ln() + b * (-x).ln_1p()).exp() / a;
+    let (mut c, mut d) = (1.0, 1.0 / (1.0 - (a + b) * x / (a + 1.0)));
+    let mut fraction = d;
+    for m in (1..500).map(f64::from) {
+        let even = m * (b - m) * x / ((a + 2.0 * m - 1.0) * (a + 2.0 * m));
+        let odd = -(a + m) * (a + b + m) * x / ((a + 2.0 * m) * (a + 2.0 * m + 1.0));
+        let before = fraction;
+        for part in [even, odd] {
+            d = 1.0 / (1.0 + part * d);
+            c = 1.0 + part / c;
+            fraction *= c * d;
+        }
+        if (fraction - before).abs() < 1e-14 * fraction.abs() {
+            break;
+        }
+    }
+    front * fraction
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -44,10 +90,19 @@ mod tests {
     fn tabulated_points() {
         assert!((two_sided(NORMAL) - 0.05).abs() < 1e-14);
         assert!((two_sided(3.290_526_731_491_926) - 1e-3).abs() < 1e-14);
-        assert!((beyond(LEVEL_1, 1) - 0.05).abs() < 1e-14 && (beyond(LEVEL_2, 2) - 0.05).abs() < 1e-14);
+        assert!(
+            (beyond(NORMAL * NORMAL, 1) - 0.05).abs() < 1e-14 && (beyond(-2.0 * 0.05f64.ln(), 2) - 0.05).abs() < 1e-14
+        );
         // the 95 % points of 5 and 10 degrees of freedom
         assert!((beyond(11.070_497_693_516_35, 5) - 0.05).abs() < 1e-12);
         assert!((beyond(18.307_038_053_275_14, 10) - 0.05).abs() < 1e-12);
+        for (degrees, point) in [(1.0, 12.706_204_736_432_1), (5.0, 2.570_581_835_636), (30.0, 2.042_272_456_301)] {
+            assert!((student(degrees) - point).abs() < 1e-9, "{degrees}: {}", student(degrees));
+        }
+        assert!((student(1e5) - NORMAL).abs() < 1e-4 && student(f64::INFINITY) == NORMAL);
+        // twice the 95 % point of Fisher's distribution with 2 and 10 degrees of freedom
+        assert!((pair_size(10.0).powi(2) - 2.0 * 4.102_821_015).abs() < 1e-8);
+        assert!((pair_size(1e5) - pair_size(f64::INFINITY)).abs() < 1e-3);
         assert_eq!((beyond(0.0, 3), two_sided(0.0)), (1.0, 1.0));
     }
 }

@@ -1,6 +1,7 @@
 //! What a fit found: values, their uncertainty, and how well the signals are met.
 
-use super::chance::NORMAL;
+use super::chance::student;
+use super::colour::{Spread, spread};
 use super::inverse::InverseModel;
 use super::least_squares::Minimum;
 use super::residuals::inputs_beside;
@@ -19,6 +20,8 @@ pub struct Fit {
     pub values: Vec<f64>,
     /// One standard deviation of each.
     pub deviations: Vec<f64>,
+    /// Degrees of freedom behind each deviation; few where errors resemble each other for long.
+    pub degrees: Vec<f64>,
     /// Correlations of the estimates.
     pub correlation: DMatrix<f64>,
     /// Parameters that ended at a bound.
@@ -63,11 +66,11 @@ pub struct Course {
 }
 
 impl Fit {
-    /// The 95 % interval of a parameter, in its unit, from its deviation on the scale of the search: on a logarithmic one
-    /// it lies about the value by a factor. Infinite where the data say nothing.
+    /// The 95 % interval of a parameter, in its unit, from its deviation on the scale of the search and Student's
+    /// distribution: on a logarithmic scale it lies about the value by a factor. Infinite where the data say nothing.
     pub fn interval(&self, problem: &Problem<'_>, parameter: usize) -> (f64, f64) {
         let (free, z) = (&problem.free[parameter], self.z[parameter]);
-        let half = NORMAL * self.spread[parameter].sqrt();
+        let half = student(self.degrees[parameter]) * self.spread[parameter].sqrt();
         (free.value(z - half), free.value(z + half))
     }
 }
@@ -108,7 +111,7 @@ impl Identification<'_> {
         courses: Vec<Course>,
     ) -> Fit {
         let p = self.problem.free.len();
-        let (mut covariance, inverse) = covariance(model.weights(), minimum);
+        let Spread { mut covariance, plain, degrees } = spread(model.weights(), minimum);
         // what nothing is known about has no finite deviation
         let told = separate(&without_rest(&minimum.jacobian.tr_mul(&minimum.jacobian), p));
         let hidden = told.blind.iter().filter(|b| b.deviation.is_infinite());
@@ -137,7 +140,8 @@ impl Identification<'_> {
             differences: None,
             z: minimum.z.clone(),
             spread: (0..p).map(|j| covariance[(j, j)].max(0.0)).collect(),
-            plain: (0..p).map(|j| inverse[(j, j)].max(0.0)).collect(),
+            plain: (0..p).map(|j| plain[(j, j)].max(0.0)).collect(),
+            degrees: degrees[..p].to_vec(),
             cost: minimum.residual.norm_squared(),
             weights: model.weights().clone(),
         }
@@ -157,28 +161,6 @@ impl Identification<'_> {
             ResidualTest::new(&signal.name, k, &fit.weights, residual, &beside)
         };
         bound.signals.iter().enumerate().filter_map(one).collect()
-    }
-}
-
-/// The covariance of the unknowns in z, the residuals' own spread between two inverses of the information, and the one
-/// inverse alone.
-fn covariance(weights: &Weights, minimum: &Minimum) -> (DMatrix<f64>, DMatrix<f64>) {
-    let (jacobian, residual) = (&minimum.jacobian, &minimum.residual);
-    let n = minimum.z.len();
-    let data = weights.series.iter().map(|s| s.rows.end).max().unwrap_or(0);
-    let known = jacobian.rows(data, jacobian.nrows() - data);
-    let mut information = jacobian.tr_mul(jacobian);
-    let small = 1e-12 * information.diagonal().max().max(f64::MIN_POSITIVE);
-    (0..n).for_each(|j| information[(j, j)] += small);
-    let mut spread = weights.spread(jacobian, residual);
-    spread *= data as f64 / (data.saturating_sub(n)).max(1) as f64;
-    spread += known.tr_mul(&known);
-    match information.cholesky() {
-        Some(c) => {
-            let half = c.solve(&spread);
-            (c.solve(&half.transpose()), c.inverse())
-        }
-        None => (DMatrix::from_element(n, n, f64::INFINITY), DMatrix::from_element(n, n, f64::INFINITY)),
     }
 }
 

@@ -1,6 +1,7 @@
 //! Parameters from recordings: what can be found at all, the fit, its uncertainty, and how it does on held recordings.
 
 mod chance;
+mod colour;
 mod exact;
 mod filter;
 mod fit;
@@ -10,6 +11,7 @@ mod least_squares;
 mod output_error;
 mod picture;
 mod profile;
+mod quasi_newton;
 mod report;
 mod residuals;
 pub mod runs;

@@ -1,6 +1,6 @@
 //! An identification in pictures: the signals met, what is left over, confidence ellipses, profiles.
 
-use super::chance::{LEVEL_1, LEVEL_2};
+use super::chance::{pair_size, student};
 use super::{Fit, Problem, Profile};
 use crate::plot::{Band, Figure, Panel, Series};
 
@@ -19,9 +19,9 @@ impl Fit {
             return None;
         }
         let rest = (1.0 - r * r).sqrt();
+        let size = pair_size(self.degrees[i].min(self.degrees[j]));
         let at = |k: u32| {
             let (sin, cos) = (f64::from(k) * std::f64::consts::TAU / f64::from(POINTS)).sin_cos();
-            let size = LEVEL_2.sqrt();
             (size * a * cos, size * b * (r * cos + rest * sin))
         };
         let value = |j: usize, move_by: f64| problem.free[j].value(self.z[j] + move_by);
@@ -112,6 +112,7 @@ fn profile(problem: &Problem<'_>, fit: &Fit, profile: &Profile) -> Panel {
     let (x, y): (Vec<f64>, Vec<f64>) = profile.points.iter().copied().unzip();
     let ends = [x[0], x[x.len() - 1]];
     let deviation = fit.deviations[profile.parameter];
+    let level = student(fit.degrees[profile.parameter]).powi(2);
     let quadratic = x.iter().map(|v| ((v - fit.values[profile.parameter]) / deviation).powi(2)).collect();
     Panel {
         x_label: label(&free.name, &free.unit),
@@ -126,7 +127,7 @@ fn profile(problem: &Problem<'_>, fit: &Fit, profile: &Profile) -> Panel {
                 dashed: true,
                 ..Series::default()
             },
-            Series { name: "95 %".to_owned(), x: ends.to_vec(), y: vec![LEVEL_1; 2], colour: 1, ..Series::default() },
+            Series { name: "95 %".to_owned(), x: ends.to_vec(), y: vec![level; 2], colour: 1, ..Series::default() },
         ],
         ..Panel::default()
     }

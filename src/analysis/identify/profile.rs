@@ -3,7 +3,7 @@
 //! The errors resemble their neighbours, so the sum of squares alone would not be a likelihood: its rise is scaled to the
 //! curvature that the corrected deviations say. Source: R. E. Chandler, S. Bate, Biometrika 94 (2007) 167.
 
-use super::chance::LEVEL_1;
+use super::chance::student;
 use super::least_squares::{Bounds, Effort, minimise};
 use super::{Fit, Identification, Residuals, Shared};
 use crate::diag::Diagnostic;
@@ -15,7 +15,8 @@ pub struct Profile {
     pub parameter: usize,
     /// Its values, growing, and the rise of twice the negative log-likelihood there, 0 at the estimate.
     pub points: Vec<(f64, f64)>,
-    /// The 95 % interval: where the rise is 3.84. Infinite on a side where it does not get there.
+    /// The 95 % interval: where the rise is the square of Student's 97.5 % point (3.84 for many degrees of
+    /// freedom). Infinite on a side where it does not get there.
     pub interval: (f64, f64),
 }
 
@@ -67,7 +68,7 @@ impl Walk<'_, '_> {
         let centre = self.fit.z[self.parameter];
         let limit = if sign > 0.0 { self.bounds.high[self.parameter] } else { self.bounds.low[self.parameter] };
         let room = (limit - centre).abs();
-        let target = LEVEL_1.sqrt();
+        let target = student(self.fit.degrees[self.parameter]);
         let usual = self.fit.spread[self.parameter].sqrt() * target;
         let mut step = if usual.is_finite() && usual > 0.0 { usual.min(3.0) } else { 1.0 }.min(room);
         let mut seen = Vec::new();

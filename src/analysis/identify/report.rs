@@ -11,7 +11,7 @@ use std::fmt::Write;
 pub struct Report {
     /// `output error` or `inverse model`.
     pub method: &'static str,
-    /// The parameters found: value, one standard deviation and 95 % interval (null where the data say nothing) and unit.
+    /// The parameters found: value, one standard deviation, its degrees of freedom and 95 % interval (null where the data say nothing) and unit.
     pub parameters: Map<String, serde_json::Value>,
     /// Groups that the data cannot tell apart; a group of one has no influence.
     pub inseparable: Vec<Vec<String>>,
@@ -60,7 +60,11 @@ impl Report {
             let std = finite(fit.deviations[j]);
             let (low, high) = fit.interval(problem, j);
             let interval = [finite(low), finite(high)];
-            (f.name.clone(), json!({"value": fit.values[j], "std": std, "interval": interval, "unit": f.unit}))
+            let all = json!({
+                "value": fit.values[j], "std": std, "degrees": finite(fit.degrees[j]), "interval": interval,
+                "unit": f.unit,
+            });
+            (f.name.clone(), all)
         });
         let by = |fits: &[SignalFit], of: fn(&SignalFit) -> f64| {
             fits.iter().map(|f| (f.name.clone(), json!(of(f)))).collect()

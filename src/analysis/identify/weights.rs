@@ -1,6 +1,5 @@
 //! Weights of residuals: one standard deviation a signal, widened where neighbouring residuals resemble each other.
 
-use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
 /// The residuals of one signal along one recording.
@@ -66,26 +65,6 @@ impl Weights {
             self.sigma[k] = sigma;
         }
         change
-    }
-
-    /// The sum of the outer products of scores, with neighbours in time: what the residuals really say about the spread
-    /// of the estimate. Source: W. K. Newey, K. D. West, Econometrica 55 (1987) 703.
-    pub fn spread(&self, jacobian: &DMatrix<f64>, residual: &DVector<f64>) -> DMatrix<f64> {
-        let p = jacobian.ncols();
-        let mut spread = DMatrix::zeros(p, p);
-        for s in &self.series {
-            let scores =
-                DMatrix::from_fn(s.rows.len(), p, |t, j| jacobian[(s.rows.start + t, j)] * residual[s.rows.start + t]);
-            let lags = ((4.0 * self.correlation[s.signal]).ceil() as usize).min(s.rows.len() / 4);
-            spread += scores.tr_mul(&scores);
-            for lag in 1..=lags {
-                let weight = 1.0 - lag as f64 / (lags + 1) as f64;
-                let n = scores.nrows() - lag;
-                let cross = scores.rows(0, n).tr_mul(&scores.rows(lag, n));
-                spread += weight * (&cross + cross.transpose());
-            }
-        }
-        spread
     }
 }
 

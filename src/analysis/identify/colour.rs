@@ -1,0 +1,357 @@
+//! The colour of errors: autoregressive models of what a fit leaves over, and what they say about the estimate.
+//!
+//! A fit takes from the errors what its parameters can follow, most of it slow, so that the autocorrelation of what is
+//! left over is too small. The models are therefore found by restricted maximum likelihood, which looks only at what no
+//! parameter could have taken. Sources: H. D. Patterson, R. Thompson, Biometrika 58 (1971) 545; the order by G. Schwarz,
+//! Annals of Statistics 6 (1978) 461; degrees of freedom by F. E. Satterthwaite, Biometrics Bulletin 2 (1946) 110.
+
+use super::least_squares::Minimum;
+use super::quasi_newton::{bend, descend, slopes};
+use super::weights::{Series, Weights};
+use nalgebra::{DMatrix, DVector};
+use std::ops::Range;
+
+/// What the errors say about the unknowns of a fit.
+pub struct Spread {
+    /// Covariance of the unknowns in z.
+    pub covariance: DMatrix<f64>,
+    /// What it would be if the errors were white and as large as they are weighed.
+    pub plain: DMatrix<f64>,
+    /// Per unknown the degrees of freedom of its variance: a white series has as many as samples, nearly.
+    pub degrees: Vec<f64>,
+}
+
+/// Highest order of a model.
+const ORDER: usize = 12;
+/// Errors below this part of their deviation are no errors: exact data.
+const NOTHING: f64 = 1e-12;
+/// Step of the differences over the models' parameters, which are of the order of 1.
+const STEP: f64 = 1e-3;
+
+/// The covariance of an estimate by weighed least squares whose errors are coloured: the spread that the models of the
+/// errors say, between two inverses of the information.
+pub fn spread(weights: &Weights, minimum: &Minimum) -> Spread {
+    let (jacobian, unknowns) = (&minimum.jacobian, minimum.z.len());
+    let mut information = jacobian.tr_mul(jacobian);
+    let small = 1e-12 * information.diagonal().max().max(f64::MIN_POSITIVE);
+    (0..unknowns).for_each(|j| information[(j, j)] += small);
+    let Some(plain) = information.cholesky().map(|c| c.inverse()) else {
+        let nothing = DMatrix::from_element(unknowns, unknowns, f64::INFINITY);
+        return Spread { covariance: nothing.clone(), plain: nothing, degrees: vec![f64::INFINITY; unknowns] };
+    };
+    let colour = Colour::new(weights, minimum);
+    let at = colour.found(small);
+    let covariance = |at: &[f64]| &plain * colour.scores(at) * &plain;
+    let found = covariance(&at);
+    let degrees = colour.degrees(&at, small, &found, |at| covariance(at).diagonal());
+    Spread { covariance: found, plain, degrees }
+}
+
+/// The errors of all signals with the sensitivities beside them.
+struct Colour<'a> {
+    minimum: &'a Minimum,
+    signals: Vec<Signal>,
+    /// The rows that are known beforehand, squared: sensitivities and their residuals.
+    known: DMatrix<f64>,
+    /// The spread of scores that they bring.
+    sure: DMatrix<f64>,
+}
+
+/// The errors of one signal: products of their rows, shifted against each other, so that the likelihood costs the same
+/// however long the recordings are.
+struct Signal {
+    ranges: Vec<Range<usize>>,
+    order: usize,
+    /// First guess: partial autocorrelations, then the logarithm of the deviation of what they do not tell.
+    guess: Vec<f64>,
+    /// The first rows of each series.
+    heads: Vec<DMatrix<f64>>,
+    /// For each pair of shifts i <= j the sum over the later rows t of x(t-i) x(t-j)'.
+    lagged: Vec<Vec<DMatrix<f64>>>,
+    rows: usize,
+    longest: usize,
+}
+
+impl<'a> Colour<'a> {
+    fn new(weights: &Weights, minimum: &'a Minimum) -> Colour<'a> {
+        let data = weights.series.iter().map(|s| s.rows.end).max().unwrap_or(0);
+        let with_errors = beside(minimum, data..minimum.jacobian.nrows());
+        let own = minimum.jacobian.rows(data, minimum.jacobian.nrows() - data);
+        let of = |k: usize| weights.series.iter().filter(move |s| s.signal == k && !s.rows.is_empty());
+        let signals = (0..weights.sigma.len()).filter_map(|k| Signal::new(of(k), minimum));
+        Colour { signals: signals.collect(), known: with_errors.tr_mul(&with_errors), sure: own.tr_mul(&own), minimum }
+    }
+
+    /// Each signal with its part of the models' parameters.
+    fn each<'p>(&self, at: &'p [f64]) -> impl Iterator<Item = (&Signal, &'p [f64])> {
+        let mut rest = at;
+        self.signals.iter().map(move |s| {
+            let (own, others) = rest.split_at(s.order + 1);
+            rest = others;
+            (s, own)
+        })
+    }
+
+    /// The restricted likelihood's negative logarithm, but for a constant; infinite where a model is none.
+    fn badness(&self, at: &[f64], small: f64) -> f64 {
+        let n = self.minimum.z.len();
+        let mut squares = self.known.clone();
+        let mut size = 0.0;
+        for (signal, at) in self.each(at) {
+            let Some(filter) = Filter::new(at, signal.longest) else { return f64::INFINITY };
+            size += signal.squares(&filter, &mut squares);
+        }
+        let mut information = squares.view((0, 0), (n, n)).into_owned();
+        (0..n).for_each(|j| information[(j, j)] += small);
+        let Some(factor) = information.cholesky() else { return f64::INFINITY };
+        let slope = squares.view((0, n), (n, 1)).into_owned();
+        let told = factor.l().solve_lower_triangular(&slope).map_or(0.0, |v| v.norm_squared());
+        let volume = 2.0 * factor.l_dirty().diagonal().map(f64::ln).sum();
+        0.5 * (size + squares[(n, n)] - told + volume)
+    }
+
+    /// The likeliest models.
+    fn found(&self, small: f64) -> Vec<f64> {
+        let guess: Vec<f64> = self.signals.iter().flat_map(|s| s.guess.iter().copied()).collect();
+        descend(&mut |at| self.badness(at, small), &guess, STEP)
+    }
+
+    /// The spread of the scores: sensitivities times errors with the models' covariance.
+    fn scores(&self, at: &[f64]) -> DMatrix<f64> {
+        let mut spread = self.sure.clone();
+        for (signal, at) in self.each(at) {
+            let Some(filter) = Filter::new(at, signal.longest) else { continue };
+            for range in &signal.ranges {
+                let rows = filter.backwards(self.minimum.jacobian.rows(range.start, range.len()).into_owned());
+                spread += rows.tr_mul(&rows);
+            }
+        }
+        spread
+    }
+
+    /// Twice the square of a variance over the variance of its own, which the uncertainty of the models brings.
+    fn degrees(
+        &self,
+        at: &[f64],
+        small: f64,
+        found: &DMatrix<f64>,
+        mut variances: impl FnMut(&[f64]) -> DVector<f64>,
+    ) -> Vec<f64> {
+        let endless = vec![f64::INFINITY; found.nrows()];
+        let Some(curvature) = bend(&mut |at| self.badness(at, small), at, STEP).cholesky() else { return endless };
+        let logarithms = slopes(&mut |at| variances(at).map(|v| v.max(f64::MIN_POSITIVE).ln()), at, STEP);
+        let one = |row: nalgebra::RowDVector<f64>| {
+            let spread = row.dot(&curvature.solve(&row.transpose()).transpose());
+            (2.0 / spread.max(f64::MIN_POSITIVE)).max(1.0)
+        };
+        logarithms.row_iter().map(|row| one(row.into_owned())).collect()
+    }
+}
+
+/// Sensitivities and residual of some rows side by side.
+fn beside(minimum: &Minimum, rows: Range<usize>) -> DMatrix<f64> {
+    let n = minimum.z.len();
+    DMatrix::from_fn(rows.len(), n + 1, |t, j| {
+        let row = rows.start + t;
+        if j < n { minimum.jacobian[(row, j)] } else { minimum.residual[row] }
+    })
+}
+
+impl Signal {
+    /// `None` where there is nothing to learn a model from.
+    fn new<'s>(series: impl Iterator<Item = &'s Series>, minimum: &Minimum) -> Option<Signal> {
+        let ranges: Vec<Range<usize>> = series.map(|s| s.rows.clone()).collect();
+        let rows: usize = ranges.iter().map(ExactSizeIterator::len).sum();
+        let shortest = ranges.iter().map(ExactSizeIterator::len).min()?;
+        let errors: Vec<&[f64]> = ranges.iter().map(|r| &minimum.residual.as_slice()[r.clone()]).collect();
+        let guess = chosen(&errors, ORDER.min(shortest / 8))?;
+        let order = guess.len() - 1;
+        let columns = minimum.z.len() + 1;
+        let mut lagged: Vec<Vec<DMatrix<f64>>> =
+            (0..=order).map(|i| vec![DMatrix::zeros(columns, columns); order + 1 - i]).collect();
+        let mut heads = Vec::new();
+        for range in &ranges {
+            let x = beside(minimum, range.clone());
+            let later = x.nrows() - order;
+            for (i, row) in lagged.iter_mut().enumerate() {
+                for (k, sum) in row.iter_mut().enumerate() {
+                    let (near, far) = (x.rows(order - i, later), x.rows(order - i - k, later));
+                    *sum += near.tr_mul(&far);
+                }
+            }
+            heads.push(x.rows(0, order).into_owned());
+        }
+        let longest = ranges.iter().map(ExactSizeIterator::len).max()?;
+        Some(Signal { ranges, order, guess, heads, lagged, rows, longest })
+    }
+
+    /// Adds the squares of the whitened rows; returns the logarithm of the errors' volume.
+    fn squares(&self, filter: &Filter, squares: &mut DMatrix<f64>) -> f64 {
+        let weight = |i: usize| if i == 0 { 1.0 } else { -filter.last()[i - 1] };
+        let scale = filter.deviation.powi(-2);
+        for (i, row) in self.lagged.iter().enumerate() {
+            for (k, sum) in row.iter().enumerate() {
+                let factor = scale * weight(i) * weight(i + k);
+                *squares += factor * sum;
+                if k > 0 {
+                    *squares += factor * sum.transpose();
+                }
+            }
+        }
+        for head in &self.heads {
+            let white = filter.forwards(head.clone());
+            *squares += white.tr_mul(&white);
+        }
+        let first: f64 = filter.excess[..self.order].iter().map(|v| v.ln()).sum();
+        2.0 * self.rows as f64 * filter.deviation.ln() + first * self.heads.len() as f64
+    }
+}
+
+/// Partial autocorrelations (as hyperbolic angles) up to the order of least Schwarz criterion, then the logarithm of the
+/// deviation. `None` for errors that are none.
+fn chosen(errors: &[&[f64]], most: usize) -> Option<Vec<f64>> {
+    let rows: usize = errors.iter().map(|e| e.len()).sum();
+    let product = |lag: usize| {
+        let one = |e: &&[f64]| e.iter().zip(e.iter().skip(lag)).map(|(a, b)| a * b).sum::<f64>();
+        errors.iter().map(one).sum::<f64>() / rows as f64
+    };
+    let correlations: Vec<f64> = (0..=most).map(product).collect();
+    let mut power = correlations[0];
+    if power.is_nan() || power <= NOTHING {
+        return None;
+    }
+    let criterion = |power: f64, order: usize| rows as f64 * power.ln() + order as f64 * (rows as f64).ln();
+    let (mut partial, mut coefficients) = (Vec::new(), Vec::new());
+    let mut best = (criterion(power, 0), vec![0.5 * power.ln()]);
+    for order in 1..=most {
+        let told: f64 = coefficients.iter().enumerate().map(|(i, a)| a * correlations[order - 1 - i]).sum();
+        let next = ((correlations[order] - told) / power).clamp(-0.98, 0.98);
+        coefficients = longer(&coefficients, next);
+        power *= 1.0 - next * next;
+        partial.push(next.atanh());
+        let now = criterion(power, order);
+        if now < best.0 {
+            best = (now, partial.iter().copied().chain([0.5 * power.ln()]).collect());
+        }
+    }
+    Some(best.1)
+}
+
+/// The coefficients of the next order, with its partial autocorrelation.
+fn longer(coefficients: &[f64], partial: f64) -> Vec<f64> {
+    let old = coefficients.iter().zip(coefficients.iter().rev());
+    old.map(|(a, b)| a - partial * b).chain([partial]).collect()
+}
+
+/// Makes errors of a model white.
+struct Filter {
+    /// Deviation of the white ones.
+    deviation: f64,
+    /// The prediction from 0, 1, 2.. rows before.
+    coefficients: Vec<Vec<f64>>,
+    /// By how much the variance of each of the first errors is larger than that of later ones, given those before; 1 last.
+    excess: Vec<f64>,
+}
+
+impl Filter {
+    /// From partial autocorrelations and deviation; `None` where errors resemble each other for longer than was looked.
+    fn new(at: &[f64], longest: usize) -> Option<Filter> {
+        let (deviation, angles) = at.split_last()?;
+        let partial: Vec<f64> = angles.iter().map(|a| a.tanh()).collect();
+        let limit = 1.0 - 1.0 / longest as f64;
+        if partial.iter().any(|p| p.abs() > limit) || deviation.abs() > 300.0 {
+            return None;
+        }
+        let mut excess = vec![1.0];
+        partial.iter().rev().for_each(|p| excess.push(excess[excess.len() - 1] / (1.0 - p * p)));
+        excess.reverse();
+        let mut coefficients = vec![Vec::new()];
+        partial.iter().for_each(|p| coefficients.push(longer(&coefficients[coefficients.len() - 1], *p)));
+        Some(Filter { deviation: deviation.exp(), coefficients, excess })
+    }
+
+    fn last(&self) -> &[f64] {
+        &self.coefficients[self.coefficients.len() - 1]
+    }
+
+    /// The whitened rows of a series, from its beginning.
+    fn forwards(&self, x: DMatrix<f64>) -> DMatrix<f64> {
+        let mut white = x.clone();
+        for t in 0..x.nrows() {
+            let k = t.min(self.excess.len() - 1);
+            for (i, a) in self.coefficients[k].iter().enumerate() {
+                let told = x.row(t - 1 - i) * *a;
+                white.set_row(t, &(white.row(t) - told));
+            }
+            let scaled = white.row(t) / (self.deviation * self.excess[k].sqrt());
+            white.set_row(t, &scaled);
+        }
+        white
+    }
+
+    /// The rows whose squares are those of `x` with the errors' covariance between them: the transposed whitening undone.
+    fn backwards(&self, x: DMatrix<f64>) -> DMatrix<f64> {
+        let (rows, columns) = x.shape();
+        let last = self.excess.len() - 1;
+        let mut out = x;
+        for j in 0..columns {
+            let mut column = out.column_mut(j);
+            for t in (0..rows).rev() {
+                let k = t.min(last);
+                let undone = column[t] * self.deviation * self.excess[k].sqrt();
+                // what this row was told by those before it
+                for (i, a) in self.coefficients[k].iter().enumerate() {
+                    column[t - 1 - i] += a * column[t];
+                }
+                column[t] = undone;
+            }
+        }
+        out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn backwards_undoes_the_transposed_forwards() {
+        let filter = Filter::new(&[0.9, -0.4, 0.3], 100).expect("a model");
+        let eye = DMatrix::<f64>::identity(9, 9);
+        let white = filter.forwards(eye.clone());
+        let undone = filter.backwards(eye);
+        assert!((white.transpose() * undone - DMatrix::identity(9, 9)).amax() < 1e-12);
+    }
+
+    /// A first-order model: variance sigma^2/(1 - phi^2), neighbours correlated by phi.
+    #[test]
+    fn covariance_of_a_first_order_model() {
+        let phi = 0.8f64;
+        let filter = Filter::new(&[phi.atanh(), 2f64.ln()], 100).expect("a model");
+        let rows = filter.backwards(DMatrix::identity(5, 5));
+        let covariance = rows.tr_mul(&rows);
+        for i in 0..5usize {
+            for j in 0..5 {
+                let exact = 4.0 / (1.0 - phi * phi) * phi.powi(i.abs_diff(j) as i32);
+                assert!((covariance[(i, j)] - exact).abs() < 1e-12, "{covariance}");
+            }
+        }
+    }
+
+    #[test]
+    fn orders_by_the_criterion() {
+        let mut seed = 5u64;
+        let mut roll = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        };
+        let white: Vec<f64> = (0..500).map(|_| roll()).collect();
+        assert_eq!(chosen(&[&white], 10).expect("errors").len(), 1);
+        let mut second = vec![0.0, 0.0];
+        white.iter().for_each(|w| second.push(1.2 * second[second.len() - 1] - 0.6 * second[second.len() - 2] + w));
+        let model = chosen(&[&second], 10).expect("errors");
+        // the last partial autocorrelation is the last coefficient
+        assert!(model.len() == 3 && (model[1].tanh() + 0.6).abs() < 0.1, "{model:?}");
+        assert!(chosen(&[&[0.0; 50]], 5).is_none());
+    }
+}
