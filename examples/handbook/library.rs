@@ -1,0 +1,276 @@
+//! The classes of `components/` and `models/` by name, what they inherit, and who uses whom.
+
+use bramah::resolve::{ClassId, Library, nested_classes};
+use bramah::syntax::ast::{
+    Argument, ArgumentKind, Class, ClassBody, ClassKind, Component, ElementKind, Expr, Import, LongBody, Path,
+};
+use bramah::syntax::symbol::Symbol;
+use std::collections::BTreeMap;
+
+/// Packages of the handbook, in the order in which they are shown.
+pub const PACKAGES: [&str; 16] = [
+    "Hydraulic",
+    "Oil",
+    "Mechanical",
+    "Electrical",
+    "Thermal",
+    "Signal",
+    "Interfaces",
+    "Smooth",
+    "Effects",
+    "Modelica",
+    "ServoPump",
+    "ClosedCircuit",
+    "CoupledDrives",
+    "Emps",
+    "CascadedTanks",
+    "GapAxis",
+];
+
+/// All classes with pages, and the examples that show them.
+pub struct Catalogue {
+    /// By full name.
+    pub classes: BTreeMap<String, ClassId>,
+    /// Members of each package, in the order of its folder.
+    pub members: BTreeMap<String, Vec<String>>,
+    /// For each class the examples that contain it, its own first.
+    pub shown_in: BTreeMap<String, Vec<(String, String)>>,
+    /// For each class those that extend it.
+    pub extended_by: BTreeMap<String, Vec<String>>,
+}
+
+/// A declared component with the class that declares it.
+#[derive(Clone, Copy)]
+pub struct Member<'a> {
+    /// Where it is declared: the class itself or a base.
+    pub owner: ClassId,
+    /// Its declaration.
+    pub component: &'a Component,
+    /// Not meant for users.
+    pub protected: bool,
+}
+
+/// Values that `extends` clauses give to inherited components: by name, whether final.
+pub type Given<'a> = BTreeMap<&'static str, (&'a Expr, bool)>;
+
+/// Reads every class of the library.
+pub fn catalogue(library: &mut Library<'_>) -> Catalogue {
+    let mut catalogue = Catalogue {
+        classes: BTreeMap::new(),
+        members: BTreeMap::new(),
+        shown_in: BTreeMap::new(),
+        extended_by: BTreeMap::new(),
+    };
+    for package in PACKAGES {
+        let id = library.find(package).expect("the package ships");
+        enter(library, id, &mut catalogue);
+    }
+    for (name, id) in catalogue.classes.clone() {
+        for base in bases(library, id) {
+            catalogue.extended_by.entry(library.full_name(base)).or_default().push(name.clone());
+        }
+        if is_runnable(library.class(id)) {
+            uses(library, id, &name, &mut catalogue);
+        }
+    }
+    for (class, examples) in &mut catalogue.shown_in {
+        let own = format!("{}Example", class.rsplit('.').next().unwrap_or_default());
+        examples.sort_by_key(|(example, _)| {
+            (!example.ends_with(&format!(".{own}")), !example.contains(".Examples."), example.clone())
+        });
+    }
+    catalogue
+}
+
+fn enter(library: &mut Library<'_>, id: ClassId, catalogue: &mut Catalogue) {
+    let name = library.full_name(id);
+    catalogue.classes.insert(name.clone(), id);
+    let class = library.class(id);
+    if class.kind != ClassKind::Package {
+        return;
+    }
+    let mut names: Vec<Symbol> = nested_classes(class).map(|c| c.name.name).collect();
+    let nested = names.len();
+    names.extend(library.folder_members(id));
+    names[nested..].sort_by_key(|n| n.as_str().to_lowercase());
+    for member in names {
+        if let Some(child) = library.child(id, member) {
+            catalogue.members.entry(name.clone()).or_default().push(library.full_name(child));
+            enter(library, child, catalogue);
+        }
+    }
+}
+
+/// Notes for every class of a component of this example that the example shows it, under which name.
+fn uses(library: &mut Library<'_>, id: ClassId, example: &str, catalogue: &mut Catalogue) {
+    for member in members(library, id).0 {
+        let at = member.component.name.name.as_str().to_owned();
+        let mut found: Vec<ClassId> = resolve(library, member.owner, &member.component.class).into_iter().collect();
+        for argument in member.component.modification.iter().flat_map(|m| &m.arguments) {
+            found.extend(redeclared(argument).and_then(|path| resolve(library, id, path)));
+        }
+        for class in found {
+            let shown = catalogue.shown_in.entry(library.full_name(class)).or_default();
+            if shown.iter().all(|(e, _)| e != example) {
+                shown.push((example.to_owned(), at.clone()));
+            }
+        }
+    }
+}
+
+/// The class that a modifier puts in.
+fn redeclared(argument: &Argument) -> Option<&Path> {
+    match &argument.kind {
+        ArgumentKind::Component(c) => Some(&c.class),
+        ArgumentKind::Class(c) => match &c.body {
+            ClassBody::Short { base, .. } => Some(base),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+/// Whether the class carries an experiment.
+pub fn is_runnable(class: &Class) -> bool {
+    !class.prefixes.partial && annotation(class, &["experiment"]).is_some()
+}
+
+/// The modification of an annotation by path, such as `Documentation`, `info`.
+pub fn annotation<'a>(class: &'a Class, path: &[&str]) -> Option<&'a bramah::syntax::ast::Modification> {
+    let mut at = class.annotation.as_ref()?;
+    for name in path {
+        at = at.arguments.iter().find_map(|a| match &a.kind {
+            ArgumentKind::Modify { path, modification: Some(m), .. } if path.parts[0].name == *name => Some(m),
+            _ => None,
+        })?;
+    }
+    Some(at)
+}
+
+/// The long body of a class, where it has one.
+pub fn body(class: &Class) -> Option<&LongBody> {
+    match &class.body {
+        ClassBody::Long(body) => Some(body),
+        _ => None,
+    }
+}
+
+/// Direct bases of a class.
+pub fn bases(library: &mut Library<'_>, id: ClassId) -> Vec<ClassId> {
+    let class = library.class(id);
+    let paths: Vec<&Path> = match &class.body {
+        ClassBody::Short { base, .. } => vec![base],
+        ClassBody::Long(body) => body
+            .elements
+            .iter()
+            .filter_map(|e| match &e.kind {
+                ElementKind::Extends(x) => Some(&x.base),
+                _ => None,
+            })
+            .collect(),
+        _ => Vec::new(),
+    };
+    paths.into_iter().filter_map(|p| resolve_outside(library, id, p)).collect()
+}
+
+/// A class and all it inherits, nearest first.
+pub fn lineage(library: &mut Library<'_>, id: ClassId) -> Vec<ClassId> {
+    let mut out = vec![id];
+    let mut next = 0;
+    while next < out.len() {
+        for base in bases(library, out[next]) {
+            if !out.contains(&base) {
+                out.push(base);
+            }
+        }
+        next += 1;
+    }
+    out
+}
+
+/// All components of a class, its own first, and the values that `extends` clauses give them.
+pub fn members<'a>(library: &mut Library<'a>, id: ClassId) -> (Vec<Member<'a>>, Given<'a>) {
+    let (mut out, mut given) = (Vec::new(), Given::new());
+    for owner in lineage(library, id) {
+        let Some(body) = body(library.class(owner)) else { continue };
+        for element in &body.elements {
+            match &element.kind {
+                ElementKind::Component(component) => {
+                    out.push(Member { owner, component, protected: element.protected });
+                }
+                ElementKind::Extends(x) => note_given(x.modification.iter().flat_map(|m| &m.arguments), &mut given),
+                _ => {}
+            }
+        }
+    }
+    (out, given)
+}
+
+fn note_given<'a>(arguments: impl Iterator<Item = &'a Argument>, given: &mut Given<'a>) {
+    for argument in arguments {
+        if let ArgumentKind::Modify { path, modification: Some(m), .. } = &argument.kind
+            && let (1, Some(value)) = (path.parts.len(), &m.value)
+        {
+            given.entry(path.parts[0].name.as_str()).or_insert((value, argument.final_));
+        }
+    }
+}
+
+/// The class that a name means inside a class.
+pub fn resolve(library: &mut Library<'_>, from: ClassId, path: &Path) -> Option<ClassId> {
+    let parts: Vec<Symbol> = path.parts.iter().map(|p| p.name).collect();
+    named(library, Some(from), &parts, path.global)
+}
+
+/// As [`resolve`] for the bases of a class, which are looked up without what is inherited.
+fn resolve_outside(library: &mut Library<'_>, class: ClassId, path: &Path) -> Option<ClassId> {
+    let parts: Vec<Symbol> = path.parts.iter().map(|p| p.name).collect();
+    if let Some(found) = library.child(class, parts[0]).filter(|f| *f != class) {
+        return descend(library, found, &parts[1..]);
+    }
+    let parent = library.parent(class);
+    named(library, parent, &parts, path.global)
+}
+
+/// The class that dotted words mean inside a class.
+pub fn named(library: &mut Library<'_>, from: Option<ClassId>, parts: &[Symbol], global: bool) -> Option<ClassId> {
+    let (first, rest) = parts.split_first()?;
+    let mut scope = from.filter(|_| !global);
+    while let Some(id) = scope {
+        if let Some(found) = in_scope(library, id, *first) {
+            return descend(library, found, rest);
+        }
+        scope = library.parent(id);
+    }
+    let top = library.top(*first)?;
+    descend(library, top, rest)
+}
+
+fn in_scope(library: &mut Library<'_>, id: ClassId, name: Symbol) -> Option<ClassId> {
+    for class in lineage(library, id) {
+        if let Some(found) = library.child(class, name) {
+            return Some(found);
+        }
+    }
+    imported(library, id, name)
+}
+
+fn imported(library: &mut Library<'_>, id: ClassId, name: Symbol) -> Option<ClassId> {
+    let body = body(library.class(id))?;
+    for element in &body.elements {
+        let ElementKind::Import(Import::Single { alias, path }) = &element.kind else { continue };
+        let last = path.parts.last().expect("a path has parts").name;
+        if alias.map_or(last, |a| a.name) == name {
+            let parts: Vec<Symbol> = path.parts.iter().map(|p| p.name).collect();
+            return named(library, None, &parts, true);
+        }
+    }
+    None
+}
+
+fn descend(library: &mut Library<'_>, mut id: ClassId, parts: &[Symbol]) -> Option<ClassId> {
+    for part in parts {
+        id = in_scope(library, id, *part)?;
+    }
+    Some(id)
+}
