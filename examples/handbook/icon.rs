@@ -1,4 +1,4 @@
-//! The box of a component with its ports: squares for physical ports, triangles for signals.
+//! The box of a component with its ports, its name below: squares for physical ports, triangles for signals.
 
 use bramah::plot::svg::escape;
 use std::fmt::Write as _;
@@ -70,11 +70,11 @@ pub fn draw(name: &str, ports: &[Port]) -> String {
          <title>{n} with its ports</title>\
          <rect x=\"{EDGE}\" y=\"4\" width=\"{w}\" height=\"{height}\" rx=\"3\" fill=\"#fbfbfa\" stroke=\"#9ca3af\"/>\
          <text x=\"{c}\" y=\"{m}\" text-anchor=\"middle\" class=\"name\">{n}</text>",
-        h = height + 8.0,
+        h = height + 26.0,
         w = WIDTH - 2.0 * EDGE,
         c = WIDTH / 2.0,
-        m = 4.0 + height / 2.0 + 4.0,
-        n = escape(&shortened(name)),
+        m = height + 20.0,
+        n = escape(name),
     );
     for (side, list) in [(false, &left), (true, &right)] {
         let step = height / list.len().max(1) as f64;
@@ -84,15 +84,6 @@ pub fn draw(name: &str, ports: &[Port]) -> String {
     }
     out.push_str("</svg>");
     out
-}
-
-/// Names that do not fit into the box lose their middle.
-fn shortened(name: &str) -> String {
-    let letters: Vec<char> = name.chars().collect();
-    if letters.len() <= 16 {
-        return name.to_owned();
-    }
-    letters[..9].iter().chain(&['…']).chain(&letters[letters.len() - 6..]).collect()
 }
 
 fn mark(out: &mut String, port: &Port, right: bool, y: f64) {

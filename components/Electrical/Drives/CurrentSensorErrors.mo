@@ -24,5 +24,5 @@ equation
   beta = (i_a + 2*i_b)/sqrt(3);
   j_d = alpha*cos(theta) + beta*sin(theta);
   j_q = -alpha*sin(theta) + beta*cos(theta);
-  annotation(Documentation(info = "<html><p>The third phase is computed from the two measured ones. An offset makes a torque ripple at the electrical frequency, unequal gains at twice that, in proportion to the load. Put between the motor's currents and <code>CurrentControl</code>. Source: D.-W. Chung and S.-K. Sul, IEEE Trans. Ind. Appl. 34 (1998) 1000.</p></html>"));
+  annotation(Documentation(info = "<html><p>The third phase is computed from the two measured ones. An offset makes a torque ripple at the electrical frequency, unequal gains at twice that, in proportion to the load. Put between the motor's currents and <code>ContinuousCurrentControl</code>. Source: D.-W. Chung and S.-K. Sul, IEEE Trans. Ind. Appl. 34 (1998) 1000.</p></html>"));
 end CurrentSensorErrors;

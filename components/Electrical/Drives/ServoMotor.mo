@@ -1,11 +1,18 @@
 within Electrical.Drives;
-model ServoMotor "Torque-controlled PMSM with field-oriented current control"
+model ServoMotor "Torque-controlled PMSM with field-oriented current control and inverter"
   Interfaces.RealInput T_ref(unit = "N.m") "Command of torque";
   Interfaces.RotationalFlange flange "Shaft";
+  Interfaces.Pin dc_p if externalSupply "Positive pin of the DC link";
+  Interfaces.Pin dc_n if externalSupply "Negative pin of the DC link";
   parameter SI.Torque T_max(min = 0) = 9.54 "Greatest torque";
   parameter SI.Voltage V_dc(min = 1) = 540 "Voltage of the DC link";
+  parameter Boolean externalSupply = false "true: the DC link is joined to dc_p and dc_n, and V_dc is what the controller takes it for" annotation(Evaluate = true);
   Machines.PMSM motor "Motor";
-  CurrentControl control(p = motor.p, R_s = motor.R_s, L = motor.L_q, psi_f = motor.psi_f, V_dc = V_dc) "Current control";
+  replaceable ContinuousCurrentControl control constrainedby CurrentControl(
+    p = motor.p, R_s = motor.R_s, L = motor.L_q, psi_f = motor.psi_f, V_dc = V_dc) "Current control";
+  replaceable AveragedInverter inverter constrainedby Inverter(p = motor.p) "Inverter";
+  ConstantVoltage supply(V = V_dc) if not externalSupply "DC link of constant voltage";
+  Ground ground if not externalSupply "Its reference";
   SI.Torque T_e "Torque of the motor";
 equation
   assert(T_max > 0, "T_max must be positive");
@@ -14,9 +21,21 @@ equation
   control.i_q_ref = min(max(T_ref, -T_max), T_max)/(1.5*motor.p*motor.psi_f);
   connect(control.i_d, motor.i_d);
   connect(control.i_q, motor.i_q);
-  connect(control.u_d, motor.u_d);
-  connect(control.u_q, motor.u_q);
   control.w = motor.w;
+  connect(control.u_d, inverter.u_d);
+  connect(control.u_q, inverter.u_q);
+  connect(motor.i_d, inverter.i_d);
+  connect(motor.i_q, inverter.i_q);
+  inverter.phi = motor.flange.phi;
+  inverter.w = motor.w;
+  connect(inverter.v_d, motor.u_d);
+  connect(inverter.v_q, motor.u_q);
+  connect(supply.p, inverter.dc_p);
+  connect(supply.n, inverter.dc_n);
+  connect(supply.n, ground.p);
+  connect(dc_p, inverter.dc_p);
+  connect(dc_n, inverter.dc_n);
   connect(motor.flange, flange);
-  annotation(Documentation(info = "<html><p><code>PMSM</code> with <code>CurrentControl</code>: torque follows its command within a millisecond until the voltage ends. For longer runs <code>TorqueSource</code> is the same as a lag.</p></html>"));
+  annotation(Documentation(info = "<html><p><code>PMSM</code>, current control and inverter: torque follows its command within a millisecond until the voltage ends. Control and inverter can be exchanged: <code>ContinuousCurrentControl</code> (default) or <code>SampledCurrentControl</code>, <code>AveragedInverter</code> (default) or <code>SwitchingInverter</code>. Braking, the motor feeds the DC link; what that does to its voltage is up to what is joined to <code>dc_p</code> and <code>dc_n</code>.</p>
+<p>For longer runs <code>TorqueSource</code> is the same as a lag.</p></html>"));
 end ServoMotor;

@@ -2,7 +2,7 @@ within Electrical.Examples;
 model CurrentSensorErrorsExample "Torque ripple of a motor whose current sensors have an offset"
   Machines.PMSM motor;
   Drives.CurrentSensorErrors sensors(offset_a = 0.05, gain_b = 1.02);
-  Drives.CurrentControl control;
+  Drives.ContinuousCurrentControl control;
   Mechanical.Rotational.ConstantSpeed shaft(w_fixed = 20);
 equation
   control.i_d_ref = 0;
