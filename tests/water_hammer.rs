@@ -5,6 +5,7 @@
 //! V. L. Streeter, Fluid Transients in Systems, 1993, chapter 3.
 
 #![allow(clippy::disallowed_methods, reason = "tests read their own files")]
+#![allow(clippy::print_stdout, reason = "it reports errors and orders")]
 
 mod rig;
 
