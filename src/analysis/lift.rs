@@ -43,6 +43,16 @@ pub fn lift(flat: &FlatModel, parameters: &[VarId], outputs: &[VarId]) -> Lifted
     Lifted { flat: lift.flat, parameters: raised, inputs, outputs }
 }
 
+/// Lifts parameters alone: inputs stay inputs.
+pub fn free(flat: &FlatModel, parameters: &[VarId]) -> Lifted {
+    let mut lift = Lift::new(flat.clone());
+    let parameters: Vec<Raised> = parameters.iter().map(|&p| lift.parameter(p)).collect();
+    let originals: Vec<VarId> = parameters.iter().map(|r| r.start).collect();
+    lift.dependents(&originals);
+    lift.substitute();
+    Lifted { flat: lift.flat, parameters, inputs: Vec::new(), outputs: Vec::new() }
+}
+
 struct Lift {
     flat: FlatModel,
     replacements: Vec<(ExprId, ExprId)>,

@@ -10,8 +10,8 @@ pub mod noise;
 pub mod sensitivity;
 pub mod steady;
 pub mod sweep;
-pub mod variation;
+pub mod tangent;
 
 pub use lift::{Lifted, lift};
 pub use local::{Local, LocalError};
-pub use variation::Variation;
+pub use tangent::Tangent;

@@ -24,7 +24,7 @@ use crate::solve::Settings;
 #[command(after_help = "\
 Each number belongs to a relative change: the variable's change over the parameter's, times the parameter's own size. The
 ranking on stdout tells by how many per cent of its range a variable moves (root mean square) when a parameter moves by
-1 %. Exact derivatives in one run; central differences of runs where events make derivatives jump, which is then said.
+1 %. Exact derivatives in one run, across events too; where they do not hold central differences of runs, which is then said.
 
 Examples:
   bramah sensitivity Press.mo --variables cyl.v,pump.b.p

@@ -4,10 +4,11 @@ mod event;
 mod failure;
 mod legs;
 mod outside;
+mod tangents;
 
 use super::algebraic::{self, Algebraic};
 use super::events::{Events, Outcome};
-use super::ida::{Ida, Tolerances};
+use super::ida::{Failure, Ida, Tolerances};
 use super::linear::Lu;
 use super::model::Model;
 use super::modes::{Modes, RootFunctions};
@@ -24,6 +25,7 @@ use crate::lower::{Layout, Pattern, Program, System};
 use crate::structure::StateChoice;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
+use tangents::Carried;
 
 /// The clock, for the statistics' seconds alone: nothing else depends on it.
 #[allow(clippy::disallowed_methods, reason = "solve_s and initialize_s are measured where they pass")]
@@ -39,6 +41,9 @@ const PAUSE_WITH_SELECTIONS: u32 = 10;
 /// What the corrector may leave, in tolerances, where there are algebraic unknowns: what it leaves in them goes on into
 /// the derivatives and looks like an error of integration. (A tenth of it changes neither errors nor work.)
 const ALGEBRAIC_CORRECTOR: f64 = 0.1;
+
+/// The share in the error test of what has no error.
+const NOTHING: f64 = 1e-30;
 
 /// Why a run ends before its stop time.
 pub struct Stop {
@@ -119,6 +124,10 @@ pub struct Driver<'a, 'c> {
     slots: Vec<usize>,
     row: Vec<f64>,
     restart: Restart,
+    /// Sensitivities, where they are asked for.
+    carried: Option<Box<Carried>>,
+    /// Length of the last step before an event.
+    last_step: f64,
     algebraic: Algebraic,
     chatter: Chatter,
     told: Told,
@@ -206,13 +215,18 @@ fn prepare<'a, 'c>(
             .and_then(|()| initialize::check_starts(system, &scales, &values)),
     };
     let restart = Restart::new(system, &scales, settings.tolerance);
+    let asked = settings.tangents.as_ref().filter(|_| !system.columns.is_empty());
+    let carried = asked.map(|asked| Box::new(Carried::new(system, asked, &settings.wanted, restart.nominal())));
+    let directions = settings.tangents.as_ref().map_or(0, |asked| asked.starts.len());
     let driver = Driver {
+        carried,
+        last_step: 0.0,
         algebraic: Algebraic::new(system, restart.nominal(), settings.tolerance),
         restart,
         events: Events::new(system, &scales, &modes),
         program: system.observe_only(&settings.wanted),
         slots: settings.wanted.iter().map(|&v| system.layout.var(v)).collect(),
-        row: vec![0.0; settings.wanted.len()],
+        row: vec![0.0; settings.wanted.len() * (1 + directions)],
         silent: grid.is_some(),
         grid: grid.unwrap_or_else(|| Grid::new(start, settings.stop_time, settings.interval)),
         choice: None,
@@ -235,7 +249,7 @@ fn prepare<'a, 'c>(
         scales,
         modes,
     };
-    let model = Model { system, values, roots: RootFunctions::new(system), playback, trap: None };
+    let model = Model { system, values, roots: RootFunctions::new(system), playback, trap: None, slopes: None };
     (driver, model, solved)
 }
 
@@ -328,7 +342,9 @@ impl<'a> Driver<'a, '_> {
         let at_start = self.iterate(model, Cause::Start)?;
         outcome.terminate = outcome.terminate.or(at_start.terminate);
         outcome.failed.extend(at_start.failed);
+        self.start_tangents(model)?;
         if !self.silent {
+            self.tangent_cells(model);
             self.write_row(model)?;
             self.grid.pass(self.t);
         }
@@ -363,7 +379,7 @@ impl<'a> Driver<'a, '_> {
         let tolerances = Tolerances {
             relative: self.settings.tolerance,
             absolute: nominal.iter().map(|n| n * self.settings.tolerance).collect(),
-            share: if still { vec![1.0] } else { algebraic::shares(system) },
+            share: if still { vec![1.0] } else { self.shares() },
         };
         let lu = Lu::new(&pattern, nominal);
         self.restart.gather(system, &model.values);
@@ -379,8 +395,23 @@ impl<'a> Driver<'a, '_> {
         }
         ida.pause_after(if system.dae.selections.is_empty() { PAUSE } else { PAUSE_WITH_SELECTIONS });
         self.ida = Some(ida);
+        if !self.hand_over_tangents(true) {
+            return Err(self.refused(&Failure::Code(0)));
+        }
         self.first_step(Cause::Start);
         Ok(())
+    }
+
+    /// How errors of the unknowns count: those of states that stand still do not.
+    fn shares(&self) -> Vec<f64> {
+        let mut shares = algebraic::shares(self.system);
+        let still = self.settings.tangents.iter().flat_map(|t| &t.still);
+        let places: Vec<usize> = still.filter_map(|&v| super::tangents::column(self.system, v)).map(|c| c.0).collect();
+        let n = shares.len() as f64;
+        let part = (n / (n - places.len() as f64).max(1.0)).sqrt();
+        shares.iter_mut().for_each(|s| *s *= part);
+        places.into_iter().for_each(|j| shares[j] = NOTHING);
+        shares
     }
 
     fn ida(&mut self) -> &mut Ida<Model<'a>> {

@@ -5,6 +5,7 @@
 #![allow(unsafe_code, reason = "calls into SUNDIALS; each block states why it is sound")]
 
 mod context;
+mod sensitivity;
 
 use super::linear::{Lu, Singular};
 use crate::lower::Pattern;
@@ -32,6 +33,18 @@ pub trait Equations {
 
     /// Writes the functions whose sign changes are sought to `g`.
     fn crossings(&mut self, t: f64, y: &[f64], yp: &[f64], g: &mut [f64]);
+}
+
+/// Equations with derivatives along a direction.
+pub trait Differentiable: Equations {
+    /// Prepares dF/dy and dF/dyp at a point; nothing is done where they stand there already.
+    fn differentiate(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Evaluation;
+
+    /// The equations themselves have changed, as at an event.
+    fn forget(&mut self);
+
+    /// Writes `dF/dy s + dF/dyp sp` at that point to `r`.
+    fn along(&self, s: &[f64], sp: &[f64], r: &mut [f64]);
 }
 
 /// Why a call of [`Ida::advance`] returned.
@@ -108,6 +121,8 @@ pub struct Ida<E: Equations> {
     solver: s::SUNLinearSolver,
     context: *mut Context<E>,
     n: usize,
+    /// Sensitivities handed over: values, then rates.
+    tangents: Vec<s::N_Vector>,
     /// Work done before the last restart.
     before: Work,
     found: Vec<c_int>,
@@ -161,6 +176,7 @@ impl<E: Equations> Ida<E> {
             solver: new_solver(context, sundials),
             context,
             n,
+            tangents: Vec::new(),
             before: Work::default(),
             found: vec![0; roots],
         };
@@ -452,7 +468,7 @@ impl<E: Equations> Drop for Ida<E> {
             s::IDAFree(&raw mut self.memory);
             s::SUNLinSolFree(self.solver);
             s::SUNMatDestroy(self.matrix);
-            for v in [self.y, self.yp, self.scratch] {
+            for v in [self.y, self.yp, self.scratch].into_iter().chain(self.tangents.drain(..)) {
                 s::N_VDestroy(v);
             }
             s::SUNContext_Free(&raw mut self.sundials);

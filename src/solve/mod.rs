@@ -23,6 +23,7 @@ mod schedule;
 mod selection;
 mod settings;
 mod state;
+mod tangents;
 
 pub use checkpoint::Checkpoint;
 pub use inputs::{Input, Interpolation};
@@ -30,6 +31,7 @@ pub use output::{Sink, signals};
 pub use point::Point;
 pub use settings::{End, Settings, Statistics};
 pub use state::State;
+pub use tangents::Tangents;
 
 use crate::diag::Diagnostic;
 use crate::lower::System;

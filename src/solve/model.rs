@@ -3,6 +3,7 @@
 use super::ida::{Equations, Evaluation};
 use super::inputs::Playback;
 use super::modes::RootFunctions;
+use super::tangents::Slopes;
 use crate::lower::System;
 
 /// One run's values, and what changes them while the integrator steps.
@@ -18,6 +19,8 @@ pub struct Model<'a> {
     pub playback: Playback,
     /// Where the equations last had no finite value: time, y, y'.
     pub trap: Option<(f64, Vec<f64>, Vec<f64>)>,
+    /// Derivatives of the equations where they were last asked for.
+    pub slopes: Option<Box<Slopes>>,
 }
 
 impl Model<'_> {
@@ -35,6 +38,13 @@ impl Model<'_> {
     pub fn load(&mut self, t: f64, y: &[f64], yp: &[f64]) {
         self.playback.follow(t, &mut self.values);
         self.system.load(t, y, yp, &mut self.values);
+    }
+
+    /// One of the unshifted crossings at these unknowns.
+    pub fn raw_crossing(&mut self, t: f64, y: &[f64], yp: &[f64], raw: usize) -> f64 {
+        self.playback.follow(t, &mut self.values);
+        self.system.crossings(t, y, yp, &mut self.values, self.roots.raw());
+        self.roots.raw()[raw]
     }
 
     /// Fills the slots of all variables.

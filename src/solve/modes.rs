@@ -166,6 +166,11 @@ impl RootFunctions {
         self.functions[function].crossing
     }
 
+    /// The entry of [`Self::raw`] behind a function.
+    pub fn raw_index(&self, function: usize) -> usize {
+        self.functions[function].raw
+    }
+
     /// The unshifted differences, to be filled by the system before [`Self::write`] or [`Self::settle`].
     pub fn raw(&mut self) -> &mut [f64] {
         &mut self.raw

@@ -1,5 +1,6 @@
 //! What a run is asked to do, and what it reports about its work.
 
+use super::Tangents;
 use super::modes::same_time;
 use crate::expr::VarId;
 use crate::flat::Experiment;
@@ -27,6 +28,8 @@ pub struct Settings {
     pub events_at_once: u32,
     /// Distance of checkpoints, at which the integrator begins afresh; infinite for none.
     pub checkpoint_every: f64,
+    /// Sensitivities to carry along; not together with checkpoints or with states that change.
+    pub tangents: Option<Tangents>,
 }
 
 impl Default for Settings {
@@ -42,6 +45,7 @@ impl Default for Settings {
             event_rows: true,
             events_at_once: 200,
             checkpoint_every: f64::INFINITY,
+            tangents: None,
         }
     }
 }

@@ -36,7 +36,7 @@ pub struct Fit {
     pub residuals: Vec<ResidualTest>,
     /// Measured and modelled course of each signal along the first train recording.
     pub courses: Vec<Course>,
-    /// Why derivatives were differences along some recording; `None` where the variational equations gave them all.
+    /// Why derivatives were differences along some recording; `None` where runs carried them all along.
     pub differences: Option<String>,
     /// All unknowns: the parameters on the scale of the search, then initial states.
     pub(super) z: Vec<f64>,

@@ -174,7 +174,7 @@ pub struct Identification<'a> {
     problem: &'a Problem<'a>,
     train: &'a [Recording],
     inverse: Option<Inverse>,
-    /// The variational equations, or why there are none.
+    /// What carries derivatives along in runs, or why there is nothing.
     exact: OnceLock<Result<Arc<Exact>, String>>,
     /// What can be found at all, judged at the start values.
     pub separation: Separation,
@@ -233,7 +233,7 @@ impl<'a> Identification<'a> {
 
     fn output_error(&self) -> Result<OutputError<'_>, Diagnostic> {
         let mut model = OutputError::new(self.problem, self.train, None).map_err(|b| cannot_follow(Some(&b)))?;
-        let exact = self.exact.get_or_init(|| Exact::new(self.problem, model.most_states()).map(Arc::new));
+        let exact = self.exact.get_or_init(|| Exact::new(self.problem).map(Arc::new));
         model.differentiate_by(exact.clone());
         Ok(model)
     }

@@ -89,20 +89,31 @@ impl<'a> Driver<'a, '_> {
         self.statistics.events += 1;
         let crossing = self.find_roots(cause);
         let t = self.t;
+        self.last_step = self.ida().step_lengths().0;
+        self.take_tangents();
         let outcome = self.with_model(|driver, model, y, yp| {
             let (y, yp) = driver.algebraic.solve(model, t, y, yp);
             model.observe(t, y, yp);
             driver.restart.before(driver.system, &model.values, y);
+            if driver.carried.is_some() {
+                let (y, yp) = (y.to_vec(), yp.to_vec());
+                driver.tangents_before(model, cause, &y)?;
+                model.observe(t, &y, &yp);
+            }
             if driver.settings.event_rows {
+                driver.tangent_cells(model);
                 driver.write_row(model)?;
             }
             driver.prepare_event(model, cause);
+            let ready = driver.ready(model);
             let outcome = driver.iterate(model, cause)?;
+            driver.restart.gather(driver.system, &model.values);
+            driver.tangents_after(model, &outcome, ready)?;
             if driver.settings.event_rows || same_time(driver.grid.next(), t) {
+                driver.tangent_cells(model);
                 driver.write_row(model)?;
             }
             driver.grid.pass(t);
-            driver.restart.gather(driver.system, &model.values);
             Ok(outcome)
         })?;
         self.with_model(|driver, model, _, _| driver.judge(model, &outcome))?;
@@ -161,10 +172,10 @@ impl<'a> Driver<'a, '_> {
                 Cause::Root => self.restart.past_serves_ahead(ida, t, outcome.changed),
                 _ => self.restart.past_serves(ida, t, next),
             };
-        if serves {
+        if serves && self.tangents_go_on() {
             return Ok(());
         }
-        self.restart.remember_step(ida);
+        self.restart.remember_step(self.ida.as_ref().expect("made before the first step"));
         self.statistics.restarts += 1;
         self.first_step(cause).then_some(()).ok_or_else(|| self.refused(&Failure::Code(0)))
     }
@@ -176,5 +187,6 @@ impl<'a> Driver<'a, '_> {
         let ida = self.ida.as_mut().expect("made before the first step");
         let (start, root) = (cause == Cause::Start, cause == Cause::Root);
         self.restart.restart(ida, t, room, self.settings.longest_step, start, root)
+            && (start || self.hand_over_tangents(false))
     }
 }

@@ -137,10 +137,16 @@ impl<'a> Driver<'a, '_> {
     /// A row on the grid.
     pub(super) fn output(&mut self) -> Flow {
         let t = self.t;
+        self.take_tangents();
         self.with_model(|driver, model, y, yp| {
             let (y, yp) = driver.algebraic.solve(model, t, y, yp);
             model.load(t, y, yp);
             driver.program.run(&mut model.values);
+            if driver.carried.is_some() {
+                let (y, yp) = (y.to_vec(), yp.to_vec());
+                driver.tangents_stand(&y, &yp);
+                driver.tangent_cells(model);
+            }
             driver.write_row(model)?;
             driver.check_asserts(model)
         })?;

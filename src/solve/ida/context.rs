@@ -3,7 +3,7 @@
 
 #![allow(unsafe_code, reason = "functions called by SUNDIALS; each block states why it is sound")]
 
-use super::{Equations, Evaluation, Tolerances};
+use super::{Differentiable, Equations, Evaluation, Tolerances};
 use crate::solve::linear::{Lu, Singular};
 use std::os::raw::{c_int, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -94,6 +94,40 @@ pub(super) unsafe extern "C" fn on_jacobian<E: Equations>(
     guarded(context, |c| {
         c.jacobian_calls += 1;
         let evaluation = c.equations.jacobian(t, cj, y, yp, val);
+        code_of(c, evaluation)
+    })
+}
+
+#[allow(clippy::too_many_arguments, reason = "the signature of IDASensResFn")]
+pub(super) unsafe extern "C" fn on_tangents<E: Differentiable>(
+    count: c_int,
+    t: f64,
+    y: s::N_Vector,
+    yp: s::N_Vector,
+    _r: s::N_Vector,
+    tangents: *mut s::N_Vector,
+    rates: *mut s::N_Vector,
+    out: *mut s::N_Vector,
+    user: *mut c_void,
+    _tmp1: s::N_Vector,
+    _tmp2: s::N_Vector,
+    _tmp3: s::N_Vector,
+) -> c_int {
+    // SAFETY: as above
+    let (context, y, yp) = unsafe {
+        let context = &mut *user.cast::<Context<E>>();
+        let n = context.n;
+        (context, slice(y, n), slice(yp, n))
+    };
+    let each = 0..usize::try_from(count).unwrap_or(0);
+    guarded(context, |c| {
+        let evaluation = c.equations.differentiate(t, y, yp);
+        for k in each.take_while(|_| evaluation == Evaluation::Done) {
+            // SAFETY: three arrays of `count` distinct serial vectors of n entries
+            let (s, sp, r) =
+                unsafe { (slice(*tangents.add(k), c.n), slice(*rates.add(k), c.n), slice(*out.add(k), c.n)) };
+            c.equations.along(s, sp, r);
+        }
         code_of(c, evaluation)
     })
 }
