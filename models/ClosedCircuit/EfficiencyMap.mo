@@ -17,6 +17,9 @@ model EfficiencyMap "Efficiencies of pump and motor over speed at one pressure, 
   Real eta_m(unit = "1") "Hydromechanical efficiency of the pump";
   Real eta_v_m(unit = "1") "Volumetric efficiency of the motor";
   Real eta_m_m(unit = "1") "Hydromechanical efficiency of the motor";
+  Real eta(unit = "1") "Efficiency of the pump";
+  Real eta_motor(unit = "1") "Efficiency of the motor";
+  SI.Pressure dp(nominal = 1e7) "Pressure of the high side above the low side";
   Real share_slipper(unit = "1") "Slippers: part of the pump's power loss, leakage and friction";
   Real share_piston(unit = "1") "Pistons: part of the pump's power loss";
   Real share_plate(unit = "1") "Valve plate: part of the pump's power loss";
@@ -40,6 +43,9 @@ equation
   eta_m = ideal/(pump.T_sh*pump.w);
   eta_v_m = ideal/(motor.port_b.q*p);
   eta_m_m = -motor.T_sh*motor.w/ideal;
+  eta = eta_v*eta_m;
+  eta_motor = eta_v_m*eta_m_m;
+  dp = high.port.p - low.port.p;
   loss = pump.T_sh*pump.w - pump.Q_A*p;
   share_slipper = (pump.Q_slipper*p + pump.T_slipper*pump.w)/loss;
   share_piston = (pump.Q_piston*p + pump.T_piston*pump.w)/loss;

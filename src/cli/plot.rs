@@ -7,6 +7,7 @@ use clap::Args;
 use super::messages::Messages;
 use super::{Ending, Failure, data, files};
 use crate::diag::{Code, Diagnostic};
+use crate::plot::map::{self, map};
 use crate::plot::select::{Choice, Run, figure};
 use crate::plot::{Figure, html, png, svg};
 use crate::results::{Globs, Trajectory};
@@ -19,6 +20,7 @@ Examples:
   bramah plot press.mat --variables 'cyl.*,pump.b.p' -o press.png
   bramah plot run1.csv run2.csv -o report.html       the same variables of both, together
   bramah plot press.csv --x cyl.x --variables cyl.v  a phase plot
+  bramah plot p*.csv --x N --y dp --variables eta    a map: each file is a row, at its value of dp
   bramah plot press.csv --unit '*.p=Pa:bar'          units for a file that carries none")]
 pub(super) struct PlotArgs {
     /// Result files: CSV or Modelica .mat
@@ -33,6 +35,9 @@ pub(super) struct PlotArgs {
     /// The variable on the horizontal axis instead of time
     #[arg(long, value_name = "NAME")]
     x: Option<String>,
+    /// The variable on the vertical axis of a map with lines of equal value: each result is a row of it
+    #[arg(long, value_name = "NAME", requires = "x")]
+    y: Option<String>,
     /// Text above the picture
     #[arg(long, default_value = "")]
     title: String,
@@ -55,11 +60,17 @@ pub(super) fn run(args: &PlotArgs, messages: &mut Messages) -> Result<Ending, Fa
     let choice = Choice { variables: Globs::new(&args.variables), x: args.x.clone(), title: args.title.clone() };
     let runs: Vec<Run<'_>> =
         labels.iter().zip(&trajectories).map(|(label, trajectory)| Run { label, trajectory }).collect();
+    let output = args.output.clone().unwrap_or_else(|| args.results[0].with_extension("svg"));
+    if let (Some(x), Some(y)) = (&args.x, &args.y) {
+        let drawn = map(&runs, &Globs::new(&args.variables), x, y, &args.title);
+        let drawn = drawn.map_err(|e| not_found(&e, args, &trajectories))?;
+        write_map(&map::write(&drawn), &output, messages)?;
+        return Ok(Ending::Fine);
+    }
     let selected = figure(&runs, &choice).map_err(|e| not_found(&e, args, &trajectories))?;
     if selected.left_out > 0 {
         messages.remark(&format!("{} more variables are not drawn; choose with --variables", selected.left_out));
     }
-    let output = args.output.clone().unwrap_or_else(|| args.results[0].with_extension("svg"));
     let facts = [("files".to_owned(), labels.join(", "))];
     write(&selected.figure, &facts, &output, messages)?;
     Ok(Ending::Fine)
@@ -104,6 +115,18 @@ pub(super) fn write_picture(picture: &str, figure: &Figure, path: &Path, message
     Ok(())
 }
 
+/// Writes a map, which has no page with zoom and hover.
+fn write_map(picture: &str, path: &Path, messages: &Messages) -> Result<(), Failure> {
+    if path == Path::new("-") {
+        return files::print(picture);
+    }
+    let is_page = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("html") || e.eq_ignore_ascii_case("htm"));
+    if is_page {
+        return Err(Failure::new(Code::BadArgument, "a map is written as .svg or .png"));
+    }
+    write_picture(picture, &Figure::default(), path, messages)
+}
+
 /// A file's name without folder and extension.
 pub(super) fn stem(path: &Path) -> String {
     path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default()
@@ -113,7 +136,7 @@ fn not_found(why: &str, args: &PlotArgs, trajectories: &[Trajectory]) -> Failure
     let names = || trajectories.iter().flat_map(|t| t.signals.iter().map(|s| s.name.as_str()));
     let mut diagnostic = Diagnostic::new(Code::BadArgument, why);
     let asked = Globs::new(&args.variables);
-    let wanted = args.x.as_deref().into_iter().chain(asked.unused(names()));
+    let wanted = args.x.as_deref().into_iter().chain(args.y.as_deref()).chain(asked.unused(names()));
     for name in wanted.filter(|n| !names().any(|k| k == *n)) {
         if let Some(near) = crate::diag::nearest(name, names()) {
             diagnostic = diagnostic.help(format!("`{name}`: did you mean `{near}`?"));

@@ -5,6 +5,7 @@
 pub mod decimate;
 pub mod figure;
 pub mod html;
+pub mod map;
 pub mod matrix;
 pub mod network;
 #[cfg(feature = "plot")]
