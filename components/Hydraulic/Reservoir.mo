@@ -1,0 +1,31 @@
+within Hydraulic;
+model Reservoir "Reservoir with a level: open, or closed with a cushion of gas"
+  Interfaces.HydraulicPort port "Lines below the level, at the bottom";
+  outer Oil.Fluid oil "Oil of the circuit";
+  parameter SI.Area A(min = 1e-6, max = 1e3, nominal = 0.1) = 0.1 "Area of the surface";
+  parameter SI.Height h_max(min = 1e-3, max = 100, nominal = 0.5) = 0.5 "Height of the reservoir";
+  parameter SI.Height h_min(min = 0, max = 100) = 0.05 "Level below which lines draw air";
+  parameter SI.Height h_start(min = 0, max = 100) = 0.35 "Level at the start";
+  parameter Boolean closed = false "true: closed, with gas above the oil" annotation(Evaluate = true);
+  parameter SI.Pressure p_gas(min = 1e3, max = 1e7, nominal = 1e5) = 101325 "Pressure above the oil; closed: at the start";
+  parameter Real n_g(unit = "1", min = 1, max = 1.67) = 1.2 "Polytropic exponent of the gas";
+  SI.Height h(start = h_start, fixed = true, nominal = 0.1) "Level";
+  SI.Pressure p(nominal = 1e5) "Pressure above the oil";
+  SI.Mass mass(nominal = 100) "Mass of the oil";
+protected
+  SI.Density rho(nominal = 1000) "Density of the oil at the bottom";
+equation
+  assert(A > 0 and h_max > h_start, "The area must be positive, the level at the start below the height");
+  assert(h > h_min, "The reservoir runs dry: its lines draw air");
+  assert(h < h_max, "The reservoir overflows");
+  if closed then
+    p = p_gas*((h_max - h_start)/max(h_max - h, 1e-3*h_max))^n_g;
+  else
+    p = p_gas;
+  end if;
+  rho = oil.density(port.p);
+  port.p = p + rho*Modelica.Constants.g_n*h;
+  A*der(h) = port.q;
+  mass = rho*A*h;
+  annotation(Documentation(info = "<html><p><code>A dh/dt = q</code>, <code>p_port = p + rho g h</code>. Closed, the gas is compressed as the level rises, <code>p (h_max - h)^n = const</code>: what differential cylinders do to a small sealed tank. The compressibility of the oil at this pressure is left out. The run ends when the reservoir runs dry or overflows.</p><p>Where the level does not matter: <code>Tank</code>.</p></html>"));
+end Reservoir;

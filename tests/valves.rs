@@ -1,0 +1,132 @@
+//! Valves that hold flows and pressures, controls of variable pumps, the reservoir: against closed forms.
+
+#![allow(clippy::disallowed_methods, reason = "tests read their own files")]
+
+mod rig;
+
+use bramah::Simulation;
+use rig::{at, circuit, column, last, near, run, shipped};
+
+const OIL: &str = "inner Oil.Fluid oil(redeclare function density = Oil.Compression.constantDensity(beta_0 = 1.4e9));";
+
+/// A valve between two pressures, settled.
+fn between(class: &str, more: &str) -> Simulation {
+    let mut simulation = circuit(
+        &format!("{OIL} Hydraulic.{class}; Hydraulic.PressureSource a; Hydraulic.PressureSource b;"),
+        &format!("connect(a.port, way.port_a); connect(b.port, way.port_b); {more}"),
+    );
+    simulation.stop_time(0.5);
+    simulation
+}
+
+fn flow(simulation: &mut Simulation, a: f64, b: f64) -> f64 {
+    simulation.set("a.p", a).expect("a parameter").set("b.p", b).expect("a parameter");
+    -last(&run(simulation), "a.port.q")
+}
+
+#[test]
+fn the_flow_control_valve_holds_its_flow() {
+    let mut valve = between("FlowControlValve way(q_nom = 5e-4)", "way.u = 0.6;");
+    for (a, b) in [(20e5, 5e5), (100e5, 5e5), (200e5, 5e5), (200e5, 185e5), (300e5, 50e5)] {
+        near(flow(&mut valve, a, b), 3e-4, 0.03);
+    }
+    // too little is left for the compensator: two open orifices in series, 0.6 q_nom at 7.6 bar and q_nom at 3 bar
+    let needed: f64 = 7.6e5 / 0.36 + 3e5;
+    let in_series = 5e-4 * (4e5 / needed).sqrt();
+    near(flow(&mut valve, 10e5, 6e5), in_series, 0.01);
+    near(flow(&mut valve, 6e5, 10e5), -in_series, 0.01);
+}
+
+#[test]
+fn valves_on_spools_take_power_in_both_directions() {
+    for (class, more) in [
+        ("PressureCompensator way", "connect(way.port_y, b.port);"),
+        ("SequenceValve way(p_set = 50e5)", ""),
+        ("UnloadingValve way(p_set = 50e5)", "connect(way.port_x, a.port);"),
+        ("FlowControlValve way", "way.u = 0.3;"),
+    ] {
+        let mut valve = between(class, more);
+        for (a, b) in [(1e5, 3e5), (3e5, 1e5), (49e5, 10e5), (55e5, 10e5), (55e5, 90e5), (200e5, 199e5), (2e7, 1e3)] {
+            let loss = (a - b) * flow(&mut valve, a, b);
+            assert!(loss.is_finite() && loss >= 0.0, "{class} gives {loss} W from {a} to {b} Pa");
+        }
+    }
+}
+
+#[test]
+fn the_sequence_valve_looks_at_its_inlet_only() {
+    let mut valve = between("SequenceValve way(p_set = 100e5)", "");
+    for outlet in [0.0, 40e5, 80e5] {
+        assert!(flow(&mut valve, 100e5, outlet) < 2e-7, "it is closed below its pressure, against {outlet} Pa");
+    }
+    // beyond override and rounding it is open: q_nom at 5 bar
+    near(flow(&mut valve, 110e5, 105e5), 1e-3, 0.01);
+}
+
+#[test]
+fn the_reducing_valve_relieves_what_is_pushed_back() {
+    let t = run(&shipped("Hydraulic.Examples.PressureReducerRelievingExample"));
+    let settled = |time: f64| at(&t, "volume.p", time) - 101_325.0;
+    // feeding: below p_set by the part of the droop that the flow needs; relieving: above the overlap
+    let (fed, relieved) = (settled(0.875), settled(0.625));
+    assert!((0.97 * 50e5..50e5).contains(&fed), "{fed}");
+    assert!((1.02 * 50e5..1.12 * 50e5).contains(&relieved), "{relieved}");
+    let mean = |name: &str| column(&t, name).iter().sum::<f64>();
+    assert!(mean("valve.feeding.q") > 0.0 && mean("valve.relieving.q") > 0.0);
+}
+
+#[test]
+fn pressure_control_goes_along_its_line_and_below_its_torque() {
+    let t = run(&shipped("Hydraulic.Examples.PressureControlExample"));
+    let line = |p: f64| ((200e5 - p) / 8e5).clamp(0.0, 1.0);
+    for time in [0.15, 0.6, 1.45, 1.6, 1.95] {
+        let (u, p) = (at(&t, "control.u", time), at(&t, "control.p", time));
+        assert!((u - line(p)).abs() < 0.03, "{time}: {u} at {p} Pa");
+    }
+    // between both it is the torque: u V p/(2 pi) = 90 Nm
+    let (u, p) = (at(&t, "control.u", 1.2), at(&t, "control.p", 1.2));
+    near(u * 45e-6 * p / (2.0 * std::f64::consts::PI), 90.0, 0.025);
+    assert!(column(&t, "control.p").iter().all(|p| *p < 203e5));
+}
+
+#[test]
+fn load_sensing_keeps_its_margin_and_cuts_off() {
+    let t = run(&shipped("Hydraulic.Examples.LoadSensingControlExample"));
+    for time in [0.25, 0.7, 1.2, 1.6] {
+        let margin = at(&t, "volume.p", time) - at(&t, "load.port.p", time);
+        assert!((16e5..20e5).contains(&margin), "{time}: {margin} Pa");
+    }
+    // the flow follows the orifice, not the load: 0.7 then 2.4 times 1 at loads from 40 to 150 bar
+    near(at(&t, "metering.q", 1.2), at(&t, "metering.q", 0.25), 0.01);
+    near(last(&t, "control.p"), 199.5e5, 0.005);
+}
+
+#[test]
+fn the_unloading_valve_keeps_the_accumulator_between_its_limits() {
+    let t = run(&shipped("Hydraulic.Examples.UnloadingValveExample"));
+    let p = column(&t, "accumulator.p");
+    let late = &p[p.len() / 5..];
+    let (low, high) = late.iter().fold((f64::INFINITY, 0.0f64), |(l, h), v| (l.min(*v), h.max(*v)));
+    assert!((0.82 * 150e5..0.87 * 150e5).contains(&low) && (150e5..154e5).contains(&high), "{low} to {high}");
+    let switched = column(&t, "valve.unloading").windows(2).filter(|w| w[0] != w[1]).count();
+    assert!(switched >= 4, "{switched}");
+}
+
+#[test]
+fn the_reservoir_keeps_its_oil_and_its_gas() {
+    let t = run(&shipped("Hydraulic.Examples.ReservoirExample"));
+    let (h, p) = (column(&t, "reservoir.h"), column(&t, "reservoir.p"));
+    for (i, time) in t.times.iter().enumerate() {
+        let omega = 2.0 * std::f64::consts::PI * 0.2;
+        let taken = 1e-3 / omega * (1.0 - (omega * time).cos());
+        assert!((h[i] - (0.2 - taken / 0.02)).abs() < 1e-6, "{time}");
+        near(p[i], 101_325.0 * (0.1 / (0.3 - h[i])).powf(1.2), 1e-9);
+    }
+    let empty = circuit(
+        &format!("{OIL} Hydraulic.Reservoir tank(A = 0.01, h_start = 0.1); Hydraulic.FlowSource pump(q = -1e-3);"),
+        "connect(tank.port, pump.port);",
+    );
+    let mut empty = empty;
+    let error = empty.stop_time(10.0).run().expect_err("it runs dry").to_string();
+    assert!(error.contains("E503") && error.contains("runs dry"), "{error}");
+}
