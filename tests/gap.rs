@@ -16,8 +16,8 @@ use bramah::{Request, Simulation};
 use std::fmt::Write;
 use std::path::Path;
 
-/// A slide on a spring with its own connectors; the plant has dry friction of another form than the library's, and waves
-/// of friction over the position, which are in no library.
+/// A slide on a spring with its own connectors; the plant has dry friction of another form than the library's, waves of
+/// friction over the position and friction above a speed, which are in no library.
 const MODEL: &str = "
 package Slide
   connector Flange Real s(unit = \"m\"); flow Real f(unit = \"N\"); end Flange;
@@ -46,9 +46,11 @@ package Slide
     Flange flange;
     parameter Real F(unit = \"N\") = 0;
     parameter Real W(unit = \"N\") = 0;
+    parameter Real Z(unit = \"N\") = 0;
     Real v(unit = \"m/s\");
   equation
-    v = der(flange.s); flange.f = (F + W*(1 + sin(60*flange.s)))*v/sqrt(v^2 + 1e-5);
+    v = der(flange.s);
+    flange.f = (F + W*(1 + sin(60*flange.s)) + Z*0.5*(1 + tanh((abs(v) - 0.15)/0.01)))*v/sqrt(v^2 + 1e-5);
   end Rub;
   model Nominal
     input Real u(unit = \"N\");
@@ -134,11 +136,16 @@ fn recording(world: &MemoryWorld, friction: (&str, f64), seed: u64) -> String {
 }
 
 fn diagnosed(friction: (&str, f64), held_seed: u64) -> Verdict {
-    let mut world = MemoryWorld::single("Slide.mo", MODEL);
+    let world = MemoryWorld::single("Slide.mo", MODEL);
     let (train, held) = (recording(&world, friction, 11), recording(&world, friction, held_seed));
+    verdict(STUDY, train, held)
+}
+
+fn verdict(study: &str, train: String, held: String) -> Verdict {
+    let mut world = MemoryWorld::single("Slide.mo", MODEL);
     world.add("train.csv", train);
     world.add("held.csv", held);
-    world.add("study.toml", STUDY);
+    world.add("study.toml", study);
     let mut sources = Sources::default();
     let study = Study::read(&world, Path::new("study.toml"), &mut sources).value.unwrap();
     let question = question(&world, &study, None, &mut sources).ok().unwrap();
@@ -179,6 +186,33 @@ fn what_no_effect_explains_is_told_by_its_shape() {
     let shape = &verdict.unexplained.shape.unwrap()[0];
     assert_eq!(shape.term, "Dry friction that depends on the position");
     assert!(shape.r2 > 0.5, "{}", shape.r2);
+}
+
+#[test]
+fn friction_above_a_speed_is_told_by_its_shape() {
+    let verdict = diagnosed(("rub.Z", 6.0), 12);
+    assert_eq!(verdict.verdict, "outside_library", "{:?}", verdict.effects);
+    let shape = &verdict.unexplained.shape.unwrap()[0];
+    assert_eq!(shape.term, "Friction that depends on the speed in a way of its own");
+}
+
+/// The filter cannot follow a sensor that loses the sign where nothing else tells it.
+#[test]
+fn a_rectifying_sensor_is_named_although_the_filter_loses_it() {
+    let world = MemoryWorld::single("Slide.mo", MODEL);
+    let rectified = |seed: u64| {
+        let text = recording(&world, ("rub.F", 0.0), seed);
+        let magnitude = |line: &str| match line.rsplit_once(',') {
+            Some((before, v)) if !v.starts_with('v') => format!("{before},{}\n", v.trim_start_matches('-')),
+            _ => format!("{line}\n"),
+        };
+        text.lines().map(magnitude).collect::<String>()
+    };
+    let study = STUDY.replace("s = { variable = \"mass.s\", column = \"s\", unit = \"m\" }\n", "");
+    let verdict = verdict(&study, rectified(11), rectified(12));
+    assert_eq!(verdict.verdict, "effects");
+    assert_eq!(verdict.effects[0].family, "sensor_rectification", "{:?}", verdict.effects);
+    assert!(verdict.closed_by_effects.unwrap() > 0.6, "{:?}", verdict.gap.held.total);
 }
 
 #[test]

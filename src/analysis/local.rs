@@ -27,6 +27,10 @@ pub struct Plan {
     implicit: Vec<(usize, bool)>,
     /// Per row, which implicit unknown it belongs to.
     implicit_row: Vec<Option<usize>>,
+    /// Independent quantities (states, then parameters and inputs) that implicit equations read, and for each
+    /// independent quantity its place among them.
+    reached: Vec<usize>,
+    reached_place: Vec<usize>,
     /// Rows `der(x) - value`.
     explicit: Vec<usize>,
     /// Per row, what it computes.
@@ -116,7 +120,34 @@ impl Plan {
         let targets = (0..system.columns.len()).map(target).collect();
         let is_explicit = |j: &usize| system.rows[*j].kind == RowKind::Derivative;
         let explicit = (0..system.rows.len()).filter(is_explicit).collect();
-        Plan { implicit_row, explicit, targets, system, states, raised, parameters, outputs, implicit, roles, discrete }
+        let count = states.len();
+        let reads = |column: usize| {
+            let rows = &system.pattern.rowidx[system.pattern.colptr[column]..system.pattern.colptr[column + 1]];
+            rows.iter().any(|&row| implicit_row[row].is_some())
+        };
+        let independent = |(column, role): (usize, &Role)| match role {
+            Role::State(j) if reads(column) => Some(*j),
+            Role::Raised(j) if reads(column) => Some(count + j),
+            _ => None,
+        };
+        let reached: Vec<usize> = roles.iter().enumerate().filter_map(independent).collect();
+        let mut reached_place = vec![usize::MAX; count + raised.len()];
+        reached.iter().enumerate().for_each(|(place, &j)| reached_place[j] = place);
+        Plan {
+            implicit_row,
+            reached,
+            reached_place,
+            explicit,
+            targets,
+            system,
+            states,
+            raised,
+            parameters,
+            outputs,
+            implicit,
+            roles,
+            discrete,
+        }
     }
 
     /// How many unknowns follow from implicit equations.
@@ -209,6 +240,29 @@ pub struct Linearization {
     pub d: DMatrix<f64>,
 }
 
+impl Linearization {
+    /// An entry by its row (rates, then outputs) and column (states, then parameters and inputs).
+    fn get(&self, row: usize, column: usize) -> f64 {
+        let n = self.a.nrows();
+        match (row < n, column < n) {
+            (true, true) => self.a[(row, column)],
+            (true, false) => self.b[(row, column - n)],
+            (false, true) => self.c[(row - n, column)],
+            (false, false) => self.d[(row - n, column - n)],
+        }
+    }
+
+    fn set(&mut self, row: usize, column: usize, value: f64) {
+        let n = self.a.nrows();
+        match (row < n, column < n) {
+            (true, true) => self.a[(row, column)] = value,
+            (true, false) => self.b[(row, column - n)] = value,
+            (false, true) => self.c[(row - n, column)] = value,
+            (false, false) => self.d[(row - n, column - n)] = value,
+        }
+    }
+}
+
 /// A model that is evaluated point by point; one for each thread.
 #[derive(Debug)]
 pub struct Local {
@@ -221,6 +275,8 @@ pub struct Local {
     torn_entries: Vec<f64>,
     /// Implicit unknowns of the last solution.
     implicit: Vec<f64>,
+    /// Entries of `linear` (row, column) that went through implicit unknowns.
+    through_unknowns: Vec<(usize, usize)>,
     /// x' at the last point.
     pub rates: Vec<f64>,
     /// y at the last point.
@@ -254,6 +310,7 @@ impl Local {
             entries: vec![0.0; entries],
             torn_entries: vec![0.0; entries],
             implicit: vec![0.0; plan.implicit.len()],
+            through_unknowns: Vec::new(),
             rates: vec![0.0; n],
             outputs: vec![0.0; p],
             linear,
@@ -355,24 +412,25 @@ impl Local {
         if self.plan.implicit.is_empty() { Ok(()) } else { self.eliminate(torn) }
     }
 
-    /// The explicit part: minus the entries of rows `der(x) - value`.
+    /// The explicit part: minus the entries of rows `der(x) - value`. What is not among them is 0 already, but for what
+    /// went through implicit unknowns the last time.
     fn scatter(&mut self) {
-        let Local { plan, entries, linear, .. } = self;
-        let Linearization { a, b, c, d } = linear;
-        for m in [&mut *a, &mut *b, &mut *c, &mut *d] {
-            m.fill(0.0);
-        }
+        let Local { plan, entries, linear, through_unknowns, .. } = self;
+        through_unknowns.drain(..).for_each(|(row, column)| linear.set(row, column, 0.0));
         let pattern = &plan.system.pattern;
-        let signs: Vec<f64> = plan.raised.iter().map(|p| if p.negated { -1.0 } else { 1.0 }).collect();
+        let n = plan.states.len();
         for (column, role) in plan.roles.iter().enumerate() {
+            let (column_at, sign) = match *role {
+                Role::State(j) => (j, -1.0),
+                Role::Raised(j) if plan.raised[j].negated => (n + j, 1.0),
+                Role::Raised(j) => (n + j, -1.0),
+                _ => continue,
+            };
             for k in pattern.colptr[column]..pattern.colptr[column + 1] {
-                let value = -entries[k];
-                match (plan.targets[pattern.rowidx[k]], *role) {
-                    (Target::Rate(i), Role::State(j)) => a[(i, j)] = value,
-                    (Target::Rate(i), Role::Raised(j)) => b[(i, j)] = value * signs[j],
-                    (Target::Output(i), Role::State(j)) => c[(i, j)] = value,
-                    (Target::Output(i), Role::Raised(j)) => d[(i, j)] = value * signs[j],
-                    _ => {}
+                match plan.targets[pattern.rowidx[k]] {
+                    Target::Rate(i) => linear.set(i, column_at, sign * entries[k]),
+                    Target::Output(i) => linear.set(n + i, column_at, sign * entries[k]),
+                    Target::Other => {}
                 }
             }
         }
@@ -380,11 +438,11 @@ impl Local {
 
     /// Adds what goes through the implicit unknowns.
     fn eliminate(&mut self, torn: bool) -> Result<(), LocalError> {
-        let Local { plan, entries, torn_entries, linear, .. } = self;
-        let (n, r, p, q) = (plan.states.len(), plan.raised.len(), plan.outputs.len(), plan.implicit.len());
+        let Local { plan, entries, torn_entries, linear, through_unknowns, .. } = self;
+        let (n, p, q) = (plan.states.len(), plan.outputs.len(), plan.implicit.len());
         let rows = &plan.implicit_row;
         let mut unknown = DMatrix::zeros(q, q);
-        let mut known = DMatrix::zeros(q, n + r);
+        let mut known = DMatrix::zeros(q, plan.reached.len());
         // how rates and outputs depend on the unknowns
         let mut through = DMatrix::zeros(n + p, q);
         let pattern = &plan.system.pattern;
@@ -400,9 +458,9 @@ impl Local {
                     Target::Other => None,
                 };
                 match (rows[row], plan.roles[column]) {
-                    (Some(i), Role::State(j)) => known[(i, j)] = value,
+                    (Some(i), Role::State(j)) => known[(i, plan.reached_place[j])] = value,
                     (Some(i), Role::Raised(j)) => {
-                        known[(i, n + j)] = if plan.raised[j].negated { -value } else { value };
+                        known[(i, plan.reached_place[n + j])] = if plan.raised[j].negated { -value } else { value };
                     }
                     (Some(i), Role::Implicit(j)) => unknown[(i, j)] = value,
                     (None, Role::Implicit(j)) => {
@@ -424,27 +482,24 @@ impl Local {
             }
         }
         let solution = unknown.lu().solve(&known).ok_or(LocalError::Singular)?;
-        let Linearization { a, b, c, d } = linear;
-        // few rates and outputs depend on implicit unknowns, and these on few columns
-        let reached: Vec<usize> = (0..n + r).filter(|&j| known.column(j).iter().any(|v| *v != 0.0)).collect();
+        let mut finite = entries.iter().all(|v| v.is_finite());
         for t in (0..n + p).filter(|&t| through.row(t).iter().any(|v| *v != 0.0)) {
-            for &j in &reached {
-                let sum: f64 = (0..q).map(|k| through[(t, k)] * solution[(k, j)]).sum();
-                match (t < n, j < n) {
-                    (true, true) => a[(t, j)] -= sum,
-                    (true, false) => b[(t, j - n)] -= sum,
-                    (false, true) => c[(t - n, j)] -= sum,
-                    (false, false) => d[(t - n, j - n)] -= sum,
-                }
+            for (place, &j) in plan.reached.iter().enumerate() {
+                let sum: f64 = (0..q).map(|k| through[(t, k)] * solution[(k, place)]).sum();
+                finite &= sum.is_finite();
+                linear.set(t, j, linear.get(t, j) - sum);
+                through_unknowns.push((t, j));
             }
         }
         for (i, &(column, torn)) in plan.implicit.iter().enumerate() {
             if torn && let Role::State(k) = plan.roles[column] {
-                a.row_mut(k).copy_from(&(-solution.row(i).columns(0, n)));
-                b.row_mut(k).copy_from(&(-solution.row(i).columns(n, r)));
+                for (place, &j) in plan.reached.iter().enumerate() {
+                    finite &= solution[(i, place)].is_finite();
+                    linear.set(k, j, -solution[(i, place)]);
+                    through_unknowns.push((k, j));
+                }
             }
         }
-        let finite = a.iter().chain(b.iter()).chain(c.iter()).chain(d.iter()).all(|v| v.is_finite());
         if finite { Ok(()) } else { Err(LocalError::NonFinite) }
     }
 

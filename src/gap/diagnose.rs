@@ -1,6 +1,7 @@
 //! The whole diagnosis: noise, tolerances, places, effects one after another, and how far the gap shrinks.
 
 mod conclusion;
+mod lost;
 
 use super::data::Recording;
 use super::effects::Coefficient;
@@ -14,6 +15,7 @@ use super::screen::{self, Accepted, Candidate};
 use super::verdict::Verdict;
 use conclusion::Conclusion;
 use rayon::prelude::*;
+use std::collections::BTreeSet;
 
 /// Effects that are looked for one after another, at most.
 const MOST_EFFECTS: usize = 4;
@@ -25,11 +27,13 @@ const PROMISING: f64 = 5.0;
 const FAR: f64 = 0.1;
 /// Deviation of the share of such an effect from the whole.
 const WHOLE: f64 = 0.3;
+/// Samples with which their shapes are tried.
+const TRIED: usize = 1500;
 /// Candidates that are there or not.
 const BOUNDED: usize = 4;
-/// Shapes without a name that are refined beside; and what one must be ahead of the best effect, nats and as part of that
+/// Shapes without a name that are refined beside, each of another kind; and what one must be ahead of the best effect, nats and as part of that
 /// effect's gain, before nothing that is known explains the gap: a form other than the library's is no other cause.
-const SHAPES: usize = 2;
+const SHAPES: usize = 5;
 const AHEAD: f64 = 15.0;
 const AHEAD_PART: f64 = 0.2;
 /// Iterations with which candidates are compared before the front is polished, and candidates polished.
@@ -51,7 +55,7 @@ const ACCEPTED: f64 = 8.0;
 const CONSISTENT: f64 = 2.0;
 /// Gain from which an effect may be one that acts rarely, nats; and how much more it must win than lose.
 const RARE: f64 = 30.0;
-const RARE_RATIO: f64 = 4.0;
+const RARE_RATIO: f64 = 3.5;
 /// Part of the simulated gap that opens again without it, of what all effects together close.
 const CLOSES: f64 = 0.07;
 /// Candidates this near are equally good: the simpler one stands first, nats.
@@ -236,23 +240,34 @@ impl Search {
             let seen = candidates.iter().filter(|c| c.visible > ACCEPTED).count();
             self.visible = seen as f64 / candidates.len().max(1) as f64;
         }
-        let promising = promising(problem, candidates);
+        let (mut chosen, rest) = promising(problem, candidates);
+        chosen.extend(self.unseen(problem, &chosen));
         progress(Stage::Refine(number));
-        let mut refined: Vec<Refined> = promising.par_iter().filter_map(|c| self.refine(problem, c)).collect();
-        refined.sort_by(|a, b| b.fit.evidence.total_cmp(&a.fit.evidence));
+        let mut refined = self.refined(problem, &chosen);
+        if let Some(front) = refined.first() {
+            let others = siblings(problem, &rest, front);
+            refined.extend(self.refined(problem, &others));
+            refined.sort_by(|a, b| b.fit.evidence.total_cmp(&a.fit.evidence));
+        }
         self.sharpen(problem, &mut refined);
         refined.sort_by(|a, b| b.fit.evidence.total_cmp(&a.fit.evidence));
+        if let Some(front) = refined.first() {
+            self.relevel(problem, &front.fit);
+        }
         let trials: Vec<Trial> = refined.iter().map(|r| self.trial(number, r)).collect();
         self.trials.extend(trials);
         let (shapes, mut refined): (Vec<Refined>, Vec<Refined>) =
             refined.into_iter().partition(|r| r.is_shape(problem));
-        if let Some(shape) = shapes.into_iter().next()
-            && self.nothing_known(&shape, refined.first())
-        {
+        if let Some(shape) = shapes.into_iter().find(|s| self.nothing_known(problem, s, refined.first())) {
             self.shaped(problem, shape);
             return false;
         }
         if refined.is_empty() {
+            return false;
+        }
+        if let Some((best, found)) = self.lost(problem, &refined) {
+            // nothing further can be weighed beside an effect that the filter cannot follow
+            self.accept(best, found);
             return false;
         }
         let best = refined.remove(simplest(problem, &refined));
@@ -260,10 +275,14 @@ impl Search {
         let t = vuong(&best.fit.blocks, &self.last.blocks);
         let count = problem.tolerances.len();
         let returned = self.last.prior_cost(count) - best.fit.prior_cost(count);
-        // a parameter that is let go always returns from its bound, and acts at all times
-        let drift = problem.hypotheses[best.accepted.chosen.hypothesis].family == "parameter";
-        let seldom = || !drift && (returned > 0.5 * gain || rare(&best.fit, &self.last, gain));
-        let consistent = t > CONSISTENT || seldom();
+        let h = &problem.hypotheses[best.accepted.chosen.hypothesis];
+        // a parameter that is let go always returns from its bound, and acts at all times; a second effect at the place of
+        // another may mend that one's form only
+        let site = |a: &Accepted| &problem.hypotheses[a.chosen.hypothesis].attachments[0].site;
+        let again = self.accepted.iter().any(|a| site(a) == &h.attachments[0].site);
+        let always = h.family == "parameter" || again;
+        let seldom = !always && (returned > 0.5 * gain || rare(&best.fit, &self.last, gain));
+        let consistent = t > CONSISTENT || seldom;
         if gain < ACCEPTED || !consistent {
             return false;
         }
@@ -277,10 +296,14 @@ impl Search {
             .filter(near)
             .map(|r| (r.accepted.chosen.clone(), best.fit.evidence - r.fit.evidence))
             .collect();
-        self.found.push(Found { gain, t, alternatives });
+        self.accept(best, Found { gain, t, alternatives });
+        true
+    }
+
+    fn accept(&mut self, best: Refined, found: Found) {
+        self.found.push(found);
         self.accepted.push(best.accepted);
         self.adopt(best.fit, best.assembled);
-        true
     }
 
     /// Nats that a fit is ahead of the last one.
@@ -297,12 +320,19 @@ impl Search {
         self.last_model = model;
     }
 
-    /// Whether a shape explains so much more than the best effect that the effect is not the cause.
-    fn nothing_known(&self, shape: &Refined, best: Option<&Refined>) -> bool {
+    /// Whether a shape explains so much more than the best effect that the effect is not the cause, and closes some of the
+    /// simulated gap: a resonance may also follow the colour of a disturbance.
+    fn nothing_known(&self, problem: &Problem<'_>, shape: &Refined, best: Option<&Refined>) -> bool {
         let gain = self.gain(&shape.fit);
         let named = best.map_or(0.0, |b| self.gain(&b.fit)).max(0.0);
-        let blocks = best.map_or(&self.last.blocks, |b| &b.fit.blocks);
-        gain > ACCEPTED && gain - named > AHEAD.max(AHEAD_PART * named) && vuong(&shape.fit.blocks, blocks) > CONSISTENT
+        let rival = best.filter(|_| named > 0.0).map_or(&self.last, |b| &b.fit);
+        let ahead = gain > ACCEPTED && gain - named > AHEAD.max(AHEAD_PART * named);
+        let consistent = || vuong(&shape.fit.blocks, &rival.blocks) > CONSISTENT || rare(&shape.fit, rival, gain - named);
+        let closes = || {
+            let [before, after] = [&self.last, &shape.fit].map(|f| simulated(problem, f, &self.last.setting.noise));
+            before.beyond(&after) > CLOSES * before.total
+        };
+        ahead && consistent() && closes()
     }
 
     /// Takes down what is left by its shape. Effects found before are dropped where the shape without them explains more
@@ -338,6 +368,13 @@ impl Search {
         }
     }
 
+    /// Fits candidates one by one; best first.
+    fn refined(&self, problem: &Problem<'_>, chosen: &[Candidate]) -> Vec<Refined> {
+        let mut refined: Vec<Refined> = chosen.par_iter().filter_map(|c| self.refine(problem, c)).collect();
+        refined.sort_by(|a, b| b.fit.evidence.total_cmp(&a.fit.evidence));
+        refined
+    }
+
     /// Fits one candidate together with everything accepted before. An effect that is there or not (a rectifying sensor)
     /// looks small from where it is not: it begins as a whole, and less than half of it would be something else.
     fn refine(&self, problem: &Problem<'_>, candidate: &Candidate) -> Option<Refined> {
@@ -350,12 +387,42 @@ impl Search {
                 let prior = &mut whole.priors[i];
                 (prior.mean, prior.sigma, prior.min) = (max, WHOLE * max, 0.5 * max);
             }
+            self.shape_of_whole(problem, h, &mut whole);
         }
-        let accepted = Accepted { chosen: whole.chosen, priors: whole.priors };
+        let accepted = whole.accepted();
         let mut all = self.accepted.clone();
         all.push(accepted.clone());
         let (fit, assembled) = fitted(problem, &self.last, &all)?;
         Some(Refined::new(problem, accepted, assembled, fit))
+    }
+
+    /// Gives a whole effect the shape that fits it: that of a small share of it may be nothing like (a twentieth of twenty
+    /// samples' delay is one sample's).
+    fn shape_of_whole(&self, problem: &Problem<'_>, h: &Hypothesis, whole: &mut Candidate) {
+        let variants = screen::variants(h, whole.chosen.hypothesis);
+        let (count, first) = (h.coefficients.len(), &problem.train[..1]);
+        if variants.len() < 2 {
+            return;
+        }
+        let likelihood = |shapes: &[f64]| {
+            let mut values = whole.chosen.values.clone();
+            values[count..].copy_from_slice(shapes);
+            let mut all = self.accepted.clone();
+            all.push(Accepted { chosen: Chosen { values, ..whole.chosen }, priors: whole.priors.clone() });
+            let (model, _) = ready(problem, &self.last, &all)?;
+            let levels: Vec<f64> = self.last.setting.sources.iter().map(|s| s.level).collect();
+            let setting = model.setting(&levels, &self.last.setting.noise, Vec::new());
+            Some(fit::passes(&setting, first, TRIED, false)?[0].likelihood)
+        };
+        let best = variants
+            .iter()
+            .filter_map(|v| Some((likelihood(&v.values[count..])?, &v.values[count..])))
+            .max_by(|a, b| a.0.total_cmp(&b.0));
+        if let Some((_, shapes)) = best {
+            whole.chosen.values[count..].copy_from_slice(shapes);
+            let priors = h.shapes.iter().zip(shapes).map(|(s, &x)| screen::shape_prior(s, x));
+            whole.priors.splice(count.., priors);
+        }
     }
 
     /// Those at the front are fitted to the end: comparisons are between optima only. The share of independent samples is
@@ -375,6 +442,24 @@ impl Search {
         let share = polished.iter().take(POLISHED).map(|r| r.fit.own_share()).fold(self.last.share, f64::max);
         refined.extend(polished.into_iter().map(|r| Refined { fit: r.fit.at_share(share), ..r }));
         self.last = self.last.clone().at_share(share);
+    }
+
+    /// Fits the model without a further effect from the levels and noise that the best candidate led to: what they alone
+    /// gain is no gain of the effect.
+    fn relevel(&mut self, problem: &Problem<'_>, front: &Fit) {
+        let mut setting = self.last.setting.clone();
+        setting.sources.iter_mut().zip(&front.setting.sources).for_each(|(own, s)| own.level = s.level);
+        setting.noise.clone_from(&front.setting.noise);
+        let share = self.last.share;
+        let fit = fit::fit(setting, &self.last.priors, &problem.train, Some(share), fit::ITERATIONS);
+        if let Some(fit) = fit
+            && fit.evidence > self.last.evidence
+        {
+            self.last = fit::polish(fit, &problem.train, Some(share));
+            if self.accepted.is_empty() {
+                self.base = self.last.clone();
+            }
+        }
     }
 
     /// Drops again what closes little of the simulated gap now that everything else is there: one effect hides another,
@@ -414,19 +499,36 @@ fn simulated(problem: &Problem<'_>, f: &Fit, noise: &[f64]) -> held::Gap {
 }
 
 /// What is refined: the best effects, the best of those that are there or not, which may look small from where they are
-/// not, and the best shapes.
-fn promising(problem: &Problem<'_>, candidates: Vec<Candidate>) -> Vec<Candidate> {
-    let (shapes, effects): (Vec<Candidate>, Vec<Candidate>) =
-        candidates.into_iter().partition(|c| problem.hypotheses[c.chosen.hypothesis].is_shape());
-    let front = effects.first().map_or(0.0, |c| c.gain);
-    let worth = |c: &Candidate| c.gain > PROMISING.max(FAR * front);
-    let (switched, mut chosen): (Vec<Candidate>, Vec<Candidate>) =
-        effects.into_iter().partition(|c| bounded(&problem.hypotheses[c.chosen.hypothesis]));
-    chosen.retain(worth);
-    chosen.truncate(REFINED);
-    chosen.extend(switched.into_iter().filter(|c| c.gain > PROMISING).take(BOUNDED));
-    chosen.extend(shapes.into_iter().filter(|c| c.gain > front.max(PROMISING)).take(SHAPES));
-    chosen
+/// not, and the best shape of each kind. And the rest.
+fn promising(problem: &Problem<'_>, candidates: Vec<Candidate>) -> (Vec<Candidate>, Vec<Candidate>) {
+    let h = |c: &Candidate| &problem.hypotheses[c.chosen.hypothesis];
+    let front = candidates.iter().find(|c| !h(c).is_shape()).map_or(0.0, |c| c.gain);
+    let (mut effects, mut switched) = (0, 0);
+    let mut kinds = BTreeSet::new();
+    candidates.into_iter().partition(|c| {
+        let worth = c.gain > PROMISING.max(FAR * front);
+        if h(c).is_shape() {
+            worth && kinds.len() < SHAPES && kinds.insert(h(c).effect.clone())
+        } else if bounded(h(c)) {
+            switched += 1;
+            c.gain > PROMISING && switched <= BOUNDED
+        } else {
+            effects += 1;
+            worth && effects <= REFINED
+        }
+    })
+}
+
+/// Other effects that are there or not at the place of the best one: from where they are not they all look alike (a lag,
+/// a dead time).
+fn siblings(problem: &Problem<'_>, rest: &[Candidate], front: &Refined) -> Vec<Candidate> {
+    let h = |c: &Chosen| &problem.hypotheses[c.hypothesis];
+    let own = h(&front.accepted.chosen);
+    let alike = |c: &&Candidate| {
+        let other = h(&c.chosen);
+        c.gain > PROMISING && bounded(other) && other.attachments[0].site == own.attachments[0].site
+    };
+    if bounded(own) { rest.iter().filter(alike).cloned().collect() } else { Vec::new() }
 }
 
 /// The value at which a coefficient stands for the whole effect, if it is a share of one.
@@ -466,8 +568,8 @@ fn values(fit: &Fit, places: &[usize]) -> Vec<f64> {
     places.iter().map(|&p| fit.setting.theta[p]).collect()
 }
 
-/// Fits a set of effects, from the values of an earlier fit.
-fn fitted(problem: &Problem<'_>, from: &Fit, accepted: &[Accepted]) -> Option<(Fit, Assembled)> {
+/// The model with a set of effects at the values of an earlier fit, and the priors of all that is free.
+fn ready(problem: &Problem<'_>, from: &Fit, accepted: &[Accepted]) -> Option<(Assembled, Vec<Prior>)> {
     let chosen: Vec<Chosen> = accepted.iter().map(|a| a.chosen.clone()).collect();
     let mut assembled = problem.assemble(&chosen, &problem.node_sources()).ok()?;
     locate::carry(from, accepted, &mut assembled);
@@ -481,6 +583,12 @@ fn fitted(problem: &Problem<'_>, from: &Fit, accepted: &[Accepted]) -> Option<(F
             }
         }
     }
+    Some((assembled, priors))
+}
+
+/// Fits a set of effects, from the values of an earlier fit.
+fn fitted(problem: &Problem<'_>, from: &Fit, accepted: &[Accepted]) -> Option<(Fit, Assembled)> {
+    let (assembled, priors) = ready(problem, from, accepted)?;
     let levels: Vec<f64> = from.setting.sources.iter().map(|s| s.level).collect();
     let setting = assembled.setting(&levels, &from.setting.noise, Vec::new());
     let fit = |s| fit::fit(s, &priors, &problem.train, Some(from.search_share()), RACE);

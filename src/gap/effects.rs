@@ -99,6 +99,8 @@ pub struct Shape {
 pub struct Range {
     /// The potential, by its name in the effect.
     pub of: String,
+    /// It is the size of the potential's rate whose range is taken.
+    pub rate: bool,
     /// Parameter for its least value.
     pub least: String,
     /// Parameter for its greatest value.
@@ -124,7 +126,7 @@ pub struct Effect {
     pub shapes: Vec<Shape>,
     /// Parameters that take the value of the component's parameter of equal unit.
     pub base: Vec<Quantity>,
-    /// A potential that it reads, with the two parameters that take the least and the greatest value that occurs.
+    /// A potential that it reads, or its rate, with the two parameters that take the least and the greatest value that occurs.
     pub range: Option<Range>,
     /// Effects of one group are also tried together, with one set of coefficients.
     pub group: Option<String>,
@@ -365,7 +367,7 @@ fn effect(found: &Found, interface: &Found, read: &Attributes<'_>, number: usize
         coefficients: coefficients(own, read, number, &relative)?,
         shapes: shapes(own, read, number, &relative)?,
         base: texts(own, "base").iter().map(|n| read.quantity(number, n)).collect::<Result<_, _>>()?,
-        range: range(own)?,
+        range: range(own, read, number)?,
         group: text(own, "group"),
         free_ends: text(own, "ends").as_deref() == Some("free"),
         directed: text(own, "directed").is_some(),
@@ -379,12 +381,16 @@ fn effect(found: &Found, interface: &Found, read: &Attributes<'_>, number: usize
     Ok(effect)
 }
 
-fn range(own: &Modification) -> Result<Option<Range>, String> {
+fn range(own: &Modification, read: &Attributes<'_>, number: usize) -> Result<Option<Range>, String> {
     let mut names = texts(own, "range").into_iter();
     match (names.next(), names.next(), names.next(), names.next()) {
         (None, ..) => Ok(None),
-        (Some(of), Some(least), Some(most), None) => Ok(Some(Range { of, least, most })),
-        _ => Err("`range` is not a potential and the two parameters that take its range".into()),
+        (Some(of), Some(least), Some(most), None) => {
+            let prefix = format!("e{number}.");
+            let potential = read.rate_of.get(&format!("{prefix}{of}")).and_then(|x| x.strip_prefix(&prefix));
+            Ok(Some(Range { rate: potential.is_some(), of: potential.unwrap_or(&of).to_string(), least, most }))
+        }
+        _ => Err("`range` is not a potential or its rate and the two parameters that take its range".into()),
     }
 }
 

@@ -529,7 +529,7 @@ fn changes_order(circuit: &Circuit, a: &Attachment) -> bool {
         let acceleration = effect.needs_acceleration && !node.has_acceleration;
         !node.fixed && (rate || acceleration)
     };
-    effect.has_states || ports.iter().any(lacks)
+    ports.iter().any(lacks)
 }
 
 fn drift(free: &Free) -> Hypothesis {

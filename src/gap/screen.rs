@@ -1,10 +1,11 @@
 //! All hypotheses at once: one pass of the filter gives every column, and the evidence of each hypothesis costs a small
 //! factorisation.
 
+use super::effects::Shape;
 use super::evidence;
 use super::filter;
 use super::fit::{self, Fit, Prior};
-use super::hypotheses::{Hypothesis, Site};
+use super::hypotheses::Hypothesis;
 use super::problem::{Assembled, Chosen, Problem};
 use nalgebra::DMatrix;
 use std::ops::Range;
@@ -27,6 +28,13 @@ pub struct Candidate {
     pub priors: Vec<Prior>,
     /// The gain that an effect of typical size would bring, nats.
     pub visible: f64,
+}
+
+impl Candidate {
+    /// As if it were accepted.
+    pub fn accepted(&self) -> Accepted {
+        Accepted { chosen: self.chosen.clone(), priors: self.priors.clone() }
+    }
 }
 
 /// How far a data sheet is usually off where it is wrong, as part of the value.
@@ -58,7 +66,7 @@ pub fn screen(problem: &Problem<'_>, base: &Fit, accepted: &[Accepted]) -> Vec<C
         open.into_iter().partition(|&h| problem.hypotheses[h].family == "parameter");
     let chosen: Vec<Chosen> = effects
         .into_iter()
-        .filter(|&h| jointly(&problem.hypotheses[h]))
+        .filter(|&h| !problem.hypotheses[h].changes_order)
         .flat_map(|h| variants(&problem.hypotheses[h], h))
         .collect();
     let before: Vec<Chosen> = accepted.iter().map(|a| a.chosen.clone()).collect();
@@ -79,13 +87,8 @@ pub fn screen(problem: &Problem<'_>, base: &Fit, accepted: &[Accepted]) -> Vec<C
     found
 }
 
-/// Whether the joint model can hold it at its off value.
-fn jointly(h: &Hypothesis) -> bool {
-    // states of sensors and commands hang on the model without changing its own order
-    !h.changes_order || h.attachments.iter().all(|a| matches!(a.site, Site::Sensor(_) | Site::Command(_)))
-}
-
-fn variants(h: &Hypothesis, index: usize) -> Vec<Chosen> {
+/// A hypothesis at its off value with each choice of its shapes.
+pub fn variants(h: &Hypothesis, index: usize) -> Vec<Chosen> {
     let off: Vec<f64> = h.coefficients.iter().map(|c| c.off).collect();
     let one = |shapes: Vec<(String, f64)>| Chosen {
         hypothesis: index,
@@ -280,14 +283,7 @@ impl<'a> Joint<'a> {
             max: c.max.unwrap_or(f64::INFINITY),
         };
         let mut priors: Vec<Prior> = h.coefficients.iter().zip(sigmas).map(coefficient).collect();
-        let shape = |(s, &value): (&super::effects::Shape, &f64)| Prior {
-            parameter: 0,
-            mean: value,
-            sigma: 0.5 * value.abs().max(1e-300),
-            min: (0.1 * value).min(10.0 * value).max(s.min.unwrap_or(f64::NEG_INFINITY)),
-            max: (0.1 * value).max(10.0 * value).min(s.max.unwrap_or(f64::INFINITY)),
-        };
-        priors.extend(h.shapes.iter().zip(&values[h.coefficients.len()..]).map(shape));
+        priors.extend(h.shapes.iter().zip(&values[h.coefficients.len()..]).map(|(s, &value)| shape_prior(s, value)));
         priors
     }
 
@@ -317,6 +313,17 @@ impl<'a> Joint<'a> {
         let visible = 0.5 * (10.0 * t.sigma).powi(2) * info;
         let chosen = Chosen { hypothesis, values: vec![value] };
         Some(Candidate { chosen, gain: found.evidence, priors: vec![prior], visible })
+    }
+}
+
+/// Prior of a shape about the value of its grid.
+pub fn shape_prior(s: &Shape, value: f64) -> Prior {
+    Prior {
+        parameter: 0,
+        mean: value,
+        sigma: 0.5 * value.abs().max(1e-300),
+        min: (0.1 * value).min(10.0 * value).max(s.min.unwrap_or(f64::NEG_INFINITY)),
+        max: (0.1 * value).max(10.0 * value).min(s.max.unwrap_or(f64::INFINITY)),
     }
 }
 

@@ -10,6 +10,8 @@ use std::collections::BTreeMap;
 const STEP: f64 = 1e-3;
 /// Thresholds are tried where so much of what occurs lies below them.
 const QUANTILES: [f64; 5] = [0.2, 0.4, 0.6, 0.8, 0.95];
+/// Part of the speeds that are no jumps.
+const USUAL: f64 = 0.995;
 /// A limit of a signal is tried at these parts of the way from its least to its greatest size.
 const PARTS: [f64; 4] = [0.4, 0.6, 0.8, 0.97];
 
@@ -18,14 +20,17 @@ pub fn fit(problem: &mut Problem<'_>) {
     let slower = problem.step() / STEP;
     let potentials = potentials(problem);
     let sizes = sizes(problem);
+    let times: Vec<&[f64]> = problem.train.iter().map(|r| &r.times[..]).collect();
     let ranged = |a: &mut Attachment| {
-        range(a, &potentials).is_none_or(|range| {
+        range(a, &potentials, &times).is_none_or(|range| {
             let known = !range.is_empty();
             a.base.extend(range);
             known
         })
     };
-    problem.hypotheses.retain_mut(|h| h.attachments.iter_mut().all(ranged));
+    let mut hypotheses = std::mem::take(&mut problem.hypotheses);
+    hypotheses.retain_mut(|h| h.attachments.iter_mut().all(ranged));
+    problem.hypotheses = hypotheses;
     for h in &mut problem.hypotheses {
         let site = h.attachments[0].site.clone();
         let size = size(&site, &sizes);
@@ -74,14 +79,31 @@ fn ranged(a: &Attachment) -> Option<usize> {
 
 /// The parameters that take the range of a potential, with their values; empty where it stands still or is not known,
 /// `None` for effects without.
-fn range(a: &Attachment, potentials: &BTreeMap<usize, Vec<f64>>) -> Option<Vec<(String, String)>> {
+fn range(a: &Attachment, potentials: &BTreeMap<usize, Vec<f64>>, times: &[&[f64]]) -> Option<Vec<(String, String)>> {
     let names = a.effect.as_ref()?.range.as_ref()?;
-    let values = ranged(a).and_then(|p| potentials.get(&p)).map_or(&[][..], Vec::as_slice);
+    let potential = ranged(a).and_then(|p| potentials.get(&p)).map_or(&[][..], Vec::as_slice);
+    let values = if names.rate { speeds(potential, times) } else { potential.to_vec() };
     let finite = || values.iter().copied().filter(|v| v.is_finite());
     let (least, most) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
     let moves = most - least > 1e-9 * most.abs().max(least.abs());
     let value = |name: &String, x: f64| (name.clone(), format!("{x:e}"));
     Some(if moves { vec![value(&names.least, least), value(&names.most, most)] } else { Vec::new() })
+}
+
+/// Sizes of the rate of a potential that is known over all recordings, one after the other; without the few greatest,
+/// which are jumps.
+fn speeds(potential: &[f64], times: &[&[f64]]) -> Vec<f64> {
+    let mut from = 0;
+    let mut speeds = Vec::new();
+    for times in times {
+        let Some(own) = potential.get(from..from + times.len()) else { break };
+        from += times.len();
+        let rate = |(x, t): (&[f64], &[f64])| ((x[1] - x[0]) / (t[1] - t[0])).abs();
+        speeds.extend(own.windows(2).zip(times.windows(2)).map(rate).filter(|v| v.is_finite()));
+    }
+    speeds.sort_by(f64::total_cmp);
+    speeds.truncate((USUAL * speeds.len() as f64) as usize);
+    speeds
 }
 
 /// Potentials of all ports that a threshold or a range needs, as the nominal model has them; empty where it has none.

@@ -1,0 +1,142 @@
+//! Effects that the filter loses: where a sensor folds the signal (it shows the magnitude, or clips it), the state that
+//! belongs to a sample is not unique, and a filter that has taken the wrong one stays there. Its likelihood then says
+//! nothing about the effect. Such effects are weighed by what the model says from the inputs alone instead (output
+//! error; Ljung, System Identification, 1999, ch. 7), with the model's errors as noise of the sensors.
+
+use super::super::data::Recording;
+use super::super::filter::Setting;
+use super::super::fit::{self, Fit, Prior, vuong};
+use super::super::held;
+use super::super::hypotheses::{Hypothesis, Site};
+use super::super::problem::{Assembled, Problem};
+use super::super::screen::{self, Accepted, Candidate};
+use super::{ACCEPTED, CONSISTENT, Found, Refined, Search, WHOLE, bounded, ready, share};
+use rayon::prelude::*;
+
+/// An effect is lost when the filter says that it is so much worse than the model without it, nats.
+const LOST: f64 = 50.0;
+/// What such an effect must leave of the simulated gap that the best effect followed leaves, to be weighed.
+const CLOSING: f64 = 0.5;
+/// Level of sources, relative, at which they do nothing.
+const NOTHING: f64 = 1e-6;
+/// Turns of parameters and noise.
+const TURNS: usize = 3;
+
+impl Search {
+    /// Effects of sensors that the screen cannot see from where they are not, and with which as a whole the nominal model
+    /// alone comes much nearer to the first recording.
+    pub(super) fn unseen(&self, problem: &Problem<'_>, seen: &[Candidate]) -> Vec<Candidate> {
+        let known = |i: usize| seen.iter().any(|c| c.chosen.hypothesis == i);
+        let unknown = |&i: &usize| {
+            let h = &problem.hypotheses[i];
+            matches!(h.attachments[0].site, Site::Sensor(_)) && bounded(h) && !known(i)
+        };
+        let taken = |i: &usize| self.accepted.iter().any(|a| a.chosen.hypothesis == *i);
+        let open: Vec<usize> = (0..problem.hypotheses.len()).filter(|i| unknown(i) && !taken(i)).collect();
+        let first = &problem.train[..1];
+        let left = self.gap_of(problem, &self.last.setting, first);
+        let near = |i: usize| {
+            let candidate = whole(&problem.hypotheses[i], i)?;
+            let gap = self.gap_with(problem, &candidate.accepted(), first)?;
+            (gap < CLOSING * left).then_some(candidate)
+        };
+        open.into_par_iter().filter_map(near).collect()
+    }
+
+    /// The lost effect that explains the recordings so much better than the model without it and than the best effect
+    /// followed that it is the cause, as weighed from the inputs alone, with what it gains.
+    pub(super) fn lost(&self, problem: &Problem<'_>, refined: &[Refined]) -> Option<(Refined, Found)> {
+        let lost = |r: &Refined| {
+            let h = &problem.hypotheses[r.accepted.chosen.hypothesis];
+            bounded(h) && r.fit.evidence < self.last.evidence - LOST
+        };
+        let left = refined.iter().find(|r| !lost(r)).map_or(&self.last, |r| &r.fit);
+        let left = self.gap_of(problem, &left.setting, &problem.train);
+        let near =
+            |r: &Refined| self.gap_with(problem, &r.accepted, &problem.train).is_some_and(|gap| gap < CLOSING * left);
+        let places: Vec<usize> = (0..refined.len()).filter(|&i| lost(&refined[i]) && near(&refined[i])).collect();
+        if places.is_empty() {
+            return None;
+        }
+        let weighed = |extra: &[Accepted]| {
+            let mut all = self.accepted.clone();
+            all.extend_from_slice(extra);
+            output_error(problem, &self.last, &all)
+        };
+        let alone = |r: &Refined| weighed(std::slice::from_ref(&r.accepted));
+        // what it must beat: the model as it is, and the best effect that the filter can follow
+        let mut rivals = vec![weighed(&[])?];
+        rivals.extend(refined.iter().find(|r| !lost(r)).and_then(alone));
+        let (index, (fit, assembled)) = places
+            .into_iter()
+            .filter_map(|i| Some((i, alone(&refined[i])?)))
+            .max_by(|a, b| a.1.0.likelihood.total_cmp(&b.1.0.likelihood))?;
+        let share = rivals.iter().map(|r| &r.0).chain([&fit]).map(Fit::own_share).fold(0.0, f64::max);
+        let fit = fit.at_share(share);
+        let over = |(rival, _): (Fit, Assembled)| {
+            let rival = rival.at_share(share);
+            (fit.evidence - rival.evidence, vuong(&fit.blocks, &rival.blocks))
+        };
+        let over: Vec<(f64, f64)> = rivals.into_iter().map(over).collect();
+        let beaten = over.iter().all(|(gain, t)| *gain > ACCEPTED && *t > CONSISTENT);
+        let found = Found { gain: over[0].0, t: over[0].1, alternatives: Vec::new() };
+        beaten.then(|| (Refined::new(problem, refined[index].accepted.clone(), assembled, fit), found))
+    }
+
+    /// The simulated gap of the nominal model with a further effect.
+    fn gap_with(&self, problem: &Problem<'_>, further: &Accepted, recordings: &[Recording]) -> Option<f64> {
+        let mut all = self.accepted.clone();
+        all.push(further.clone());
+        let (assembled, _) = at_nominal(problem, &self.last, &all)?;
+        let setting = assembled.setting(&[], &self.last.setting.noise, Vec::new());
+        Some(self.gap_of(problem, &setting, recordings))
+    }
+
+    fn gap_of(&self, problem: &Problem<'_>, setting: &Setting, recordings: &[Recording]) -> f64 {
+        let runs = held::simulate_all(setting, recordings);
+        held::gap(&runs, recordings, &self.last.setting.noise, &problem.full_scale).total
+    }
+}
+
+/// An effect as a whole, with the first of its shapes.
+fn whole(h: &Hypothesis, index: usize) -> Option<Candidate> {
+    let mut chosen = screen::variants(h, index).into_iter().next()?;
+    let mut priors = Vec::new();
+    for (value, c) in chosen.values.iter_mut().zip(&h.coefficients) {
+        *value = share(c)?;
+        priors.push(Prior { parameter: 0, mean: *value, sigma: WHOLE * *value, min: 0.5 * *value, max: *value });
+    }
+    let shapes = h.shapes.iter().zip(&chosen.values[h.coefficients.len()..]);
+    priors.extend(shapes.map(|(s, &value)| screen::shape_prior(s, value)));
+    Some(Candidate { chosen, gain: 0.0, priors, visible: 0.0 })
+}
+
+/// The model with effects, parameters at their nominal values.
+fn at_nominal(problem: &Problem<'_>, from: &Fit, accepted: &[Accepted]) -> Option<(Assembled, Vec<Prior>)> {
+    let (mut assembled, priors) = ready(problem, from, accepted)?;
+    for (i, t) in assembled.free.clone().zip(&problem.tolerances) {
+        assembled.theta[i] = t.nominal;
+    }
+    Some((assembled, priors))
+}
+
+/// A model fitted by what it says from the inputs alone, from the nominal parameters.
+fn output_error(problem: &Problem<'_>, from: &Fit, accepted: &[Accepted]) -> Option<(Fit, Assembled)> {
+    let (assembled, priors) = at_nominal(problem, from, accepted)?;
+    let levels: Vec<f64> = from.setting.sources.iter().map(|s| s.level * NOTHING).collect();
+    // where the errors are not known yet, they are as large as the signals
+    let noise: Vec<f64> = problem.full_scale.iter().zip(&from.setting.noise).map(|(f, n)| f.max(*n)).collect();
+    let mut setting = assembled.setting(&levels, &noise, Vec::new());
+    let mut best = None;
+    for _ in 0..TURNS {
+        let fitted = fit::fit(setting.clone(), &priors, &problem.train, None, fit::ITERATIONS)?;
+        setting = fitted.setting.clone();
+        for (i, noise) in setting.noise.iter_mut().enumerate() {
+            let (sum, count) =
+                fitted.white.iter().fold((0.0, 0), |(s, n), w| (s + w.column(i).norm_squared(), n + w.nrows()));
+            *noise *= (sum / count.max(1) as f64).sqrt().max(1e-6);
+        }
+        best = Some(fitted);
+    }
+    best.map(|fit| (fit, assembled))
+}
