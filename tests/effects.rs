@@ -60,7 +60,9 @@ fn check(world: &dyn World, request: &Request, signals: &[Signal]) -> String {
         names
     };
     let (found, expected) = (states(&model, "plant."), states(&plain, ""));
-    assert_eq!(found.len(), expected.len(), "{found:?} instead of {expected:?}");
+    let effects = attached.iter().flat_map(|a| &a.hypothesis.attachments).filter_map(|a| a.effect.as_ref());
+    let own: usize = effects.map(|e| e.states).sum();
+    assert_eq!(found.len(), expected.len() + own, "{found:?} instead of {expected:?} and {own} of effects");
     if all.len() < 200 {
         alone(world, request, signals, &places, &all);
     }

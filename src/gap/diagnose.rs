@@ -1,6 +1,7 @@
 //! The whole diagnosis: noise, tolerances, places, effects one after another, and how far the gap shrinks.
 
 mod conclusion;
+mod driven;
 mod lost;
 
 use super::data::Recording;
@@ -36,6 +37,8 @@ const BOUNDED: usize = 4;
 const SHAPES: usize = 5;
 const AHEAD: f64 = 15.0;
 const AHEAD_PART: f64 = 0.2;
+/// Part of its gain that a shape must have by what the inputs alone bring about.
+const DRIVEN: f64 = 0.25;
 /// Iterations with which candidates are compared before the front is polished, and candidates polished.
 const RACE: usize = 2;
 const POLISHED: usize = 5;
@@ -320,19 +323,16 @@ impl Search {
         self.last_model = model;
     }
 
-    /// Whether a shape explains so much more than the best effect that the effect is not the cause, and closes some of the
-    /// simulated gap: a resonance may also follow the colour of a disturbance.
+    /// Whether a shape explains so much more than the best effect that the effect is not the cause, and does so by what
+    /// the inputs bring about: in the filter a resonance may also follow the colour of a disturbance.
     fn nothing_known(&self, problem: &Problem<'_>, shape: &Refined, best: Option<&Refined>) -> bool {
         let gain = self.gain(&shape.fit);
         let named = best.map_or(0.0, |b| self.gain(&b.fit)).max(0.0);
         let rival = best.filter(|_| named > 0.0).map_or(&self.last, |b| &b.fit);
         let ahead = gain > ACCEPTED && gain - named > AHEAD.max(AHEAD_PART * named);
         let consistent = || vuong(&shape.fit.blocks, &rival.blocks) > CONSISTENT || rare(&shape.fit, rival, gain - named);
-        let closes = || {
-            let [before, after] = [&self.last, &shape.fit].map(|f| simulated(problem, f, &self.last.setting.noise));
-            before.beyond(&after) > CLOSES * before.total
-        };
-        ahead && consistent() && closes()
+        let driven = || driven::gain(problem, shape, &self.last).is_some_and(|driven| driven > DRIVEN * gain);
+        ahead && consistent() && driven()
     }
 
     /// Takes down what is left by its shape. Effects found before are dropped where the shape without them explains more

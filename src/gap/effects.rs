@@ -136,8 +136,8 @@ pub struct Effect {
     pub directed: bool,
     /// Not tried where an effect of this kind fits.
     pub without: Option<Attach>,
-    /// It has states of its own, so that the order of the system changes with it.
-    pub has_states: bool,
+    /// States of its own; inside a connection the order of the system changes with them.
+    pub states: usize,
     /// It reads the rate of a potential.
     pub needs_rate: bool,
     /// It reads the second derivative of a potential.
@@ -373,7 +373,7 @@ fn effect(found: &Found, interface: &Found, read: &Attributes<'_>, number: usize
         directed: text(own, "directed").is_some(),
         without: text(own, "without").and_then(|t| attach(&t)),
         interface,
-        has_states: false,
+        states: 0,
         needs_rate: false,
         needs_acceleration: false,
     };
@@ -410,7 +410,7 @@ fn rates(effect: &mut Effect, read: &Attributes<'_>, number: usize) {
         } else if read.rate_of.get(name).is_some_and(|x| potentials.contains(x)) {
             effect.needs_acceleration = true;
         } else {
-            effect.has_states = true;
+            effect.states += 1;
         }
     }
 }

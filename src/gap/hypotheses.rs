@@ -139,8 +139,8 @@ pub struct Hypothesis {
     pub coefficients: Vec<Coefficient>,
     /// Nonlinear parameters, grids in SI units.
     pub shapes: Vec<Shape>,
-    /// The order of the system changes with it (states of its own, or a rate that the model does not have), so that it
-    /// cannot be linearised at its off value together with the others.
+    /// The order of the model changes with it (it needs a rate that the model does not have, or stands inside a connection),
+    /// so that it cannot be linearised at its off value together with the others. States of its own beside are none.
     pub changes_order: bool,
 }
 
@@ -519,7 +519,7 @@ fn changes_order(circuit: &Circuit, a: &Attachment) -> bool {
         Site::Across(x, y) => ports.extend([x, y]),
         Site::Into(p) => {
             let node = &circuit.nodes[circuit.ports[p].node];
-            return effect.has_states || node.has_rate || node.fixed;
+            return effect.states > 0 || node.has_rate || node.fixed;
         }
         _ => {}
     }

@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 /// A gap of so many times the sensors' noise is one, located or not.
 const PLAIN: f64 = 4.0;
 /// Evidence for a place at which a gap counts as located, nats.
-const LOCATED: f64 = 50.0;
+const LOCATED: f64 = 100.0;
 /// The three models whose gaps are compared, and those for what each effect closes.
 pub(super) struct Conclusion<'a> {
     pub problem: &'a Problem<'a>,

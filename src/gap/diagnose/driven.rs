@@ -1,0 +1,65 @@
+//! What the inputs alone bring about: whether a model's own course explains more, or only its filter, which may follow
+//! the colour of a disturbance. The model's errors are taken as autoregressive noise (Box, Jenkins, Time Series
+//! Analysis, 1970, ch. 7).
+
+use super::super::fit::Fit;
+use super::super::held;
+use super::super::problem::Problem;
+use super::Refined;
+
+/// Order of the autoregression.
+const ORDER: usize = 12;
+
+/// Nats that a refined candidate gains by the course that the inputs alone bring about, over the model before and over
+/// itself without the effect: the lesser of both.
+pub(super) fn gain(problem: &Problem<'_>, refined: &Refined, before: &Fit) -> Option<f64> {
+    let h = &problem.hypotheses[refined.accepted.chosen.hypothesis];
+    let mut without = refined.fit.clone();
+    for (&place, c) in refined.assembled.attached.last()?.iter().zip(&h.coefficients) {
+        without.setting.theta[place] = c.off;
+    }
+    let own = likelihood(problem, &refined.fit)?;
+    Some(own - likelihood(problem, before)?.max(likelihood(problem, &without)?))
+}
+
+/// Log likelihood of the train recordings by the course that the inputs alone bring about, nats.
+fn likelihood(problem: &Problem<'_>, fit: &Fit) -> Option<f64> {
+    let runs = held::simulate_all(&fit.setting, &problem.train);
+    let mut sum = 0.0;
+    for signal in 0..problem.signals.len() {
+        let errors = problem.train.iter().zip(&runs).map(|(r, run)| {
+            let run = run.as_ref()?;
+            let errors = run.simulated[signal].iter().zip(&r.signals[signal][run.from..]).map(|(s, m)| m - s);
+            Some(errors.filter(|e| e.is_finite()).collect::<Vec<f64>>())
+        });
+        let errors: Vec<Vec<f64>> = errors.collect::<Option<_>>()?;
+        let count: usize = errors.iter().map(Vec::len).sum();
+        let variance = innovation(&errors);
+        if count > 10 * ORDER && variance > 0.0 {
+            sum -= 0.5 * count as f64 * variance.ln();
+        }
+    }
+    Some(sum)
+}
+
+/// Variance of the innovations of an autoregression (Levinson and Durbin).
+fn innovation(series: &[Vec<f64>]) -> f64 {
+    let lagged = |k: usize| -> f64 {
+        series.iter().map(|s| s.iter().zip(s.iter().skip(k)).map(|(a, b)| a * b).sum::<f64>()).sum()
+    };
+    let count: usize = series.iter().map(Vec::len).sum();
+    let c: Vec<f64> = (0..=ORDER).map(|k| lagged(k) / count.max(1) as f64).collect();
+    let mut a: Vec<f64> = Vec::new();
+    let mut variance = c[0];
+    for k in 1..=ORDER {
+        if variance <= 0.0 {
+            break;
+        }
+        let reflection = (c[k] - a.iter().enumerate().map(|(i, a)| a * c[k - 1 - i]).sum::<f64>()) / variance;
+        let before = a.clone();
+        a.iter_mut().zip(before.iter().rev()).for_each(|(a, b)| *a -= reflection * b);
+        a.push(reflection);
+        variance *= 1.0 - reflection * reflection;
+    }
+    variance
+}
