@@ -3,55 +3,33 @@
 mod conclusion;
 mod driven;
 mod lost;
+mod refine;
 
 use super::data::Recording;
-use super::effects::Coefficient;
-use super::fit::{self, Fit, Prior, vuong};
+use super::fit::{self, Fit, vuong};
 use super::held;
-use super::hypotheses::Hypothesis;
 use super::locate::{self, Located};
 use super::problem::{Assembled, Chosen, Problem};
 use super::recording::{self, Gross};
-use super::screen::{self, Accepted, Candidate};
+use super::screen::{self, Accepted};
 use super::verdict::Verdict;
 use conclusion::Conclusion;
-use rayon::prelude::*;
-use std::collections::BTreeSet;
+use refine::{Refined, fitted, promising, siblings, values};
 
 /// Effects that are looked for one after another, at most.
 const MOST_EFFECTS: usize = 4;
-/// Candidates of a screen that are refined,
-const REFINED: usize = 5;
-/// Gain that a candidate must promise to be refined, nats.
-const PROMISING: f64 = 5.0;
-/// Candidates behind this part of the best one's gain are not refined.
-const FAR: f64 = 0.1;
-/// Deviation of the share of such an effect from the whole.
-const WHOLE: f64 = 0.3;
-/// Samples with which their shapes are tried.
-const TRIED: usize = 1500;
-/// Candidates that are there or not.
-const BOUNDED: usize = 4;
-/// Shapes without a name that are refined beside, each of another kind; and what one must be ahead of the best effect, nats and as part of that
-/// effect's gain, before nothing that is known explains the gap: a form other than the library's is no other cause.
-const SHAPES: usize = 5;
+/// What a shape without a name must be ahead of the best effect, nats and as part of that effect's gain, before nothing
+/// that is known explains the gap: a form other than the library's is no other cause.
 const AHEAD: f64 = 15.0;
 const AHEAD_PART: f64 = 0.2;
 /// Part of its gain that a shape must have by what the inputs alone bring about.
 const DRIVEN: f64 = 0.25;
-/// Iterations with which candidates are compared before the front is polished, and candidates polished.
-const RACE: usize = 2;
-const POLISHED: usize = 5;
 /// Mean square of whitened innovations beyond which the levels of the nominal model are no levels.
 const BROKEN: f64 = 100.0;
 /// Rounds at most in which the levels of the nominal model settle.
 const SETTLING: usize = 5;
 /// Factor by which they grow in one of them.
 const GROWTH: f64 = 30.0;
-/// Part of the sources' levels with which a candidate is tried as well.
-const QUIET: f64 = 0.1;
-/// A candidate that is so much worse than the model without it is not tried further, nats.
-const HOPELESS: f64 = 3e3;
 /// Gain that an effect must have to be accepted, nats.
 const ACCEPTED: f64 = 8.0;
 /// Vuong statistic that it must have.
@@ -83,27 +61,6 @@ pub enum Stage {
     Refine(usize),
     /// Held recordings.
     Held,
-}
-
-/// A refined candidate.
-struct Refined {
-    accepted: Accepted,
-    assembled: Assembled,
-    fit: Fit,
-}
-
-impl Refined {
-    /// With the fitted values; a choice among variants has its price.
-    fn new(problem: &Problem<'_>, accepted: Accepted, assembled: Assembled, mut fit: Fit) -> Self {
-        fit.evidence -= screen::variants_cost(&problem.hypotheses[accepted.chosen.hypothesis]);
-        let values = assembled.attached.last().map_or_else(Vec::new, |own| values(&fit, own));
-        let chosen = Chosen { values, ..accepted.chosen };
-        Refined { accepted: Accepted { chosen, ..accepted }, assembled, fit }
-    }
-
-    fn is_shape(&self, problem: &Problem<'_>) -> bool {
-        problem.hypotheses[self.accepted.chosen.hypothesis].is_shape()
-    }
 }
 
 /// An accepted effect with what came with it.
@@ -330,7 +287,8 @@ impl Search {
         let named = best.map_or(0.0, |b| self.gain(&b.fit)).max(0.0);
         let rival = best.filter(|_| named > 0.0).map_or(&self.last, |b| &b.fit);
         let ahead = gain > ACCEPTED && gain - named > AHEAD.max(AHEAD_PART * named);
-        let consistent = || vuong(&shape.fit.blocks, &rival.blocks) > CONSISTENT || rare(&shape.fit, rival, gain - named);
+        let consistent =
+            || vuong(&shape.fit.blocks, &rival.blocks) > CONSISTENT || rare(&shape.fit, rival, gain - named);
         let driven = || driven::gain(problem, shape, &self.last).is_some_and(|driven| driven > DRIVEN * gain);
         ahead && consistent() && driven()
     }
@@ -365,100 +323,6 @@ impl Search {
             gain: self.gain(&r.fit),
             t: vuong(&r.fit.blocks, &self.last.blocks),
             won_and_lost: won_and_lost(&r.fit, &self.last),
-        }
-    }
-
-    /// Fits candidates one by one; best first.
-    fn refined(&self, problem: &Problem<'_>, chosen: &[Candidate]) -> Vec<Refined> {
-        let mut refined: Vec<Refined> = chosen.par_iter().filter_map(|c| self.refine(problem, c)).collect();
-        refined.sort_by(|a, b| b.fit.evidence.total_cmp(&a.fit.evidence));
-        refined
-    }
-
-    /// Fits one candidate together with everything accepted before. An effect that is there or not (a rectifying sensor)
-    /// looks small from where it is not: it begins as a whole, and less than half of it would be something else.
-    fn refine(&self, problem: &Problem<'_>, candidate: &Candidate) -> Option<Refined> {
-        let h = &problem.hypotheses[candidate.chosen.hypothesis];
-        let mut whole = candidate.clone();
-        if bounded(h) {
-            for (i, c) in h.coefficients.iter().enumerate() {
-                let Some(max) = share(c) else { continue };
-                whole.chosen.values[i] = max;
-                let prior = &mut whole.priors[i];
-                (prior.mean, prior.sigma, prior.min) = (max, WHOLE * max, 0.5 * max);
-            }
-            self.shape_of_whole(problem, h, &mut whole);
-        }
-        let accepted = whole.accepted();
-        let mut all = self.accepted.clone();
-        all.push(accepted.clone());
-        let (fit, assembled) = fitted(problem, &self.last, &all)?;
-        Some(Refined::new(problem, accepted, assembled, fit))
-    }
-
-    /// Gives a whole effect the shape that fits it: that of a small share of it may be nothing like (a twentieth of twenty
-    /// samples' delay is one sample's).
-    fn shape_of_whole(&self, problem: &Problem<'_>, h: &Hypothesis, whole: &mut Candidate) {
-        let variants = screen::variants(h, whole.chosen.hypothesis);
-        let (count, first) = (h.coefficients.len(), &problem.train[..1]);
-        if variants.len() < 2 {
-            return;
-        }
-        let likelihood = |shapes: &[f64]| {
-            let mut values = whole.chosen.values.clone();
-            values[count..].copy_from_slice(shapes);
-            let mut all = self.accepted.clone();
-            all.push(Accepted { chosen: Chosen { values, ..whole.chosen }, priors: whole.priors.clone() });
-            let (model, _) = ready(problem, &self.last, &all)?;
-            let levels: Vec<f64> = self.last.setting.sources.iter().map(|s| s.level).collect();
-            let setting = model.setting(&levels, &self.last.setting.noise, Vec::new());
-            Some(fit::passes(&setting, first, TRIED, false)?[0].likelihood)
-        };
-        let best = variants
-            .iter()
-            .filter_map(|v| Some((likelihood(&v.values[count..])?, &v.values[count..])))
-            .max_by(|a, b| a.0.total_cmp(&b.0));
-        if let Some((_, shapes)) = best {
-            whole.chosen.values[count..].copy_from_slice(shapes);
-            let priors = h.shapes.iter().zip(shapes).map(|(s, &x)| screen::shape_prior(s, x));
-            whole.priors.splice(count.., priors);
-        }
-    }
-
-    /// Those at the front are fitted to the end: comparisons are between optima only. The share of independent samples is
-    /// that of the whitest: a model that explains what is missing leaves white innovations, and then all samples count.
-    fn sharpen(&mut self, problem: &Problem<'_>, refined: &mut Vec<Refined>) {
-        let sharper = |(i, r): (usize, Refined)| {
-            if i >= POLISHED {
-                return r;
-            }
-            let mut fit = r.fit;
-            fit.evidence += screen::variants_cost(&problem.hypotheses[r.accepted.chosen.hypothesis]);
-            let fit = fit::polish(fit, &problem.train, Some(self.last.search_share()));
-            Refined::new(problem, r.accepted, r.assembled, fit)
-        };
-        let taken = std::mem::take(refined);
-        let polished: Vec<Refined> = taken.into_par_iter().enumerate().map(sharper).collect();
-        let share = polished.iter().take(POLISHED).map(|r| r.fit.own_share()).fold(self.last.share, f64::max);
-        refined.extend(polished.into_iter().map(|r| Refined { fit: r.fit.at_share(share), ..r }));
-        self.last = self.last.clone().at_share(share);
-    }
-
-    /// Fits the model without a further effect from the levels and noise that the best candidate led to: what they alone
-    /// gain is no gain of the effect.
-    fn relevel(&mut self, problem: &Problem<'_>, front: &Fit) {
-        let mut setting = self.last.setting.clone();
-        setting.sources.iter_mut().zip(&front.setting.sources).for_each(|(own, s)| own.level = s.level);
-        setting.noise.clone_from(&front.setting.noise);
-        let share = self.last.share;
-        let fit = fit::fit(setting, &self.last.priors, &problem.train, Some(share), fit::ITERATIONS);
-        if let Some(fit) = fit
-            && fit.evidence > self.last.evidence
-        {
-            self.last = fit::polish(fit, &problem.train, Some(share));
-            if self.accepted.is_empty() {
-                self.base = self.last.clone();
-            }
         }
     }
 
@@ -498,48 +362,6 @@ fn simulated(problem: &Problem<'_>, f: &Fit, noise: &[f64]) -> held::Gap {
     held::gap(&held::simulate_all(&f.setting, &problem.train), &problem.train, noise, &problem.full_scale)
 }
 
-/// What is refined: the best effects, the best of those that are there or not, which may look small from where they are
-/// not, and the best shape of each kind. And the rest.
-fn promising(problem: &Problem<'_>, candidates: Vec<Candidate>) -> (Vec<Candidate>, Vec<Candidate>) {
-    let h = |c: &Candidate| &problem.hypotheses[c.chosen.hypothesis];
-    let front = candidates.iter().find(|c| !h(c).is_shape()).map_or(0.0, |c| c.gain);
-    let (mut effects, mut switched) = (0, 0);
-    let mut kinds = BTreeSet::new();
-    candidates.into_iter().partition(|c| {
-        let worth = c.gain > PROMISING.max(FAR * front);
-        if h(c).is_shape() {
-            worth && kinds.len() < SHAPES && kinds.insert(h(c).effect.clone())
-        } else if bounded(h(c)) {
-            switched += 1;
-            c.gain > PROMISING && switched <= BOUNDED
-        } else {
-            effects += 1;
-            worth && effects <= REFINED
-        }
-    })
-}
-
-/// Other effects that are there or not at the place of the best one: from where they are not they all look alike (a lag,
-/// a dead time).
-fn siblings(problem: &Problem<'_>, rest: &[Candidate], front: &Refined) -> Vec<Candidate> {
-    let h = |c: &Chosen| &problem.hypotheses[c.hypothesis];
-    let own = h(&front.accepted.chosen);
-    let alike = |c: &&Candidate| {
-        let other = h(&c.chosen);
-        c.gain > PROMISING && bounded(other) && other.attachments[0].site == own.attachments[0].site
-    };
-    if bounded(own) { rest.iter().filter(alike).cloned().collect() } else { Vec::new() }
-}
-
-/// The value at which a coefficient stands for the whole effect, if it is a share of one.
-fn share(c: &Coefficient) -> Option<f64> {
-    c.max.filter(|m| m.is_finite() && *m <= 10.0 * c.nominal.abs())
-}
-
-fn bounded(h: &Hypothesis) -> bool {
-    h.family != "parameter" && h.coefficients.iter().any(|c| share(c).is_some())
-}
-
 /// An effect that acts in few blocks gains much there and loses next to nothing elsewhere; the mean over all blocks
 /// does not show it.
 fn rare(with: &Fit, without: &Fit, gain: f64) -> bool {
@@ -562,50 +384,6 @@ fn simplest(problem: &Problem<'_>, refined: &[Refined]) -> usize {
     let front = refined[0].fit.evidence;
     let level = refined.iter().take_while(|r| front - r.fit.evidence < AS_GOOD).count();
     (0..level).min_by_key(|&i| (size(&refined[i]), i)).unwrap_or(0)
-}
-
-fn values(fit: &Fit, places: &[usize]) -> Vec<f64> {
-    places.iter().map(|&p| fit.setting.theta[p]).collect()
-}
-
-/// The model with a set of effects at the values of an earlier fit, and the priors of all that is free.
-fn ready(problem: &Problem<'_>, from: &Fit, accepted: &[Accepted]) -> Option<(Assembled, Vec<Prior>)> {
-    let chosen: Vec<Chosen> = accepted.iter().map(|a| a.chosen.clone()).collect();
-    let mut assembled = problem.assemble(&chosen, &problem.node_sources()).ok()?;
-    locate::carry(from, accepted, &mut assembled);
-    let mut priors = fit::tolerance_priors(problem);
-    for (places, a) in assembled.attached.iter().zip(accepted) {
-        for (&parameter, prior) in places.iter().zip(&a.priors) {
-            let own = Prior { parameter, ..prior.clone() };
-            match priors.iter_mut().find(|p| p.parameter == parameter) {
-                Some(p) => *p = own,
-                None => priors.push(own),
-            }
-        }
-    }
-    Some((assembled, priors))
-}
-
-/// Fits a set of effects, from the values of an earlier fit.
-fn fitted(problem: &Problem<'_>, from: &Fit, accepted: &[Accepted]) -> Option<(Fit, Assembled)> {
-    let (assembled, priors) = ready(problem, from, accepted)?;
-    let levels: Vec<f64> = from.setting.sources.iter().map(|s| s.level).collect();
-    let setting = assembled.setting(&levels, &from.setting.noise, Vec::new());
-    let fit = |s| fit::fit(s, &priors, &problem.train, Some(from.search_share()), RACE);
-    let first = fit(setting.clone());
-    if let Some(f) = &first
-        && f.evidence < from.evidence - HOPELESS
-    {
-        return first.map(|f| (f, assembled));
-    }
-    // sources as strong as the model before needed them may hide how right this one is: weaker ones are tried too
-    let mut adjusted = setting.clone();
-    fit::adjust(&mut adjusted, &problem.train);
-    let mut quiet = setting;
-    quiet.sources.iter_mut().for_each(|s| s.level *= QUIET);
-    let fits = [first, fit(adjusted), fit(quiet)];
-    let best = fits.into_iter().flatten().max_by(|a, b| a.evidence.total_cmp(&b.evidence))?;
-    Some((best, assembled))
 }
 
 impl Search {

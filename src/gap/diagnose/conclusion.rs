@@ -9,7 +9,8 @@ use super::super::problem::{Chosen, Problem, Tolerance};
 use super::super::recording::Gross;
 use super::super::screen::Accepted;
 use super::super::verdict as v;
-use super::{Search, Shaped, fitted};
+use super::refine::fitted;
+use super::{Search, Shaped};
 use std::collections::BTreeMap;
 
 /// A gap of so many times the sensors' noise is one, located or not.

@@ -5,7 +5,7 @@
 use super::super::fit::Fit;
 use super::super::held;
 use super::super::problem::Problem;
-use super::Refined;
+use super::refine::Refined;
 
 /// Order of the autoregression.
 const ORDER: usize = 12;

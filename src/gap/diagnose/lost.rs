@@ -10,7 +10,8 @@ use super::super::held;
 use super::super::hypotheses::{Hypothesis, Site};
 use super::super::problem::{Assembled, Problem};
 use super::super::screen::{self, Accepted, Candidate};
-use super::{ACCEPTED, CONSISTENT, Found, Refined, Search, WHOLE, bounded, ready, share};
+use super::refine::{Refined, WHOLE, bounded, ready, share};
+use super::{ACCEPTED, CONSISTENT, Found, Search};
 use rayon::prelude::*;
 
 /// An effect is lost when the filter says that it is so much worse than the model without it, nats.

@@ -1,0 +1,236 @@
+//! Candidates of a screen one by one: each fitted together with everything accepted before, the front to its optimum.
+
+use super::super::effects::Coefficient;
+use super::super::fit::{self, Fit, Prior};
+use super::super::hypotheses::Hypothesis;
+use super::super::locate;
+use super::super::problem::{Assembled, Chosen, Problem};
+use super::super::screen::{self, Accepted, Candidate};
+use super::Search;
+use rayon::prelude::*;
+use std::collections::BTreeSet;
+
+/// Candidates of a screen that are refined,
+const REFINED: usize = 5;
+/// Gain that a candidate must promise to be refined, nats.
+const PROMISING: f64 = 5.0;
+/// Candidates behind this part of the best one's gain are not refined.
+const FAR: f64 = 0.1;
+/// Deviation of the share of such an effect from the whole.
+pub(super) const WHOLE: f64 = 0.3;
+/// Samples with which their shapes are tried.
+const TRIED: usize = 1500;
+/// Candidates that are there or not.
+const BOUNDED: usize = 4;
+/// Shapes without a name that are refined beside, each of another kind.
+const SHAPES: usize = 5;
+/// Iterations with which candidates are compared before the front is polished, and candidates polished.
+const RACE: usize = 2;
+const POLISHED: usize = 5;
+/// Part of the sources' levels with which a candidate is tried as well.
+const QUIET: f64 = 0.1;
+/// A candidate that is so much worse than the model without it is not tried further, nats.
+const HOPELESS: f64 = 3e3;
+
+/// A refined candidate.
+pub(super) struct Refined {
+    pub accepted: Accepted,
+    pub assembled: Assembled,
+    pub fit: Fit,
+}
+
+impl Refined {
+    /// With the fitted values; a choice among variants has its price.
+    pub(super) fn new(problem: &Problem<'_>, accepted: Accepted, assembled: Assembled, mut fit: Fit) -> Self {
+        fit.evidence -= screen::variants_cost(&problem.hypotheses[accepted.chosen.hypothesis]);
+        let values = assembled.attached.last().map_or_else(Vec::new, |own| values(&fit, own));
+        let chosen = Chosen { values, ..accepted.chosen };
+        Refined { accepted: Accepted { chosen, ..accepted }, assembled, fit }
+    }
+
+    pub(super) fn is_shape(&self, problem: &Problem<'_>) -> bool {
+        problem.hypotheses[self.accepted.chosen.hypothesis].is_shape()
+    }
+}
+
+impl Search {
+    /// Fits candidates one by one; best first.
+    pub(super) fn refined(&self, problem: &Problem<'_>, chosen: &[Candidate]) -> Vec<Refined> {
+        let mut refined: Vec<Refined> = chosen.par_iter().filter_map(|c| self.refine(problem, c)).collect();
+        refined.sort_by(|a, b| b.fit.evidence.total_cmp(&a.fit.evidence));
+        refined
+    }
+
+    /// Fits one candidate together with everything accepted before. An effect that is there or not (a rectifying sensor)
+    /// looks small from where it is not: it begins as a whole, and less than half of it would be something else.
+    fn refine(&self, problem: &Problem<'_>, candidate: &Candidate) -> Option<Refined> {
+        let h = &problem.hypotheses[candidate.chosen.hypothesis];
+        let mut whole = candidate.clone();
+        if bounded(h) {
+            for (i, c) in h.coefficients.iter().enumerate() {
+                let Some(max) = share(c) else { continue };
+                whole.chosen.values[i] = max;
+                let prior = &mut whole.priors[i];
+                (prior.mean, prior.sigma, prior.min) = (max, WHOLE * max, 0.5 * max);
+            }
+            self.shape_of_whole(problem, h, &mut whole);
+        }
+        let accepted = whole.accepted();
+        let mut all = self.accepted.clone();
+        all.push(accepted.clone());
+        let (fit, assembled) = fitted(problem, &self.last, &all)?;
+        Some(Refined::new(problem, accepted, assembled, fit))
+    }
+
+    /// Gives a whole effect the shape that fits it: that of a small share of it may be nothing like (a twentieth of twenty
+    /// samples' delay is one sample's).
+    fn shape_of_whole(&self, problem: &Problem<'_>, h: &Hypothesis, whole: &mut Candidate) {
+        let variants = screen::variants(h, whole.chosen.hypothesis);
+        let (count, first) = (h.coefficients.len(), &problem.train[..1]);
+        if variants.len() < 2 {
+            return;
+        }
+        let likelihood = |shapes: &[f64]| {
+            let mut values = whole.chosen.values.clone();
+            values[count..].copy_from_slice(shapes);
+            let mut all = self.accepted.clone();
+            all.push(Accepted { chosen: Chosen { values, ..whole.chosen }, priors: whole.priors.clone() });
+            let (model, _) = ready(problem, &self.last, &all)?;
+            let levels: Vec<f64> = self.last.setting.sources.iter().map(|s| s.level).collect();
+            let setting = model.setting(&levels, &self.last.setting.noise, Vec::new());
+            Some(fit::passes(&setting, first, TRIED, false)?[0].likelihood)
+        };
+        let best = variants
+            .iter()
+            .filter_map(|v| Some((likelihood(&v.values[count..])?, &v.values[count..])))
+            .max_by(|a, b| a.0.total_cmp(&b.0));
+        if let Some((_, shapes)) = best {
+            whole.chosen.values[count..].copy_from_slice(shapes);
+            let priors = h.shapes.iter().zip(shapes).map(|(s, &x)| screen::shape_prior(s, x));
+            whole.priors.splice(count.., priors);
+        }
+    }
+
+    /// Those at the front are fitted to the end: comparisons are between optima only. The share of independent samples is
+    /// that of the whitest: a model that explains what is missing leaves white innovations, and then all samples count.
+    pub(super) fn sharpen(&mut self, problem: &Problem<'_>, refined: &mut Vec<Refined>) {
+        let sharper = |(i, r): (usize, Refined)| {
+            if i >= POLISHED {
+                return r;
+            }
+            let mut fit = r.fit;
+            fit.evidence += screen::variants_cost(&problem.hypotheses[r.accepted.chosen.hypothesis]);
+            let fit = fit::polish(fit, &problem.train, Some(self.last.search_share()));
+            Refined::new(problem, r.accepted, r.assembled, fit)
+        };
+        let taken = std::mem::take(refined);
+        let polished: Vec<Refined> = taken.into_par_iter().enumerate().map(sharper).collect();
+        let share = polished.iter().take(POLISHED).map(|r| r.fit.own_share()).fold(self.last.share, f64::max);
+        refined.extend(polished.into_iter().map(|r| Refined { fit: r.fit.at_share(share), ..r }));
+        self.last = self.last.clone().at_share(share);
+    }
+
+    /// Fits the model without a further effect from the levels and noise that the best candidate led to: what they alone
+    /// gain is no gain of the effect.
+    pub(super) fn relevel(&mut self, problem: &Problem<'_>, front: &Fit) {
+        let mut setting = self.last.setting.clone();
+        setting.sources.iter_mut().zip(&front.setting.sources).for_each(|(own, s)| own.level = s.level);
+        setting.noise.clone_from(&front.setting.noise);
+        let share = self.last.share;
+        let fit = fit::fit(setting, &self.last.priors, &problem.train, Some(share), fit::ITERATIONS);
+        if let Some(fit) = fit
+            && fit.evidence > self.last.evidence
+        {
+            self.last = fit::polish(fit, &problem.train, Some(share));
+            if self.accepted.is_empty() {
+                self.base = self.last.clone();
+            }
+        }
+    }
+}
+
+/// What is refined: the best effects, the best of those that are there or not, which may look small from where they are
+/// not, and the best shape of each kind. And the rest.
+pub(super) fn promising(problem: &Problem<'_>, candidates: Vec<Candidate>) -> (Vec<Candidate>, Vec<Candidate>) {
+    let h = |c: &Candidate| &problem.hypotheses[c.chosen.hypothesis];
+    let front = candidates.iter().find(|c| !h(c).is_shape()).map_or(0.0, |c| c.gain);
+    let (mut effects, mut switched) = (0, 0);
+    let mut kinds = BTreeSet::new();
+    candidates.into_iter().partition(|c| {
+        let worth = c.gain > PROMISING.max(FAR * front);
+        if h(c).is_shape() {
+            worth && kinds.len() < SHAPES && kinds.insert(h(c).effect.clone())
+        } else if bounded(h(c)) {
+            switched += 1;
+            c.gain > PROMISING && switched <= BOUNDED
+        } else {
+            effects += 1;
+            worth && effects <= REFINED
+        }
+    })
+}
+
+/// Other effects that are there or not at the place of the best one: from where they are not they all look alike (a lag,
+/// a dead time).
+pub(super) fn siblings(problem: &Problem<'_>, rest: &[Candidate], front: &Refined) -> Vec<Candidate> {
+    let h = |c: &Chosen| &problem.hypotheses[c.hypothesis];
+    let own = h(&front.accepted.chosen);
+    let alike = |c: &&Candidate| {
+        let other = h(&c.chosen);
+        c.gain > PROMISING && bounded(other) && other.attachments[0].site == own.attachments[0].site
+    };
+    if bounded(own) { rest.iter().filter(alike).cloned().collect() } else { Vec::new() }
+}
+
+/// The value at which a coefficient stands for the whole effect, if it is a share of one.
+pub(super) fn share(c: &Coefficient) -> Option<f64> {
+    c.max.filter(|m| m.is_finite() && *m <= 10.0 * c.nominal.abs())
+}
+
+pub(super) fn bounded(h: &Hypothesis) -> bool {
+    h.family != "parameter" && h.coefficients.iter().any(|c| share(c).is_some())
+}
+
+pub(super) fn values(fit: &Fit, places: &[usize]) -> Vec<f64> {
+    places.iter().map(|&p| fit.setting.theta[p]).collect()
+}
+
+/// The model with a set of effects at the values of an earlier fit, and the priors of all that is free.
+pub(super) fn ready(problem: &Problem<'_>, from: &Fit, accepted: &[Accepted]) -> Option<(Assembled, Vec<Prior>)> {
+    let chosen: Vec<Chosen> = accepted.iter().map(|a| a.chosen.clone()).collect();
+    let mut assembled = problem.assemble(&chosen, &problem.node_sources()).ok()?;
+    locate::carry(from, accepted, &mut assembled);
+    let mut priors = fit::tolerance_priors(problem);
+    for (places, a) in assembled.attached.iter().zip(accepted) {
+        for (&parameter, prior) in places.iter().zip(&a.priors) {
+            let own = Prior { parameter, ..prior.clone() };
+            match priors.iter_mut().find(|p| p.parameter == parameter) {
+                Some(p) => *p = own,
+                None => priors.push(own),
+            }
+        }
+    }
+    Some((assembled, priors))
+}
+
+/// Fits a set of effects, from the values of an earlier fit.
+pub(super) fn fitted(problem: &Problem<'_>, from: &Fit, accepted: &[Accepted]) -> Option<(Fit, Assembled)> {
+    let (assembled, priors) = ready(problem, from, accepted)?;
+    let levels: Vec<f64> = from.setting.sources.iter().map(|s| s.level).collect();
+    let setting = assembled.setting(&levels, &from.setting.noise, Vec::new());
+    let fit = |s| fit::fit(s, &priors, &problem.train, Some(from.search_share()), RACE);
+    let first = fit(setting.clone());
+    if let Some(f) = &first
+        && f.evidence < from.evidence - HOPELESS
+    {
+        return first.map(|f| (f, assembled));
+    }
+    // sources as strong as the model before needed them may hide how right this one is: weaker ones are tried too
+    let mut adjusted = setting.clone();
+    fit::adjust(&mut adjusted, &problem.train);
+    let mut quiet = setting;
+    quiet.sources.iter_mut().for_each(|s| s.level *= QUIET);
+    let fits = [first, fit(adjusted), fit(quiet)];
+    let best = fits.into_iter().flatten().max_by(|a, b| a.evidence.total_cmp(&b.evidence))?;
+    Some((best, assembled))
+}
