@@ -6,8 +6,9 @@ use bramah::diag::Sources;
 use bramah::gap::diagnose::search;
 use bramah::gap::fixed::corrected;
 use bramah::gap::held::from_start;
+use bramah::gap::plan::{Pair, plan};
 use bramah::gap::report::report;
-use bramah::gap::study::question;
+use bramah::gap::study::{planned, question};
 use bramah::gap::verdict::Verdict;
 use bramah::solve::Interpolation;
 use bramah::study::Study;
@@ -213,6 +214,29 @@ fn a_rectifying_sensor_is_named_although_the_filter_loses_it() {
     assert_eq!(verdict.verdict, "effects");
     assert_eq!(verdict.effects[0].family, "sensor_rectification", "{:?}", verdict.effects);
     assert!(verdict.closed_by_effects.unwrap() > 0.6, "{:?}", verdict.gap.held.total);
+}
+
+/// Before measuring there are inputs only. A further body on the mass is no other than a heavier mass; friction is seen.
+#[test]
+fn a_plan_says_what_would_be_seen_and_what_could_not_be_told_apart() {
+    let mut world = MemoryWorld::single("Slide.mo", MODEL);
+    let text = recording(&world, ("rub.F", 0.0), 11);
+    let inputs = text.lines().map(|l| l.split(',').take(2).collect::<Vec<_>>().join(",") + "\n").collect::<String>();
+    world.add("train.csv", inputs);
+    world.add("study.toml", STUDY);
+    let mut sources = Sources::default();
+    let study = Study::read(&world, Path::new("study.toml"), &mut sources).value.unwrap();
+    let mut question = planned(&world, &study, None, &mut sources).ok().unwrap();
+    let plan = plan(&mut question.problem, &mut |_| ()).unwrap();
+    let of = |family: &str| plan.hypotheses.iter().position(|h| h.family == family).unwrap();
+    assert!(plan.hypotheses[of("dry_friction")].nats > 8.0);
+    let drift = |i: usize| plan.hypotheses[i].places == ["mass.m"];
+    let same = |p: &&Pair| plan.hypotheses[p.there].family == "extra_mass" && drift(p.instead);
+    assert!(plan.confused.iter().find(same).unwrap().behind < 0.5);
+    assert_eq!(plan.excitations.len(), 5);
+    // at rest nothing that depends on motion shows
+    let seen = |name: &str| plan.excitations.iter().find(|c| c.what == name).unwrap().seen;
+    assert!(seen("hold") < seen("steps"));
 }
 
 #[test]

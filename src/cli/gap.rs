@@ -10,8 +10,9 @@ use crate::diag::{Checked, Code, Diagnostic};
 use crate::gap::diagnose::{Stage, Trouble, search};
 use crate::gap::fixed::corrected;
 use crate::gap::hypotheses::Hypothesis;
+use crate::gap::plan::plan;
 use crate::gap::report::report;
-use crate::gap::study::{Unusable, proposed, question};
+use crate::gap::study::{Unusable, planned, proposed, question};
 use crate::gap::words::words;
 use crate::study::Study;
 
@@ -25,6 +26,7 @@ Examples:
   bramah gap study.toml --data bench/                       the diagnosis
   bramah gap study.toml --data bench/ -o verdict.json
   bramah gap study.toml --data bench/ --write-model fixed.mo --report report.html
+  bramah gap study.toml --plan      before measuring: what the planned inputs would show, and what they could not tell apart
   bramah gap study.toml --list      what the network of the study's model could lack, and where
 
 Exit status: 0 whatever the verdict, 1 the nominal model is wrong, 2 a study, file or column that cannot be used.")]
@@ -47,6 +49,9 @@ pub(super) struct GapArgs {
     /// List every effect at every place where it fits, and stop
     #[arg(long)]
     list: bool,
+    /// Say what the planned experiment would show: train recordings need time and inputs only
+    #[arg(long, conflicts_with_all = ["list", "write_model", "report"])]
+    plan: bool,
 }
 
 pub(super) fn run(args: &GapArgs, messages: &mut Messages) -> Result<Ending, Failure> {
@@ -57,7 +62,26 @@ pub(super) fn run(args: &GapArgs, messages: &mut Messages) -> Result<Ending, Fai
         files::print(&listed(&messages.value(Checked::new(all, warnings))?))?;
         return Ok(Ending::Fine);
     }
-    diagnose(args, &study, messages)
+    if args.plan { weigh_plan(args, &study, messages) } else { diagnose(args, &study, messages) }
+}
+
+fn weigh_plan(args: &GapArgs, study: &Study, messages: &mut Messages) -> Result<Ending, Failure> {
+    let data = args.data.as_deref();
+    let mut question =
+        planned(&DiskWorld, study, data, &mut messages.sources).map_err(|why| unusable(why, messages))?;
+    messages.say(&question.diagnostics);
+    let stages = Stages::new();
+    let found = plan(&mut question.problem, &mut |stage| stages.say(stage));
+    stages.clear();
+    let Some(found) = found else {
+        let text = "the nominal model has no values on the way through the planned recordings";
+        let help = "try `bramah simulate` with these inputs";
+        return Err(Diagnostic::new(Code::BadData, text.to_string()).help(help).into());
+    };
+    messages.remark(found.words().trim_end());
+    let text = serde_json::to_string_pretty(&found).expect("numbers and texts always serialize");
+    write_text(&args.output, &format!("{text}\n"))?;
+    Ok(Ending::Fine)
 }
 
 fn diagnose(args: &GapArgs, study: &Study, messages: &mut Messages) -> Result<Ending, Failure> {
@@ -115,14 +139,19 @@ impl Stages {
     }
 
     fn show(&self, stage: Stage) {
-        let Some(bar) = &self.bar else { return };
-        bar.set_message(match stage {
+        self.say(&match stage {
             Stage::Anchor => "noise, tolerances and disturbances".to_string(),
             Stage::Locate => "places".to_string(),
             Stage::Screen(n) => format!("all hypotheses for effect {n}"),
             Stage::Refine(n) => format!("the best of them for effect {n}"),
             Stage::Held => "held recordings".to_string(),
         });
+    }
+
+    fn say(&self, stage: &str) {
+        if let Some(bar) = &self.bar {
+            bar.set_message(stage.to_string());
+        }
     }
 
     fn clear(&self) {

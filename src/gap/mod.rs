@@ -1,10 +1,11 @@
 //! The gap between model and bench: where it lies, which effect causes it, how far it shrinks.
 //!
 //! [`effects`] reads the effect models, [`circuit`] the places of the nominal model, [`hypotheses`] puts every effect at
-//! every place where it fits, [`shapes`] fits their grids to the recordings, and [`augment`] writes the nominal model with effects attached. [`problem`] makes of it
-//! what the [`filter`] runs over the recordings; [`fit`], [`screen`] and [`locate`] weigh parameters, effects and places
-//! by their [`evidence`]; [`diagnose`] puts all together into a [`verdict`]. [`fixed`] writes the corrected model into one
-//! file, [`report`] the page.
+//! every place where it fits, [`shapes`] fits their grids to the recordings, and [`augment`] writes the nominal model with
+//! effects attached. [`problem`] makes of it what the [`filter`] runs over the recordings; [`fit`], [`screen`] and
+//! [`locate`] weigh parameters, effects and places by their [`evidence`]; [`diagnose`] puts all together into a
+//! [`verdict`]. [`fixed`] writes the corrected model into one file, [`report`] the page. [`plan`] says before measuring
+//! what an experiment would show.
 
 pub mod augment;
 pub mod circuit;
@@ -19,6 +20,7 @@ pub mod held;
 pub mod hypotheses;
 pub mod levels;
 pub mod locate;
+pub mod plan;
 pub mod problem;
 pub mod recording;
 pub mod report;

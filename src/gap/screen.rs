@@ -97,8 +97,8 @@ pub fn variants(h: &Hypothesis, index: usize) -> Vec<Chosen> {
     h.variants().into_iter().map(one).collect()
 }
 
-/// Those that can be attached, and the model with them: where all together cannot, halves are tried.
-fn attachable(problem: &Problem<'_>, before: &[Chosen], chosen: Vec<Chosen>) -> Option<(Vec<Chosen>, Assembled)> {
+/// Those that can be attached beside those `before`, and the model with them: where all together cannot, halves are tried.
+pub fn attachable(problem: &Problem<'_>, before: &[Chosen], chosen: Vec<Chosen>) -> Option<(Vec<Chosen>, Assembled)> {
     let joined = |chosen: &[Chosen]| {
         let all: Vec<Chosen> = before.iter().chain(chosen).cloned().collect();
         let assembled = problem.assembled(&all, &problem.node_sources(), before.len()).ok()?;

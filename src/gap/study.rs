@@ -7,7 +7,7 @@ use super::hypotheses::{self, Free, Hypothesis, Signal};
 use super::problem::{Problem, Tolerance};
 use super::shapes;
 use crate::analysis::{lift::is_root, noise};
-use crate::diag::{Diagnostic, Sources};
+use crate::diag::{Code, Diagnostic, Sources};
 use crate::expr::VarId;
 use crate::flat::{FlatModel, Variability};
 use crate::lower::{Options, lower};
@@ -19,6 +19,9 @@ use std::sync::Arc;
 
 /// Standard deviation assumed for a parameter that the study does not speak of, as part of its value.
 pub const ASSUMED: f64 = 0.05;
+
+/// Noise of a sensor of which the study says no accuracy, as part of its range, before anything was measured.
+const ACCURACY: f64 = 3e-3;
 
 /// A study with its model read.
 pub struct Question<'a> {
@@ -62,41 +65,128 @@ pub fn question<'a>(
     data: Option<&Path>,
     sources: &mut Sources,
 ) -> Result<Question<'a>, Unusable> {
-    let request = study.request();
-    let outcome = crate::sort(world, &request);
-    let Some((flat, _, dae)) = outcome.value else { return Err(Unusable::model(outcome)) };
-    let mut diagnostics = Vec::new();
-    let checked = study.bind(&flat);
-    let Some(bound) = checked.value else { return Err(Unusable::study(checked.diagnostics)) };
-    let checked = bound.load(world, data, Role::Train, sources);
+    let nominal = Nominal::read(world, study)?;
+    let checked = nominal.bound.load(world, data, Role::Train, sources);
     let Some(train) = checked.value else { return Err(Unusable::study(checked.diagnostics)) };
-    diagnostics.extend(checked.diagnostics);
-    let full_scale = full_scales(&bound, &train);
-    let signals = signals(&flat, &bound, &full_scale);
-    let tolerances = tolerances(&flat, &bound, &parameter_values(dae));
-    let offer = offer(world, study, &signals, &free(&tolerances))?;
-    diagnostics.extend(offer.diagnostics);
-    let mut disturbances = hypotheses::hypotheses(&offer.circuit, &offer.sources, &signals, &[]);
-    disturbances.retain(|d| d.attachments.len() == 1);
-    let files = train.iter().map(|r| r.file.clone()).collect();
-    let train: Vec<Recording> = train.into_iter().map(|r| recording(&flat, &bound, r)).collect();
-    let noise_floor = full_scale.iter().enumerate().map(|(i, scale)| floor(&train, i, *scale)).collect();
-    let mut problem = Problem {
-        world,
-        request,
-        folder: offer.folder,
-        circuit: offer.circuit,
-        hypotheses: offer.hypotheses,
-        disturbances,
-        signals,
-        full_scale,
-        noise_floor,
-        tolerances,
-        files,
-        train,
-    };
-    shapes::fit(&mut problem);
-    Ok(Question { problem, bound, flat, diagnostics })
+    nominal.question(world, study, train, checked.diagnostics)
+}
+
+/// The same before anything was measured: train recordings need inputs only, and signals are what the nominal model
+/// shows. Noise is the sensors' accuracy, where the study says none a part of their range.
+///
+/// # Errors
+/// [`Unusable`].
+pub fn planned<'a>(
+    world: &'a dyn World,
+    study: &Study,
+    data: Option<&Path>,
+    sources: &mut Sources,
+) -> Result<Question<'a>, Unusable> {
+    let mut nominal = Nominal::read(world, study)?;
+    let signals = std::mem::take(&mut nominal.bound.signals);
+    let checked = nominal.bound.load(world, data, Role::Train, sources);
+    let Some(train) = checked.value else { return Err(Unusable::study(checked.diagnostics)) };
+    nominal.bound.signals = signals;
+    let train = nominal.shown(world, study, train)?;
+    let mut question = nominal.question(world, study, train, checked.diagnostics)?;
+    let problem = &mut question.problem;
+    let accuracy = |(s, &scale): (&BoundSignal, &f64)| s.deviation(scale).unwrap_or(ACCURACY * scale);
+    let floor = question.bound.signals.iter().zip(&problem.full_scale).map(accuracy);
+    problem.noise_floor = floor.zip(&problem.full_scale).map(|(n, f)| n.max(1e-9 * f.abs())).collect();
+    Ok(question)
+}
+
+/// The nominal model of a study, and the study tied to it.
+struct Nominal {
+    flat: FlatModel,
+    dae: crate::structure::Dae,
+    bound: Bound,
+    request: crate::compile::Request,
+}
+
+impl Nominal {
+    fn read(world: &dyn World, study: &Study) -> Result<Self, Unusable> {
+        let request = study.request();
+        let outcome = crate::sort(world, &request);
+        let Some((flat, _, dae)) = outcome.value else { return Err(Unusable::model(outcome)) };
+        let checked = study.bind(&flat);
+        let Some(bound) = checked.value else { return Err(Unusable::study(checked.diagnostics)) };
+        Ok(Nominal { flat, dae, bound, request })
+    }
+
+    /// Recordings of inputs with what the nominal model shows.
+    fn shown(
+        &self,
+        world: &dyn World,
+        study: &Study,
+        train: Vec<crate::study::Recording>,
+    ) -> Result<Vec<crate::study::Recording>, Unusable> {
+        let signals = signals(&self.flat, &self.bound, &vec![1.0; self.bound.signals.len()]);
+        let offer = offer(world, study, &signals, &[])?;
+        let problem = Problem {
+            world,
+            request: self.request.clone(),
+            folder: None,
+            circuit: offer.circuit,
+            hypotheses: Vec::new(),
+            disturbances: Vec::new(),
+            noise_floor: vec![1.0; signals.len()],
+            full_scale: vec![1.0; signals.len()],
+            signals,
+            tolerances: Vec::new(),
+            files: Vec::new(),
+            train: train.iter().map(|r| recording(&self.flat, &self.bound, r.clone())).collect(),
+        };
+        let Some(values) = problem.observe(&problem.signals) else {
+            let text = "the nominal model does not reach the end of the planned recordings";
+            let help = "try `bramah simulate` with these inputs";
+            return Err(Unusable::study(vec![Diagnostic::new(Code::BadData, text.to_string()).help(help)]));
+        };
+        let mut from = 0;
+        let filled = train.into_iter().map(|mut r| {
+            let range = from..from + r.times.len();
+            from = range.end;
+            r.signals = values.iter().map(|v| v[range.clone()].to_vec()).collect();
+            r
+        });
+        Ok(filled.collect())
+    }
+
+    fn question<'a>(
+        self,
+        world: &'a dyn World,
+        study: &Study,
+        train: Vec<crate::study::Recording>,
+        mut diagnostics: Vec<Diagnostic>,
+    ) -> Result<Question<'a>, Unusable> {
+        let Nominal { flat, dae, bound, request } = self;
+        let full_scale = full_scales(&bound, &train);
+        let signals = signals(&flat, &bound, &full_scale);
+        let tolerances = tolerances(&flat, &bound, &parameter_values(dae));
+        let offer = offer(world, study, &signals, &free(&tolerances))?;
+        diagnostics.extend(offer.diagnostics);
+        let mut disturbances = hypotheses::hypotheses(&offer.circuit, &offer.sources, &signals, &[]);
+        disturbances.retain(|d| d.attachments.len() == 1);
+        let files = train.iter().map(|r| r.file.clone()).collect();
+        let train: Vec<Recording> = train.into_iter().map(|r| recording(&flat, &bound, r)).collect();
+        let noise_floor = full_scale.iter().enumerate().map(|(i, scale)| floor(&train, i, *scale)).collect();
+        let mut problem = Problem {
+            world,
+            request,
+            folder: offer.folder,
+            circuit: offer.circuit,
+            hypotheses: offer.hypotheses,
+            disturbances,
+            signals,
+            full_scale,
+            noise_floor,
+            tolerances,
+            files,
+            train,
+        };
+        shapes::fit(&mut problem);
+        Ok(Question { problem, bound, flat, diagnostics })
+    }
 }
 
 /// All hypotheses that a study leaves in, with warnings; recordings are not read. Sensors without a stated range count

@@ -1,0 +1,363 @@
+//! Before measuring: which effects a planned experiment would show at their usual size, which it could not tell apart, and
+//! which further sensor or other excitation would. The nominal model is driven by the planned inputs, and the columns of
+//! all hypotheses are whitened by the filter as in the screen; how much of one effect's course another one's could take
+//! over follows from their products.
+
+use super::data::Recording;
+use super::filter;
+use super::fit;
+use super::hypotheses::{Hypothesis, Place, Signal};
+use super::problem::{Chosen, Problem};
+use super::screen;
+use nalgebra::{DMatrix, DVector};
+use serde::Serialize;
+use std::collections::BTreeSet;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Nats from which an effect would be named.
+const SEEN: f64 = 8.0;
+/// Two effects nearer than this cannot be told apart, nats.
+const NEAR: f64 = 6.0;
+/// Samples looked at in all; more are counted, not run.
+const SAMPLES: usize = 4000;
+/// Largest size of an effect that might stand in for another, in usual sizes.
+const LARGEST: f64 = 30.0;
+/// How far a data sheet is off where it is wrong: so many tolerances, or this part of the value.
+const WRONG: (f64, f64) = (3.0, 0.3);
+/// Further sensors that are weighed, at most.
+const SENSORS: usize = 8;
+/// Noise of a further sensor as part of its range.
+const NOISE: f64 = 3e-3;
+/// Levels of a staircase and of a sequence of steps.
+const LEVELS: usize = 8;
+
+/// What a planned experiment would show.
+#[derive(Clone, Debug, Serialize)]
+pub struct Plan {
+    /// Version of this form.
+    pub schema: u32,
+    /// Every effect at every place with what it would gain at its usual size.
+    pub hypotheses: Vec<Seen>,
+    /// Pairs that could not be told apart: the first one is there, and the second explains it nearly as well.
+    pub confused: Vec<Pair>,
+    /// Other excitations of the same inputs over the same range and time.
+    pub excitations: Vec<Change>,
+    /// Further sensors, one at a time.
+    pub sensors: Vec<Change>,
+}
+
+/// An effect at its usual size.
+#[derive(Clone, Debug, Serialize)]
+pub struct Seen {
+    /// Its class.
+    pub effect: String,
+    /// Its family.
+    pub family: String,
+    /// Where.
+    pub places: Vec<String>,
+    /// What it would gain, nats.
+    pub nats: f64,
+}
+
+/// Two effects, as numbers into [`Plan::hypotheses`].
+#[derive(Clone, Debug, Serialize)]
+pub struct Pair {
+    /// The one that is there.
+    pub there: usize,
+    /// The one that stands in for it.
+    pub instead: usize,
+    /// How far the second is behind, nats.
+    pub behind: f64,
+}
+
+/// What another excitation or a further sensor would change.
+#[derive(Clone, Debug, Serialize)]
+pub struct Change {
+    /// The excitation, or the variable that the sensor shows.
+    pub what: String,
+    /// Effects that would be seen.
+    pub seen: usize,
+    /// Of the confused pairs, how many it tells apart.
+    pub separates: usize,
+}
+
+/// Weighs the plan, which stands in the problem as simulated train recordings. `None` where the nominal model does not
+/// reach their end.
+pub fn plan(problem: &mut Problem<'_>, progress: &mut dyn FnMut(&str)) -> Option<Plan> {
+    progress("the plan");
+    let planned = Products::new(problem)?;
+    let hypotheses: Vec<Seen> = problem.hypotheses.iter().enumerate().map(|(i, h)| planned.seen(h, i)).collect();
+    let confused = planned.confused();
+    let change = |what: String, products: &Products| Change {
+        what,
+        seen: (0..hypotheses.len()).filter(|&h| products.nats(h) > SEEN).count(),
+        separates: confused.iter().filter(|p| products.behind(p.there, p.instead) > NEAR).count(),
+    };
+    let measured = problem.train.clone();
+    let mut excitations = Vec::new();
+    for (name, course) in EXCITATIONS {
+        progress(name);
+        if excite(problem, &measured[0], course).is_some()
+            && let Some(products) = Products::new(problem)
+        {
+            excitations.push(change(name.to_string(), &products));
+        }
+    }
+    problem.train = measured;
+    let mut sensors = Vec::new();
+    for signal in further(problem) {
+        progress(&signal.variable);
+        if let Some(products) = with_sensor(problem, &signal) {
+            sensors.push(change(signal.variable, &products));
+        }
+    }
+    let order = |all: &mut Vec<Change>| all.sort_by(|a, b| (b.separates, b.seen).cmp(&(a.separates, a.seen)));
+    order(&mut excitations);
+    order(&mut sensors);
+    Some(Plan { schema: 1, hypotheses, confused, excitations, sensors })
+}
+
+/// Products of the whitened columns of all hypotheses, what tolerances can take over taken out.
+struct Products {
+    gram: DMatrix<f64>,
+    /// Per hypothesis its variants: columns, and the size of each coefficient.
+    variants: Vec<Vec<(Range<usize>, Vec<f64>)>>,
+}
+
+impl Products {
+    fn new(problem: &Problem<'_>) -> Option<Self> {
+        let attachable = |h: &Hypothesis| h.family != "parameter" && !h.changes_order && !h.is_shape();
+        let chosen: Vec<Chosen> = (0..problem.hypotheses.len())
+            .filter(|&i| attachable(&problem.hypotheses[i]))
+            .flat_map(|i| screen::variants(&problem.hypotheses[i], i))
+            .collect();
+        let (chosen, assembled) = screen::attachable(problem, &[], chosen)?;
+        let tolerances = problem.tolerances.len();
+        let mut columns: Vec<usize> = assembled.free.clone().collect();
+        let mut variants = vec![Vec::new(); problem.hypotheses.len()];
+        for (places, c) in assembled.attached.iter().zip(&chosen) {
+            let h = &problem.hypotheses[c.hypothesis];
+            let first = columns.len();
+            columns.extend(places.iter().take(h.coefficients.len()));
+            let sizes = h.coefficients.iter().map(|c| c.nominal.abs().max(1e-300)).collect();
+            variants[c.hypothesis].push((first..columns.len(), sizes));
+        }
+        for (i, h) in problem.hypotheses.iter().enumerate() {
+            if let Some(t) = screen::drifting(problem, h) {
+                let size = (WRONG.0 * problem.tolerances[t].sigma).max(WRONG.1 * problem.tolerances[t].nominal.abs());
+                variants[i].push((t..t + 1, vec![size]));
+            }
+        }
+        let levels = fit::first_levels(&assembled, &problem.noise_floor, &problem.train)?;
+        let setting = assembled.setting(&levels, &problem.noise_floor, columns);
+        let all: usize = problem.train.iter().map(Recording::len).sum();
+        let each = (SAMPLES / problem.train.len().max(1)).max(2);
+        let used: usize = problem.train.iter().map(|r| r.len().min(each)).sum();
+        let passes = fit::passes(&setting, &problem.train, each, false)?;
+        let width = setting.columns.len();
+        let gram = passes.iter().fold(DMatrix::zeros(width + 1, width + 1), |sum, p: &filter::Pass| sum + &p.gram);
+        let gram = gram.view((0, 0), (width, width)) * (all as f64 / used.max(1) as f64);
+        let gram = without_tolerances(&gram, tolerances, problem)?;
+        Some(Products { gram, variants })
+    }
+
+    fn seen(&self, h: &Hypothesis, index: usize) -> Seen {
+        let places = h.places().iter().map(|p: &&Place| p.place.clone()).collect();
+        Seen { effect: h.effect.clone(), family: h.family.clone(), places, nats: self.nats(index) }
+    }
+
+    /// Nats that a hypothesis gains at its usual size, in the variant that shows most.
+    fn nats(&self, h: usize) -> f64 {
+        self.variants[h].iter().map(|v| 0.5 * self.square(v)).fold(0.0, f64::max)
+    }
+
+    fn square(&self, (columns, sizes): &(Range<usize>, Vec<f64>)) -> f64 {
+        let own = self.gram.view((columns.start, columns.start), (sizes.len(), sizes.len()));
+        let d = DVector::from_column_slice(sizes);
+        d.dot(&(own * &d)).max(0.0)
+    }
+
+    /// Nats by which the best variant of one effect is behind another that is there at its usual size.
+    fn behind(&self, there: usize, instead: usize) -> f64 {
+        let Some(v) = self.variants[there].iter().max_by(|a, b| self.square(a).total_cmp(&self.square(b))) else {
+            return f64::INFINITY;
+        };
+        let (columns, sizes) = v;
+        let (d, all) = (DVector::from_column_slice(sizes), self.square(v));
+        let taken = |(others, most): &(Range<usize>, Vec<f64>)| {
+            let k = most.len();
+            let cross = self.gram.view((others.start, columns.start), (k, sizes.len())) * &d;
+            let mut own = self.gram.view((others.start, others.start), (k, k)).clone_owned();
+            (0..k).for_each(|i| own[(i, i)] += (LARGEST * most[i]).powi(-2));
+            own.cholesky().map_or(0.0, |f| cross.dot(&f.solve(&cross)))
+        };
+        let best = self.variants[instead].iter().map(taken).fold(0.0, f64::max);
+        if best > 0.0 { 0.5 * (all - best).max(0.0) } else { f64::INFINITY }
+    }
+
+    /// All pairs of effects of which the first would be seen and the second explains it nearly as well.
+    fn confused(&self) -> Vec<Pair> {
+        let count = self.variants.len();
+        let mut found = Vec::new();
+        for there in (0..count).filter(|&h| self.nats(h) > SEEN) {
+            for instead in (0..count).filter(|&h| h != there) {
+                let behind = self.behind(there, instead);
+                if behind < NEAR {
+                    found.push(Pair { there, instead, behind });
+                }
+            }
+        }
+        found.sort_by(|a, b| a.behind.total_cmp(&b.behind));
+        found
+    }
+}
+
+/// Takes out of all columns what the tolerances, each within its own, explain: G - C (T + 1/s^2)^-1 C'.
+fn without_tolerances(gram: &DMatrix<f64>, count: usize, problem: &Problem<'_>) -> Option<DMatrix<f64>> {
+    let mut own = gram.view((0, 0), (count, count)).clone_owned();
+    problem.tolerances.iter().enumerate().for_each(|(i, t)| own[(i, i)] += t.sigma.powi(-2));
+    let scale = DVector::from_fn(count, |i, _| own[(i, i)].sqrt().recip());
+    let scaled = DMatrix::from_fn(count, count, |i, j| scale[i] * own[(i, j)] * scale[j]);
+    let cross = DMatrix::from_fn(count, gram.ncols(), |i, j| scale[i] * gram[(i, j)]);
+    let solved = scaled.cholesky()?.solve(&cross);
+    Some(gram - cross.tr_mul(&solved))
+}
+
+/// A course over the time from 0 to 1, with values from 0 to 1.
+type Course = fn(f64) -> f64;
+
+const EXCITATIONS: [(&str, Course); 5] =
+    [("steps", steps), ("slow triangle", triangle), ("chirp", chirp), ("staircase", staircase), ("hold", |_| 0.75)];
+
+/// Levels in an order that makes steps of all sizes.
+fn steps(t: f64) -> f64 {
+    let order = [0.5, 1.0, 0.25, 0.75, 0.0, 0.6, 0.1, 0.9];
+    order[((t * 2.0 * LEVELS as f64) as usize) % LEVELS]
+}
+
+fn triangle(t: f64) -> f64 {
+    1.0 - (2.0 * t - 1.0).abs()
+}
+
+/// From two periods in the whole time up to eighty times as fast.
+fn chirp(t: f64) -> f64 {
+    let ratio: f64 = 80.0;
+    0.5 + 0.5 * (std::f64::consts::TAU * 2.0 * (ratio.powf(t) - 1.0) / ratio.ln()).sin()
+}
+
+fn staircase(t: f64) -> f64 {
+    (triangle(t) * LEVELS as f64).floor() / LEVELS as f64
+}
+
+/// Drives the inputs that the plan moves with another course over the same range, alone.
+fn excite(problem: &mut Problem<'_>, planned: &Recording, course: Course) -> Option<()> {
+    let (t0, count) = (planned.times[0], planned.len());
+    let span = planned.times[count - 1] - t0;
+    let drive = |samples: &Arc<[f64]>| -> Arc<[f64]> {
+        let (low, high) = samples.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &x| (l.min(x), h.max(x)));
+        if high > low {
+            planned.times.iter().map(|t| low + (high - low) * course((t - t0) / span)).collect()
+        } else {
+            samples.clone()
+        }
+    };
+    let inputs = planned.inputs.iter().map(drive).collect();
+    problem.train = vec![Recording { inputs, ..planned.clone() }];
+    simulate(problem)
+}
+
+/// Puts what the nominal model shows into the train recordings.
+pub fn simulate(problem: &mut Problem<'_>) -> Option<()> {
+    let shown = problem.observe(&problem.signals)?;
+    let mut from = 0;
+    for r in &mut problem.train {
+        let range = from..from + r.times.len();
+        from = range.end;
+        r.signals = shown.iter().map(|s| Arc::from(&s[range.clone()])).collect();
+    }
+    Some(())
+}
+
+/// Potentials that nothing measures yet, one a node.
+fn further(problem: &Problem<'_>) -> Vec<Signal> {
+    let measured: BTreeSet<&str> = problem.signals.iter().map(|s| s.variable.as_str()).collect();
+    let mut found = Vec::new();
+    for node in problem.circuit.nodes.iter().filter(|n| !n.fixed) {
+        let names = node.ports.iter().map(|&p| {
+            let port = &problem.circuit.ports[p];
+            format!("{}.{}", port.name, port.potential.name)
+        });
+        let names: Vec<String> = names.collect();
+        if let Some(first) = names.first()
+            && !names.iter().any(|n| measured.contains(n.as_str()))
+        {
+            found.push(Signal { name: first.clone(), variable: first.clone(), scale: 1.0 });
+        }
+    }
+    let values = problem.observe(&found).unwrap_or_default();
+    let mut moving: Vec<Signal> = Vec::new();
+    let mut courses: Vec<Vec<f64>> = problem.observe(&problem.signals).unwrap_or_default();
+    for (signal, course) in found.into_iter().zip(values) {
+        let (low, high) = course.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &x| (l.min(x), h.max(x)));
+        let alike = |other: &Vec<f64>| other.iter().zip(&course).all(|(a, b)| (a - b).abs() <= 1e-6 * (high - low));
+        if high > low && !courses.iter().any(alike) {
+            moving.push(Signal { scale: high - low, ..signal });
+            courses.push(course);
+        }
+    }
+    moving.truncate(SENSORS);
+    moving
+}
+
+fn with_sensor(problem: &mut Problem<'_>, signal: &Signal) -> Option<Products> {
+    problem.signals.push(signal.clone());
+    problem.noise_floor.push(NOISE * signal.scale);
+    problem.full_scale.push(signal.scale);
+    let products = simulate(problem).and_then(|()| Products::new(problem));
+    problem.signals.pop();
+    problem.noise_floor.pop();
+    problem.full_scale.pop();
+    simulate(problem)?;
+    products
+}
+
+impl Plan {
+    /// The plan in words, for people.
+    pub fn words(&self) -> String {
+        let seen = self.hypotheses.iter().filter(|h| h.nats > SEEN).count();
+        let name = |i: usize| {
+            let h = &self.hypotheses[i];
+            format!("{} at {}", h.effect, h.places.join(" + "))
+        };
+        let mut text = format!(
+            "Of {} effects {seen} would be seen at their usual size. {} pairs could not be told apart{}\n",
+            self.hypotheses.len(),
+            self.confused.len(),
+            if self.confused.is_empty() { "." } else { ":" },
+        );
+        for p in self.confused.iter().take(SHOWN) {
+            text.push_str(&format!(
+                "  {}, if it is there, or {} ({:.1} nats behind)\n",
+                name(p.there),
+                name(p.instead),
+                p.behind
+            ));
+        }
+        if self.confused.len() > SHOWN {
+            text.push_str(&format!("  and {} more\n", self.confused.len() - SHOWN));
+        }
+        for (what, changes) in [("excitation", &self.excitations), ("further sensor", &self.sensors)] {
+            for c in changes {
+                text.push_str(&format!(
+                    "{what} {}: tells {} of them apart, shows {} effects\n",
+                    c.what, c.separates, c.seen
+                ));
+            }
+        }
+        text
+    }
+}
+
+/// Pairs that are shown in words.
+const SHOWN: usize = 12;
