@@ -11,7 +11,7 @@ use super::held;
 use super::locate::{self, Located};
 use super::problem::{Assembled, Chosen, Problem};
 use super::recording::{self, Gross};
-use super::screen::{self, Accepted};
+use super::screen::{self, Accepted, Candidate};
 use super::verdict::Verdict;
 use conclusion::Conclusion;
 use refine::{Refined, fitted, promising, siblings, values};
@@ -191,7 +191,7 @@ fn why(problem: &Problem<'_>, model: &Assembled, noise: &[f64]) -> Trouble {
 }
 
 impl Search {
-    /// Looks for one more effect; true when one was accepted.
+    /// Looks for one more effect; true when one was accepted and another may follow.
     fn step(&mut self, problem: &Problem<'_>, progress: &mut dyn FnMut(Stage)) -> bool {
         let number = self.accepted.len() + 1;
         progress(Stage::Screen(number));
@@ -200,9 +200,17 @@ impl Search {
             let seen = candidates.iter().filter(|c| c.visible > ACCEPTED).count();
             self.visible = seen as f64 / candidates.len().max(1) as f64;
         }
+        progress(Stage::Refine(number));
+        let refined = self.ranked(problem, candidates);
+        let trials: Vec<Trial> = refined.iter().map(|r| self.trial(number, r)).collect();
+        self.trials.extend(trials);
+        self.decide(problem, refined)
+    }
+
+    /// The promising candidates, refined; best first.
+    fn ranked(&mut self, problem: &Problem<'_>, candidates: Vec<Candidate>) -> Vec<Refined> {
         let (mut chosen, rest) = promising(problem, candidates);
         chosen.extend(self.unseen(problem, &chosen));
-        progress(Stage::Refine(number));
         let mut refined = self.refined(problem, &chosen);
         if let Some(front) = refined.first() {
             let others = siblings(problem, &rest, front);
@@ -214,8 +222,11 @@ impl Search {
         if let Some(front) = refined.first() {
             self.relevel(problem, &front.fit);
         }
-        let trials: Vec<Trial> = refined.iter().map(|r| self.trial(number, r)).collect();
-        self.trials.extend(trials);
+        refined
+    }
+
+    /// Accepts the best effect if it is convincing; true when another may follow.
+    fn decide(&mut self, problem: &Problem<'_>, refined: Vec<Refined>) -> bool {
         let (shapes, mut refined): (Vec<Refined>, Vec<Refined>) =
             refined.into_iter().partition(|r| r.is_shape(problem));
         if let Some(shape) = shapes.into_iter().find(|s| self.nothing_known(problem, s, refined.first())) {
@@ -231,19 +242,7 @@ impl Search {
             return false;
         }
         let best = refined.remove(simplest(problem, &refined));
-        let gain = self.gain(&best.fit);
-        let t = vuong(&best.fit.blocks, &self.last.blocks);
-        let count = problem.tolerances.len();
-        let returned = self.last.prior_cost(count) - best.fit.prior_cost(count);
-        let h = &problem.hypotheses[best.accepted.chosen.hypothesis];
-        // a parameter that is let go always returns from its bound, and acts at all times; a second effect at the place of
-        // another may mend that one's form only
-        let site = |a: &Accepted| &problem.hypotheses[a.chosen.hypothesis].attachments[0].site;
-        let again = self.accepted.iter().any(|a| site(a) == &h.attachments[0].site);
-        let always = h.family == "parameter" || again;
-        let seldom = !always && (returned > 0.5 * gain || rare(&best.fit, &self.last, gain));
-        let consistent = t > CONSISTENT || seldom;
-        if gain < ACCEPTED || !consistent {
+        if !self.convinces(problem, &best) {
             return false;
         }
         let near = |r: &&Refined| {
@@ -256,8 +255,24 @@ impl Search {
             .filter(near)
             .map(|r| (r.accepted.chosen.clone(), best.fit.evidence - r.fit.evidence))
             .collect();
-        self.accept(best, Found { gain, t, alternatives });
+        let found = Found { gain: self.gain(&best.fit), t: vuong(&best.fit.blocks, &self.last.blocks), alternatives };
+        self.accept(best, found);
         true
+    }
+
+    /// Whether an effect gains enough, and in most blocks, or where it acts.
+    fn convinces(&self, problem: &Problem<'_>, best: &Refined) -> bool {
+        let gain = self.gain(&best.fit);
+        let count = problem.tolerances.len();
+        let returned = self.last.prior_cost(count) - best.fit.prior_cost(count);
+        let h = &problem.hypotheses[best.accepted.chosen.hypothesis];
+        // a parameter that is let go always returns from its bound, and acts at all times; a second effect at the place of
+        // another may mend that one's form only
+        let site = |a: &Accepted| &problem.hypotheses[a.chosen.hypothesis].attachments[0].site;
+        let again = self.accepted.iter().any(|a| site(a) == &h.attachments[0].site);
+        let always = h.family == "parameter" || again;
+        let seldom = !always && (returned > 0.5 * gain || rare(&best.fit, &self.last, gain));
+        gain >= ACCEPTED && (vuong(&best.fit.blocks, &self.last.blocks) > CONSISTENT || seldom)
     }
 
     fn accept(&mut self, best: Refined, found: Found) {

@@ -112,7 +112,7 @@ pub fn plan(problem: &mut Problem<'_>, progress: &mut dyn FnMut(&str)) -> Option
             sensors.push(change(signal.variable, &products));
         }
     }
-    let order = |all: &mut Vec<Change>| all.sort_by(|a, b| (b.separates, b.seen).cmp(&(a.separates, a.seen)));
+    let order = |all: &mut Vec<Change>| all.sort_by_key(|c| std::cmp::Reverse((c.separates, c.seen)));
     order(&mut excitations);
     order(&mut sensors);
     Some(Plan { schema: 1, hypotheses, confused, excitations, sensors })
