@@ -223,6 +223,36 @@ fn derivatives_of_runs_agree_with_differences() {
     });
 }
 
+/// An unstable motion under feedback: one run over the whole recording leaves it, pieces that find their own start do not.
+#[test]
+fn pieces_of_an_unstable_recording() {
+    let model =
+        "model Rod parameter Real a(min = 0) = 2, k(min = 0) = 1; input Real u; Real x(start = 0, fixed = true);
+        equation der(x) = a*x + k*u; end Rod;";
+    let (mut dice, mut x, mut text) = (Dice(3), 0.3f64, "time,u,x\n".to_owned());
+    for i in 0..1000 {
+        let t = 0.01 * f64::from(i);
+        let u = -2.2 * x + 0.5 * (0.9 * t).sin() + if i / 60 % 2 == 0 { -0.3 } else { 0.3 };
+        text.push_str(&format!("{t},{u},{}\n", x + 0.02 * dice.roll()));
+        let growth = 0.03f64.exp();
+        x = x * growth + 2.0 * u * (growth - 1.0) / 3.0;
+    }
+    let pieces: String =
+        (0..10).map(|i| format!("[[recordings]]\nfile = \"a.csv\"\nwindow = [{i}, {i}.99]\n")).collect();
+    let study = format!(
+        "version = 1\nmodel = \"m.mo\"\n[inputs]\nu = {{ hold = true }}\n[signals]\nx = {{}}\n{pieces}\
+         [parameters]\na = {{ min = 0.1 }}\nk = {{ min = 0.1 }}\n"
+    );
+    let world = world(model, &study, text.clone(), text);
+    with_fit(&world, Method::Output, |_, _, fit| {
+        assert!(fit.converged && fit.differences.is_none());
+        for (j, truth) in [3.0, 2.0].into_iter().enumerate() {
+            let (value, std) = (fit.values[j], fit.deviations[j]);
+            assert!((value - truth).abs() < 3.0 * std && std < 0.01 * truth, "{j}: {value} +- {std}");
+        }
+    });
+}
+
 /// A sampled value that depends on a parameter is left to differences, which is said.
 #[test]
 fn sampled_models_are_fitted_by_differences() {
