@@ -6,7 +6,8 @@ mod lost;
 mod refine;
 
 use super::data::Recording;
-use super::fit::{self, Fit, vuong};
+use super::filter::Setting;
+use super::fit::{self, Fit, Prior, vuong};
 use super::held;
 use super::locate::{self, Located};
 use super::problem::{Assembled, Chosen, Problem};
@@ -14,6 +15,7 @@ use super::recording::{self, Gross};
 use super::screen::{self, Accepted, Candidate};
 use super::verdict::Verdict;
 use conclusion::Conclusion;
+use rayon::prelude::*;
 use refine::{Refined, fitted, promising, siblings, values};
 
 /// Effects that are looked for one after another, at most.
@@ -161,23 +163,40 @@ pub fn search(problem: &Problem<'_>, progress: &mut dyn FnMut(Stage)) -> Result<
     Ok(search)
 }
 
-/// The nominal model fitted within its tolerances.
+/// The nominal model fitted within its tolerances, from its own parameters and from those that bring it nearest to the
+/// recordings by the inputs alone: strong sources may hold it where the first ones led.
 fn anchor(problem: &Problem<'_>, noise: &[f64]) -> Result<(Fit, Assembled), Trouble> {
     let model = problem.assemble(&[], &problem.node_sources()).map_err(Trouble::Model)?;
-    let diverges = || Trouble::Diverges(0.0, "the model has no values on the way".into());
     let levels = fit::first_levels(&model, noise, &problem.train).ok_or_else(|| why(problem, &model, noise))?;
     let priors = fit::tolerance_priors(problem);
-    let settled = |rounds: usize, growth: f64| {
-        let mut setting = model.setting(&levels, noise, Vec::new());
+    let nominal = model.setting(&levels, noise, Vec::new());
+    let mut silent = model.setting(&[], &problem.full_scale, Vec::new());
+    silent.sources.clear();
+    let near = driven::fitted(problem, silent, &priors).map(|f| {
+        let mut setting = nominal.clone();
+        setting.theta[model.free.clone()].copy_from_slice(&f.setting.theta[model.free.clone()]);
+        setting
+    });
+    let starts: Vec<Setting> = std::iter::once(nominal).chain(near).collect();
+    let fits: Vec<Fit> = starts.into_par_iter().filter_map(|s| settled(problem, s, &priors)).collect();
+    let share = fits.iter().map(|f| f.share).fold(0.0, f64::max);
+    let best = fits.into_iter().map(|f| f.at_share(share)).max_by(|a, b| a.evidence.total_cmp(&b.evidence));
+    let diverges = || Trouble::Diverges(0.0, "the model has no values on the way".into());
+    Ok((fit::polish(best.ok_or_else(diverges)?, &problem.train, None), model))
+}
+
+/// Levels and parameters from those in the setting.
+fn settled(problem: &Problem<'_>, from: Setting, priors: &[Prior]) -> Option<Fit> {
+    let in_rounds = |rounds: usize, growth: f64| {
+        let mut setting = from.clone();
         fit::adjust_slowly(&mut setting, &problem.train, rounds, growth)?;
-        fit::fit(setting, &priors, &problem.train, None, fit::ITERATIONS)
+        fit::fit(setting, priors, &problem.train, None, fit::ITERATIONS)
     };
-    let first = match settled(1, f64::INFINITY) {
-        Some(first) if first.misfit() < BROKEN => first,
+    match in_rounds(1, f64::INFINITY) {
+        Some(first) if first.misfit() < BROKEN => Some(first),
         // levels that were found far from where they lead are found step by step
-        broken => settled(SETTLING, GROWTH).or(broken).ok_or_else(diverges)?,
-    };
-    Ok((fit::polish(first, &problem.train, None), model))
+        broken => in_rounds(SETTLING, GROWTH).or(broken),
+    }
 }
 
 fn why(problem: &Problem<'_>, model: &Assembled, noise: &[f64]) -> Trouble {

@@ -32,6 +32,9 @@ const FINEST: u32 = 2;
 const DEEPEST: u32 = 5;
 /// Parts for each sample on the average, beyond which no part is halved any more.
 const MOST_PARTS: usize = 8;
+/// Iterations of the first update at most, and the part of the states' sizes below which they have settled.
+const FIRST: usize = 10;
+const SETTLED: f64 = 1e-6;
 /// A corrected state counts as out of the model's reach when its rates differ by so many sizes of the states over a step
 /// from what was expected.
 const STRANGE: f64 = 10.0;
@@ -376,8 +379,9 @@ impl<'a> Filter<'a> {
         }
         let before = self.z.clone();
         self.safe.copy_from(&before);
-        let (here, innovation, output) = self.update(k);
-        let mut correction = &self.z - &before;
+        let point = if k == 0 { self.first_point(t) } else { before };
+        let (here, innovation, output) = self.update(k, &point);
+        let mut correction = &self.z - &point;
         if (k + 1) * BLOCKS / samples > k * BLOCKS / samples {
             self.close_block();
         }
@@ -394,31 +398,79 @@ impl<'a> Filter<'a> {
         Ok(())
     }
 
+    /// Where the model is linearised for the first sample: little is known of the state before, and outputs may bend on the
+    /// way to what the sample says (flow over a root of pressure), so the update is iterated (Bell, Cathey, The iterated
+    /// Kalman filter update as a Gauss-Newton method, 1993). The state itself stays the predicted one.
+    fn first_point(&mut self, t: f64) -> DVector<f64> {
+        let prior = self.z.clone();
+        let mut point = prior.clone();
+        for _ in 0..FIRST {
+            let Some(next) = self.estimate(&prior, &point) else { break };
+            self.z.copy_from(&next);
+            self.load();
+            if self.local.linearize(t, &self.x, &self.theta, &self.u).is_err() {
+                self.z.copy_from(&point);
+                self.load();
+                // it had values there before
+                let _ = self.local.linearize(t, &self.x, &self.theta, &self.u);
+                break;
+            }
+            let moved = (&next - &point).amax();
+            point = next;
+            if moved < SETTLED {
+                break;
+            }
+        }
+        self.z = prior;
+        point
+    }
+
+    /// The state that the first sample leads to, with the model linearised at `point`; sources stay where they are.
+    fn estimate(&self, prior: &DVector<f64>, point: &DVector<f64>) -> Option<DVector<f64>> {
+        let signals = &self.recording.signals;
+        let here: Vec<usize> = (0..signals.len()).filter(|&i| signals[i][0].is_finite()).collect();
+        let c = self.output(&here);
+        let left = DVector::from_fn(here.len(), |row, _| signals[here[row]][0] - self.local.outputs[here[row]])
+            - &c * (prior - point);
+        let noise = |row: usize| self.setting.noise[here[row]].powi(2);
+        let mut known = self.p.clone();
+        (self.active.len()..self.z.len()).for_each(|j| known.column_mut(j).fill(0.0));
+        let cp = &c * known;
+        let mut variance = &cp * c.transpose();
+        (0..here.len()).for_each(|row| variance[(row, row)] += noise(row));
+        let next = prior + cp.transpose() * variance.lu().solve(&left)?;
+        next.iter().all(|v| v.is_finite()).then_some(next)
+    }
+
+    /// d y / d z of the signals named.
+    fn output(&self, here: &[usize]) -> DMatrix<f64> {
+        let (n, linear) = (self.active.len(), &self.local.linear);
+        DMatrix::from_fn(here.len(), self.z.len(), |row, j| {
+            let slope = match self.active.get(j) {
+                Some(&x) => linear.c[(here[row], x)],
+                None => linear.d[(here[row], self.setting.sources[j - n].parameter)],
+            };
+            slope * self.scale[j]
+        })
+    }
+
     /// The measurement, one signal after the other (their noises are independent): innovations whitened, state,
-    /// covariance and columns corrected.
-    fn update(&mut self, k: usize) -> (Vec<usize>, DVector<f64>, DMatrix<f64>) {
-        let n = self.active.len();
+    /// covariance and columns corrected. The model is linearised at `point`.
+    fn update(&mut self, k: usize, point: &DVector<f64>) -> (Vec<usize>, DVector<f64>, DMatrix<f64>) {
         let (nz, width) = (self.z.len(), self.setting.columns.len());
-        let linear = &self.local.linear;
         let signals = &self.recording.signals;
         let here: Vec<usize> = (0..signals.len()).filter(|&i| signals[i][k].is_finite()).collect();
         let q = here.len();
         let innovation = DVector::from_fn(q, |row, _| signals[here[row]][k] - self.local.outputs[here[row]]);
-        let mut c = DMatrix::zeros(q, nz);
-        let before = self.z.clone();
+        let c = self.output(&here);
+        let linear = &self.local.linear;
         let mut pc = DVector::zeros(nz);
         let mut e = vec![0.0; width];
         for (row, &i) in here.iter().enumerate() {
-            for (j, &x) in self.active.iter().enumerate() {
-                c[(row, j)] = linear.c[(i, x)] * self.scale[j];
-            }
-            for (j, source) in self.setting.sources.iter().enumerate() {
-                c[(row, n + j)] = linear.d[(i, source.parameter)] * self.scale[n + j];
-            }
             let direction = c.row(row).transpose();
             pc.gemv(1.0, &self.p, &direction, 0.0);
             let variance = direction.dot(&pc) + self.setting.noise[i] * self.setting.noise[i];
-            let left = innovation[row] - direction.dot(&(&self.z - &before));
+            let left = innovation[row] - direction.dot(&(&self.z - point));
             if !(variance > 0.0 && left.is_finite()) {
                 continue;
             }

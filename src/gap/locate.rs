@@ -15,6 +15,11 @@ const GAIN: f64 = 4.0;
 /// Strengths tried, in units of what one sample shows.
 const STRENGTHS: [f64; 2] = [1.0, 12.0];
 
+/// Part of their levels at which slow sources do nothing; and how much worse a filter with them is that has gone astray,
+/// nats.
+const QUIET: f64 = 1e-6;
+const ASTRAY: f64 = 1e3;
+
 /// A place and the evidence for something missing there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Located {
@@ -29,13 +34,26 @@ pub fn locate(problem: &Problem<'_>, base: &Fit, accepted: &[Accepted]) -> Vec<L
     let chosen: Vec<_> = accepted.iter().map(|a| a.chosen.clone()).collect();
     let all: Vec<usize> = (0..problem.disturbances.len()).collect();
     let Ok(assembled) = problem.assemble(&chosen, &all) else { return Vec::new() };
-    let Some(setting) = setting(problem, base, &assembled, accepted) else { return Vec::new() };
-    let Some(passes) = fit::passes(&setting, &problem.train, SAMPLES, true) else { return Vec::new() };
-    let tapes: Vec<&[filter::Step]> = passes.iter().map(|p| &p.tape[..]).collect();
+    let Some(loud) = setting(problem, base, &assembled, accepted) else { return Vec::new() };
     let fast = base.setting.sources.len();
+    let Some(loudly) = fit::passes(&loud, &problem.train, SAMPLES, true) else { return Vec::new() };
+    let whole = |passes: &[filter::Pass]| passes.iter().map(|p| p.likelihood).sum::<f64>();
+    // linearised where the slow sources lead; where they lead astray, where the model without them goes
+    let mut quiet = loud.clone();
+    quiet.sources[fast..].iter_mut().for_each(|s| s.level *= QUIET);
+    let quietly = fit::passes(&quiet, &problem.train, SAMPLES, true);
+    let (passes, setting, louder) = match quietly {
+        Some(quietly) if whole(&loudly) < whole(&quietly) - ASTRAY => (quietly, quiet, 1.0 / QUIET),
+        _ => (loudly, loud, 1.0),
+    };
+    let tapes: Vec<&[filter::Step]> = passes.iter().map(|p| &p.tape[..]).collect();
     let mut factors = vec![1.0; fast];
     factors.resize(setting.sources.len(), 1e-6);
-    let value = |factors: &[f64]| tapes.iter().map(|t| levels::likelihood(&setting, t, factors)).sum::<f64>();
+    let value = |factors: &[f64]| {
+        let scaled = |(i, f): (usize, &f64)| if i < fast { *f } else { f * louder };
+        let scaled: Vec<f64> = factors.iter().enumerate().map(scaled).collect();
+        tapes.iter().map(|t| levels::likelihood(&setting, t, &scaled)).sum::<f64>()
+    };
     let mut best = value(&factors);
     let mut found = Vec::new();
     for _ in 0..3 {

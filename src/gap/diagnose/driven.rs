@@ -2,13 +2,32 @@
 //! the colour of a disturbance. The model's errors are taken as autoregressive noise (Box, Jenkins, Time Series
 //! Analysis, 1970, ch. 7).
 
-use super::super::fit::Fit;
+use super::super::filter::Setting;
+use super::super::fit::{self, Fit, Prior};
 use super::super::held;
 use super::super::problem::Problem;
 use super::refine::Refined;
 
 /// Order of the autoregression.
 const ORDER: usize = 12;
+/// Turns of parameters and noise.
+const TURNS: usize = 3;
+
+/// A model fitted by what it says from the inputs alone; its sources must be silent. All its errors count as noise.
+pub(super) fn fitted(problem: &Problem<'_>, mut setting: Setting, priors: &[Prior]) -> Option<Fit> {
+    let mut best = None;
+    for _ in 0..TURNS {
+        let found = fit::fit(setting, priors, &problem.train, None, fit::ITERATIONS)?;
+        setting = found.setting.clone();
+        for (i, noise) in setting.noise.iter_mut().enumerate() {
+            let (sum, count) =
+                found.white.iter().fold((0.0, 0), |(s, n), w| (s + w.column(i).norm_squared(), n + w.nrows()));
+            *noise *= (sum / count.max(1) as f64).sqrt().max(1e-6);
+        }
+        best = Some(found);
+    }
+    best
+}
 
 /// Nats that a refined candidate gains by the course that the inputs alone bring about, over the model before and over
 /// itself without the effect: the lesser of both.

@@ -5,13 +5,13 @@
 
 use super::super::data::Recording;
 use super::super::filter::Setting;
-use super::super::fit::{self, Fit, Prior, vuong};
+use super::super::fit::{Fit, Prior, vuong};
 use super::super::held;
 use super::super::hypotheses::{Hypothesis, Site};
 use super::super::problem::{Assembled, Problem};
 use super::super::screen::{self, Accepted, Candidate};
 use super::refine::{Refined, WHOLE, bounded, ready, share};
-use super::{ACCEPTED, CONSISTENT, Found, Search};
+use super::{ACCEPTED, CONSISTENT, Found, Search, driven};
 use rayon::prelude::*;
 
 /// An effect is lost when the filter says that it is so much worse than the model without it, nats.
@@ -20,8 +20,6 @@ const LOST: f64 = 50.0;
 const CLOSING: f64 = 0.5;
 /// Level of sources, relative, at which they do nothing.
 const NOTHING: f64 = 1e-6;
-/// Turns of parameters and noise.
-const TURNS: usize = 3;
 
 impl Search {
     /// Effects of sensors that the screen cannot see from where they are not, and with which as a whole the nominal model
@@ -65,22 +63,28 @@ impl Search {
             output_error(problem, &self.last, &all)
         };
         let alone = |r: &Refined| weighed(std::slice::from_ref(&r.accepted));
-        // what it must beat: the model as it is, and the best effect that the filter can follow
-        let mut rivals = vec![weighed(&[])?];
-        rivals.extend(refined.iter().find(|r| !lost(r)).and_then(alone));
         let (index, (fit, assembled)) = places
             .into_iter()
             .filter_map(|i| Some((i, alone(&refined[i])?)))
             .max_by(|a, b| a.1.0.likelihood.total_cmp(&b.1.0.likelihood))?;
-        let share = rivals.iter().map(|r| &r.0).chain([&fit]).map(Fit::own_share).fold(0.0, f64::max);
+        // what it must beat: the model as it is, from its own parameters and from those found with the effect, and the best
+        // effect that the filter can follow
+        let mut rivals = vec![weighed(&[])?.0, without(problem, &refined[index], &fit, &assembled)?];
+        rivals.extend(refined.iter().find(|r| !lost(r)).and_then(alone).map(|r| r.0));
+        let share = rivals.iter().chain([&fit]).map(Fit::own_share).fold(0.0, f64::max);
         let fit = fit.at_share(share);
-        let over = |(rival, _): (Fit, Assembled)| {
+        let over = |rival: Fit| {
             let rival = rival.at_share(share);
             (fit.evidence - rival.evidence, vuong(&fit.blocks, &rival.blocks))
         };
         let over: Vec<(f64, f64)> = rivals.into_iter().map(over).collect();
-        let beaten = over.iter().all(|(gain, t)| *gain > ACCEPTED && *t > CONSISTENT);
-        let found = Found { gain: over[0].0, t: over[0].1, alternatives: Vec::new() };
+        // and it must be the effect that closes the gap, not the parameters found with it
+        let off = switched_off(problem, &refined[index], &fit, &assembled)?;
+        let closes =
+            self.gap_of(problem, &fit.setting, &problem.train) < CLOSING * self.gap_of(problem, &off, &problem.train);
+        let beaten = closes && over.iter().all(|(gain, t)| *gain > ACCEPTED && *t > CONSISTENT);
+        let least = |of: fn(&(f64, f64)) -> f64| over.iter().map(of).fold(f64::INFINITY, f64::min);
+        let found = Found { gain: least(|o| o.0), t: least(|o| o.1), alternatives: Vec::new() };
         beaten.then(|| (Refined::new(problem, refined[index].accepted.clone(), assembled, fit), found))
     }
 
@@ -127,17 +131,23 @@ fn output_error(problem: &Problem<'_>, from: &Fit, accepted: &[Accepted]) -> Opt
     let levels: Vec<f64> = from.setting.sources.iter().map(|s| s.level * NOTHING).collect();
     // where the errors are not known yet, they are as large as the signals
     let noise: Vec<f64> = problem.full_scale.iter().zip(&from.setting.noise).map(|(f, n)| f.max(*n)).collect();
-    let mut setting = assembled.setting(&levels, &noise, Vec::new());
-    let mut best = None;
-    for _ in 0..TURNS {
-        let fitted = fit::fit(setting.clone(), &priors, &problem.train, None, fit::ITERATIONS)?;
-        setting = fitted.setting.clone();
-        for (i, noise) in setting.noise.iter_mut().enumerate() {
-            let (sum, count) =
-                fitted.white.iter().fold((0.0, 0), |(s, n), w| (s + w.column(i).norm_squared(), n + w.nrows()));
-            *noise *= (sum / count.max(1) as f64).sqrt().max(1e-6);
-        }
-        best = Some(fitted);
-    }
-    best.map(|fit| (fit, assembled))
+    let setting = assembled.setting(&levels, &noise, Vec::new());
+    Some((driven::fitted(problem, setting, &priors)?, assembled))
+}
+
+/// The same fit where the effect is off again, from the parameters found with it.
+fn without(problem: &Problem<'_>, r: &Refined, fit: &Fit, assembled: &Assembled) -> Option<Fit> {
+    let own = assembled.attached.last()?;
+    let setting = switched_off(problem, r, fit, assembled)?;
+    let priors: Vec<Prior> = fit.priors.iter().filter(|p| !own.contains(&p.parameter)).cloned().collect();
+    driven::fitted(problem, setting, &priors)
+}
+
+/// A fit with its last effect at the off value.
+fn switched_off(problem: &Problem<'_>, r: &Refined, fit: &Fit, assembled: &Assembled) -> Option<Setting> {
+    let mut setting = fit.setting.clone();
+    let h = &problem.hypotheses[r.accepted.chosen.hypothesis];
+    let places = assembled.attached.last()?.iter();
+    places.zip(&h.coefficients).for_each(|(&place, c)| setting.theta[place] = c.off);
+    Some(setting)
 }
