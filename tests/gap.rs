@@ -289,3 +289,62 @@ fn the_corrected_model_stands_alone_and_so_does_the_page() {
         assert!(page.contains(part), "{part}");
     }
 }
+
+/// The flow of a vessel that was full when the recording began, while the model begins nearly empty: the flow goes with
+/// the root of the level.
+#[test]
+fn a_start_far_from_the_models_is_found_through_an_output_that_bends() {
+    let model = "
+        model Vessel
+          parameter Real h_0(unit = \"m\") = 1e-3;
+          parameter Real c(unit = \"m2.5/s\") = 0.3;
+          input Real u(unit = \"m3/s\");
+          Real h(unit = \"m\", start = h_0, fixed = true, nominal = 1);
+          Real q(unit = \"m3/s\", nominal = 1);
+        equation
+          q = c*h/(h*h + 1e-8)^0.25;
+          der(h) = u - q;
+        end Vessel;";
+    let mut world = MemoryWorld::single("Vessel.mo", model);
+    let recorded = |seed: u64| {
+        let request = Request { source: "Vessel.mo".into(), model: Some("Vessel".into()), ..Request::default() };
+        let mut vessel = Simulation::compile(&world, &request).unwrap();
+        vessel.set("h_0", 1.5).unwrap();
+        let mut random = Normal(seed);
+        let times: Vec<f64> = (0..400).map(|k| f64::from(k) * 0.05).collect();
+        let u: Vec<f64> = (0..400).map(|k| if k / 80 % 2 == 0 { 0.2 } else { 0.4 }).collect();
+        vessel.input("u", &times, &u, Interpolation::Held).unwrap();
+        vessel.stop_time(times[399]);
+        let settings = vessel.settings();
+        (settings.interval, settings.event_rows) = (0.05, false);
+        let run = vessel.run().unwrap().trajectory;
+        let (h, q) = (run.column("h").unwrap(), run.column("q").unwrap());
+        let mut text = String::from("t,u,h,q\n");
+        for k in 0..400 {
+            let (dh, dq) = (1e-2 * random.next(), 1e-4 * random.next());
+            writeln!(text, "{},{},{},{}", times[k], u[k], h[k] + dh, q[k] + dq).unwrap();
+        }
+        text
+    };
+    let (train, held) = (recorded(3), recorded(4));
+    world.add("train.csv", train);
+    world.add("held.csv", held);
+    let study = "version = 1\nmodel = \"Vessel.mo\"\nclass = \"Vessel\"\n\
+        [inputs]\nu = { column = \"u\", unit = \"m3/s\", hold = true }\n\
+        [signals]\nh = { variable = \"h\", column = \"h\", unit = \"m\", full_scale = \"2 m\" }\n\
+        q = { variable = \"q\", column = \"q\", unit = \"m3/s\", full_scale = \"1 m3/s\" }\n\
+        [[recordings]]\nfile = \"train.csv\"\nrole = \"train\"\ntime = \"t\"\n\
+        [[recordings]]\nfile = \"held.csv\"\nrole = \"held\"\ntime = \"t\"\n\
+        [parameters]\n\"c\" = { sigma = \"2 %\" }\n";
+    world.add("study.toml", study);
+    let mut sources = Sources::default();
+    let study = Study::read(&world, Path::new("study.toml"), &mut sources).value.unwrap();
+    let question = question(&world, &study, None, &mut sources).ok().unwrap();
+    let found = search(&question.problem, &mut |_| ()).ok().unwrap();
+    let held = question.held(None, &mut sources).unwrap();
+    let verdict = found.verdict(&question.problem, &held, 0.0);
+    assert!(verdict.effects.is_empty(), "{:?}", verdict.effects);
+    let left = verdict.gap.held.total.tolerances.unwrap();
+    // the noise of the level is 5e-3 of its range, and the square of the gap is known to a tenth of its square
+    assert!(left < 3e-3, "{left}");
+}

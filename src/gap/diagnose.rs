@@ -437,7 +437,7 @@ impl Search {
     }
 
     /// The model as the study gives it.
-    pub fn nominal(&self, problem: &Problem<'_>) -> super::filter::Setting {
+    pub fn nominal(&self, problem: &Problem<'_>) -> Setting {
         Conclusion { problem, search: self }.nominal()
     }
 
