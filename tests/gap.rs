@@ -139,11 +139,10 @@ fn recording(world: &MemoryWorld, friction: (&str, f64), seed: u64) -> String {
 fn diagnosed(friction: (&str, f64), held_seed: u64) -> Verdict {
     let world = MemoryWorld::single("Slide.mo", MODEL);
     let (train, held) = (recording(&world, friction, 11), recording(&world, friction, held_seed));
-    verdict(STUDY, train, held)
+    verdict(world, STUDY, train, held)
 }
 
-fn verdict(study: &str, train: String, held: String) -> Verdict {
-    let mut world = MemoryWorld::single("Slide.mo", MODEL);
+fn verdict(mut world: MemoryWorld, study: &str, train: String, held: String) -> Verdict {
     world.add("train.csv", train);
     world.add("held.csv", held);
     world.add("study.toml", study);
@@ -210,7 +209,8 @@ fn a_rectifying_sensor_is_named_although_the_filter_loses_it() {
         text.lines().map(magnitude).collect::<String>()
     };
     let study = STUDY.replace("s = { variable = \"mass.s\", column = \"s\", unit = \"m\" }\n", "");
-    let verdict = verdict(&study, rectified(11), rectified(12));
+    let (train, held) = (rectified(11), rectified(12));
+    let verdict = verdict(world, &study, train, held);
     assert_eq!(verdict.verdict, "effects");
     assert_eq!(verdict.effects[0].family, "sensor_rectification", "{:?}", verdict.effects);
     assert!(verdict.closed_by_effects.unwrap() > 0.6, "{:?}", verdict.gap.held.total);
@@ -305,7 +305,7 @@ fn a_start_far_from_the_models_is_found_through_an_output_that_bends() {
           q = c*h/(h*h + 1e-8)^0.25;
           der(h) = u - q;
         end Vessel;";
-    let mut world = MemoryWorld::single("Vessel.mo", model);
+    let world = MemoryWorld::single("Vessel.mo", model);
     let recorded = |seed: u64| {
         let request = Request { source: "Vessel.mo".into(), model: Some("Vessel".into()), ..Request::default() };
         let mut vessel = Simulation::compile(&world, &request).unwrap();
@@ -327,8 +327,6 @@ fn a_start_far_from_the_models_is_found_through_an_output_that_bends() {
         text
     };
     let (train, held) = (recorded(3), recorded(4));
-    world.add("train.csv", train);
-    world.add("held.csv", held);
     let study = "version = 1\nmodel = \"Vessel.mo\"\nclass = \"Vessel\"\n\
         [inputs]\nu = { column = \"u\", unit = \"m3/s\", hold = true }\n\
         [signals]\nh = { variable = \"h\", column = \"h\", unit = \"m\", full_scale = \"2 m\" }\n\
@@ -336,13 +334,7 @@ fn a_start_far_from_the_models_is_found_through_an_output_that_bends() {
         [[recordings]]\nfile = \"train.csv\"\nrole = \"train\"\ntime = \"t\"\n\
         [[recordings]]\nfile = \"held.csv\"\nrole = \"held\"\ntime = \"t\"\n\
         [parameters]\n\"c\" = { sigma = \"2 %\" }\n";
-    world.add("study.toml", study);
-    let mut sources = Sources::default();
-    let study = Study::read(&world, Path::new("study.toml"), &mut sources).value.unwrap();
-    let question = question(&world, &study, None, &mut sources).ok().unwrap();
-    let found = search(&question.problem, &mut |_| ()).ok().unwrap();
-    let held = question.held(None, &mut sources).unwrap();
-    let verdict = found.verdict(&question.problem, &held, 0.0);
+    let verdict = verdict(world, study, train, held);
     assert!(verdict.effects.is_empty(), "{:?}", verdict.effects);
     let left = verdict.gap.held.total.tolerances.unwrap();
     // the noise of the level is 5e-3 of its range, and the square of the gap is known to a tenth of its square

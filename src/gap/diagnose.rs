@@ -16,7 +16,7 @@ use super::screen::{self, Accepted, Candidate};
 use super::verdict::Verdict;
 use conclusion::Conclusion;
 use rayon::prelude::*;
-use refine::{Refined, fitted, promising, siblings, values};
+use refine::{Refined, best_first, fitted, promising, siblings, values};
 
 /// Effects that are looked for one after another, at most.
 const MOST_EFFECTS: usize = 4;
@@ -33,7 +33,7 @@ const SETTLING: usize = 5;
 /// Factor by which they grow in one of them.
 const GROWTH: f64 = 30.0;
 /// Gain that an effect must have to be accepted, nats.
-const ACCEPTED: f64 = 8.0;
+pub(super) const ACCEPTED: f64 = 8.0;
 /// Vuong statistic that it must have.
 const CONSISTENT: f64 = 2.0;
 /// Gain from which an effect may be one that acts rarely, nats; and how much more it must win than lose.
@@ -44,7 +44,7 @@ const CLOSES: f64 = 0.07;
 /// Candidates this near are equally good: the simpler one stands first, nats.
 const AS_GOOD: f64 = 2.0;
 /// Alternatives this near cannot be told apart, nats.
-const NEAR: f64 = 6.0;
+pub(super) const NEAR: f64 = 6.0;
 /// Nor those this near that no block prefers clearly.
 const NEAR_IF_INCONSISTENT: f64 = 15.0;
 /// Vuong statistic below which an alternative is worse for certain.
@@ -234,10 +234,10 @@ impl Search {
         if let Some(front) = refined.first() {
             let others = siblings(problem, &rest, front);
             refined.extend(self.refined(problem, &others));
-            refined.sort_by(|a, b| b.fit.evidence.total_cmp(&a.fit.evidence));
+            best_first(&mut refined);
         }
         self.sharpen(problem, &mut refined);
-        refined.sort_by(|a, b| b.fit.evidence.total_cmp(&a.fit.evidence));
+        best_first(&mut refined);
         if let Some(front) = refined.first() {
             self.relevel(problem, &front.fit);
         }
@@ -344,7 +344,7 @@ impl Search {
                 with = alone;
             }
         }
-        let gap = |f: &Fit| simulated(problem, f, &with.setting.noise).total;
+        let gap = |f: &Fit| held::gap_of(problem, &f.setting, &problem.train, &with.setting.noise).total;
         let before = gap(&self.last);
         let closes = if before > 0.0 { 1.0 - (gap(&with) / before).powi(2) } else { 0.0 };
         self.shape = Some(Shaped { hypothesis, gain, closes });
@@ -365,7 +365,7 @@ impl Search {
     fn prune(&mut self, problem: &Problem<'_>) {
         while !self.accepted.is_empty() {
             let noise = self.last.setting.noise.clone();
-            let gap = |f: &Fit| simulated(problem, f, &noise);
+            let gap = |f: &Fit| held::gap_of(problem, &f.setting, &problem.train, &noise);
             let full = gap(&self.last);
             let closable = gap(&self.base).beyond(&full);
             let without = |i: usize| {
@@ -389,11 +389,6 @@ impl Search {
             }
         }
     }
-}
-
-/// Gap of a fit on the train recordings, simulated from the inputs alone.
-fn simulated(problem: &Problem<'_>, f: &Fit, noise: &[f64]) -> held::Gap {
-    held::gap(&held::simulate_all(&f.setting, &problem.train), &problem.train, noise, &problem.full_scale)
 }
 
 /// An effect that acts in few blocks gains much there and loses next to nothing elsewhere; the mean over all blocks

@@ -76,6 +76,13 @@ pub struct Setting {
     pub cuts: Vec<Vec<bool>>,
 }
 
+impl Setting {
+    /// The sources' levels.
+    pub fn levels(&self) -> Vec<f64> {
+        self.sources.iter().map(|s| s.level).collect()
+    }
+}
+
 /// What a pass over one recording gave.
 #[derive(Clone, Debug)]
 pub struct Pass {

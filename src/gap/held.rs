@@ -2,6 +2,7 @@
 
 use super::data::Recording;
 use super::filter::{self, Setting};
+use super::problem::Problem;
 use super::step::Exponential;
 use crate::analysis::local::Local;
 use nalgebra::DVector;
@@ -150,6 +151,11 @@ pub fn gap(runs: &[Option<Residuals>], recordings: &[Recording], noise: &[f64], 
         (0..noise.len()).map(|i| signal_gap(runs, recordings, i, noise[i], full_scale[i])).collect();
     let total = rms(&signals);
     Gap { error: standard_error(runs, recordings, full_scale, total), total, signals }
+}
+
+/// The gap of a model on these recordings.
+pub fn gap_of(problem: &Problem<'_>, setting: &Setting, recordings: &[Recording], noise: &[f64]) -> Gap {
+    gap(&simulate_all(setting, recordings), recordings, noise, &problem.full_scale)
 }
 
 /// Standard error of the total from the spread of the mean squares of blocks.

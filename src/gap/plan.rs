@@ -4,6 +4,7 @@
 //! over follows from their products.
 
 use super::data::Recording;
+use super::diagnose::{ACCEPTED, NEAR};
 use super::filter;
 use super::fit;
 use super::hypotheses::{Hypothesis, Place, Signal};
@@ -15,16 +16,8 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Nats from which an effect would be named.
-const SEEN: f64 = 8.0;
-/// Two effects nearer than this cannot be told apart, nats.
-const NEAR: f64 = 6.0;
 /// Samples looked at in all; more are counted, not run.
 const SAMPLES: usize = 4000;
-/// Largest size of an effect that might stand in for another, in usual sizes.
-const LARGEST: f64 = 30.0;
-/// How far a data sheet is off where it is wrong: so many tolerances, or this part of the value.
-const WRONG: (f64, f64) = (3.0, 0.3);
 /// Further sensors that are weighed, at most.
 const SENSORS: usize = 8;
 /// Noise of a further sensor as part of its range.
@@ -91,7 +84,7 @@ pub fn plan(problem: &mut Problem<'_>, progress: &mut dyn FnMut(&str)) -> Option
     let confused = planned.confused();
     let change = |what: String, products: &Products| Change {
         what,
-        seen: (0..hypotheses.len()).filter(|&h| products.nats(h) > SEEN).count(),
+        seen: (0..hypotheses.len()).filter(|&h| products.nats(h) > ACCEPTED).count(),
         separates: confused.iter().filter(|p| products.behind(p.there, p.instead) > NEAR).count(),
     };
     let measured = problem.train.clone();
@@ -145,8 +138,7 @@ impl Products {
         }
         for (i, h) in problem.hypotheses.iter().enumerate() {
             if let Some(t) = screen::drifting(problem, h) {
-                let size = (WRONG.0 * problem.tolerances[t].sigma).max(WRONG.1 * problem.tolerances[t].nominal.abs());
-                variants[i].push((t..t + 1, vec![size]));
+                variants[i].push((t..t + 1, vec![screen::wrong_sheet(&problem.tolerances[t])]));
             }
         }
         let levels = fit::first_levels(&assembled, &problem.noise_floor, &problem.train)?;
@@ -189,7 +181,7 @@ impl Products {
             let k = most.len();
             let cross = self.gram.view((others.start, columns.start), (k, sizes.len())) * &d;
             let mut own = self.gram.view((others.start, others.start), (k, k)).clone_owned();
-            (0..k).for_each(|i| own[(i, i)] += (LARGEST * most[i]).powi(-2));
+            (0..k).for_each(|i| own[(i, i)] += (screen::LARGEST * most[i]).powi(-2));
             own.cholesky().map_or(0.0, |f| cross.dot(&f.solve(&cross)))
         };
         let best = self.variants[instead].iter().map(taken).fold(0.0, f64::max);
@@ -200,7 +192,7 @@ impl Products {
     fn confused(&self) -> Vec<Pair> {
         let count = self.variants.len();
         let mut found = Vec::new();
-        for there in (0..count).filter(|&h| self.nats(h) > SEEN) {
+        for there in (0..count).filter(|&h| self.nats(h) > ACCEPTED) {
             for instead in (0..count).filter(|&h| h != there) {
                 let behind = self.behind(there, instead);
                 if behind < NEAR {
@@ -255,7 +247,7 @@ fn excite(problem: &mut Problem<'_>, planned: &Recording, course: Course) -> Opt
     let (t0, count) = (planned.times[0], planned.len());
     let span = planned.times[count - 1] - t0;
     let drive = |samples: &Arc<[f64]>| -> Arc<[f64]> {
-        let (low, high) = samples.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &x| (l.min(x), h.max(x)));
+        let (low, high) = ends(samples);
         if high > low {
             planned.times.iter().map(|t| low + (high - low) * course((t - t0) / span)).collect()
         } else {
@@ -264,19 +256,12 @@ fn excite(problem: &mut Problem<'_>, planned: &Recording, course: Course) -> Opt
     };
     let inputs = planned.inputs.iter().map(drive).collect();
     problem.train = vec![Recording { inputs, ..planned.clone() }];
-    simulate(problem)
+    problem.show()
 }
 
-/// Puts what the nominal model shows into the train recordings.
-pub fn simulate(problem: &mut Problem<'_>) -> Option<()> {
-    let shown = problem.observe(&problem.signals)?;
-    let mut from = 0;
-    for r in &mut problem.train {
-        let range = from..from + r.times.len();
-        from = range.end;
-        r.signals = shown.iter().map(|s| Arc::from(&s[range.clone()])).collect();
-    }
-    Some(())
+/// Least and greatest of some values.
+fn ends(values: &[f64]) -> (f64, f64) {
+    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)))
 }
 
 /// Potentials that nothing measures yet, one a node.
@@ -299,7 +284,7 @@ fn further(problem: &Problem<'_>) -> Vec<Signal> {
     let mut moving: Vec<Signal> = Vec::new();
     let mut courses: Vec<Vec<f64>> = problem.observe(&problem.signals).unwrap_or_default();
     for (signal, course) in found.into_iter().zip(values) {
-        let (low, high) = course.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &x| (l.min(x), h.max(x)));
+        let (low, high) = ends(&course);
         let alike = |other: &Vec<f64>| other.iter().zip(&course).all(|(a, b)| (a - b).abs() <= 1e-6 * (high - low));
         if high > low && !courses.iter().any(alike) {
             moving.push(Signal { scale: high - low, ..signal });
@@ -314,18 +299,18 @@ fn with_sensor(problem: &mut Problem<'_>, signal: &Signal) -> Option<Products> {
     problem.signals.push(signal.clone());
     problem.noise_floor.push(NOISE * signal.scale);
     problem.full_scale.push(signal.scale);
-    let products = simulate(problem).and_then(|()| Products::new(problem));
+    let products = problem.show().and_then(|()| Products::new(problem));
     problem.signals.pop();
     problem.noise_floor.pop();
     problem.full_scale.pop();
-    simulate(problem)?;
+    problem.show()?;
     products
 }
 
 impl Plan {
     /// The plan in words, for people.
     pub fn words(&self) -> String {
-        let seen = self.hypotheses.iter().filter(|h| h.nats > SEEN).count();
+        let seen = self.hypotheses.iter().filter(|h| h.nats > ACCEPTED).count();
         let name = |i: usize| {
             let h = &self.hypotheses[i];
             format!("{} at {}", h.effect, h.places.join(" + "))

@@ -157,6 +157,18 @@ impl Problem<'_> {
         self.lifted(flat, augmented, &counts)
     }
 
+    /// Puts what the nominal model says of the signals into the train recordings; `None` where it does not reach the end.
+    pub fn show(&mut self) -> Option<()> {
+        let shown = self.observe(&self.signals)?;
+        let mut from = 0;
+        for r in &mut self.train {
+            let range = from..from + r.times.len();
+            from = range.end;
+            r.signals = shown.iter().map(|s| Arc::from(&s[range.clone()])).collect();
+        }
+        Some(())
+    }
+
     /// What the nominal model says of further variables over all train recordings, one after the other, from its own
     /// start; `None` where it does not reach the end.
     pub fn observe(&self, variables: &[Signal]) -> Option<Vec<Vec<f64>>> {

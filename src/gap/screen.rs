@@ -6,7 +6,7 @@ use super::evidence;
 use super::filter;
 use super::fit::{self, Fit, Prior};
 use super::hypotheses::Hypothesis;
-use super::problem::{Assembled, Chosen, Problem};
+use super::problem::{Assembled, Chosen, Problem, Tolerance};
 use nalgebra::DMatrix;
 use std::ops::Range;
 
@@ -15,7 +15,7 @@ const BACKGROUNDS: [f64; 2] = [1.0, 0.1];
 /// Samples over which a joint model is tried.
 const BEGINNING: usize = 2;
 /// Typical sizes that a coefficient may have at most, as prior deviation.
-const LARGEST: f64 = 30.0;
+pub const LARGEST: f64 = 30.0;
 
 /// A hypothesis with its evidence in the linear model.
 #[derive(Clone, Debug)]
@@ -302,7 +302,7 @@ impl<'a> Joint<'a> {
         let others: Vec<usize> = base.iter().copied().filter(|&i| i != index).collect();
         let other_sigmas: Vec<f64> = others.iter().map(|&i| sigmas[i]).collect();
         let info = evidence::new_information(gram, index, &others, &other_sigmas);
-        let broad = (3.0 * t.sigma).max(WRONG_SHEET * t.nominal.abs());
+        let broad = wrong_sheet(t);
         let mut wide = sigmas.to_vec();
         wide[index] = broad;
         let found = evidence::explain(gram, base, means, &wide)?;
@@ -325,6 +325,11 @@ pub fn shape_prior(s: &Shape, value: f64) -> Prior {
         min: (0.1 * value).min(10.0 * value).max(s.min.unwrap_or(f64::NEG_INFINITY)),
         max: (0.1 * value).max(10.0 * value).min(s.max.unwrap_or(f64::INFINITY)),
     }
+}
+
+/// How far a data sheet is off where it is wrong.
+pub fn wrong_sheet(t: &Tolerance) -> f64 {
+    (3.0 * t.sigma).max(WRONG_SHEET * t.nominal.abs())
 }
 
 /// Nats that the choice among the variants of a hypothesis costs.

@@ -66,9 +66,8 @@ pub fn question<'a>(
     sources: &mut Sources,
 ) -> Result<Question<'a>, Unusable> {
     let nominal = Nominal::read(world, study)?;
-    let checked = nominal.bound.load(world, data, Role::Train, sources);
-    let Some(train) = checked.value else { return Err(Unusable::study(checked.diagnostics)) };
-    nominal.question(world, study, train, checked.diagnostics)
+    let (train, warnings) = nominal.train(world, data, sources)?;
+    nominal.question(world, study, train, warnings)
 }
 
 /// The same before anything was measured: train recordings need inputs only, and signals are what the nominal model
@@ -84,11 +83,10 @@ pub fn planned<'a>(
 ) -> Result<Question<'a>, Unusable> {
     let mut nominal = Nominal::read(world, study)?;
     let signals = std::mem::take(&mut nominal.bound.signals);
-    let checked = nominal.bound.load(world, data, Role::Train, sources);
-    let Some(train) = checked.value else { return Err(Unusable::study(checked.diagnostics)) };
+    let (train, warnings) = nominal.train(world, data, sources)?;
     nominal.bound.signals = signals;
     let train = nominal.shown(world, study, train)?;
-    let mut question = nominal.question(world, study, train, checked.diagnostics)?;
+    let mut question = nominal.question(world, study, train, warnings)?;
     let problem = &mut question.problem;
     let accuracy = |(s, &scale): (&BoundSignal, &f64)| s.deviation(scale).unwrap_or(ACCURACY * scale);
     let floor = question.bound.signals.iter().zip(&problem.full_scale).map(accuracy);
@@ -114,16 +112,30 @@ impl Nominal {
         Ok(Nominal { flat, dae, bound, request })
     }
 
+    /// The train recordings, with warnings.
+    fn train(
+        &self,
+        world: &dyn World,
+        data: Option<&Path>,
+        sources: &mut Sources,
+    ) -> Result<(Vec<crate::study::Recording>, Vec<Diagnostic>), Unusable> {
+        let checked = self.bound.load(world, data, Role::Train, sources);
+        match checked.value {
+            Some(train) => Ok((train, checked.diagnostics)),
+            None => Err(Unusable::study(checked.diagnostics)),
+        }
+    }
+
     /// Recordings of inputs with what the nominal model shows.
     fn shown(
         &self,
         world: &dyn World,
         study: &Study,
-        train: Vec<crate::study::Recording>,
+        mut train: Vec<crate::study::Recording>,
     ) -> Result<Vec<crate::study::Recording>, Unusable> {
         let signals = signals(&self.flat, &self.bound, &vec![1.0; self.bound.signals.len()]);
         let offer = offer(world, study, &signals, &[])?;
-        let problem = Problem {
+        let mut problem = Problem {
             world,
             request: self.request.clone(),
             folder: None,
@@ -137,19 +149,15 @@ impl Nominal {
             files: Vec::new(),
             train: train.iter().map(|r| recording(&self.flat, &self.bound, r.clone())).collect(),
         };
-        let Some(values) = problem.observe(&problem.signals) else {
+        if problem.show().is_none() {
             let text = "the nominal model does not reach the end of the planned recordings";
             let help = "try `bramah simulate` with these inputs";
             return Err(Unusable::study(vec![Diagnostic::new(Code::BadData, text.to_string()).help(help)]));
-        };
-        let mut from = 0;
-        let filled = train.into_iter().map(|mut r| {
-            let range = from..from + r.times.len();
-            from = range.end;
-            r.signals = values.iter().map(|v| v[range.clone()].to_vec()).collect();
-            r
-        });
-        Ok(filled.collect())
+        }
+        for (own, shown) in train.iter_mut().zip(&problem.train) {
+            own.signals = shown.signals.iter().map(|s| s.to_vec()).collect();
+        }
+        Ok(train)
     }
 
     fn question<'a>(

@@ -5,6 +5,7 @@
 //! parameter could have taken. Sources: H. D. Patterson, R. Thompson, Biometrika 58 (1971) 545; the order by G. Schwarz,
 //! Annals of Statistics 6 (1978) 461; degrees of freedom by F. E. Satterthwaite, Biometrics Bulletin 2 (1946) 110.
 
+use super::super::autoregression::{self, longer};
 use super::least_squares::Minimum;
 use super::quasi_newton::{bend, descend, slopes};
 use super::weights::{Series, Weights};
@@ -25,6 +26,8 @@ pub struct Spread {
 const ORDER: usize = 12;
 /// Errors below this part of their deviation are no errors: exact data.
 const NOTHING: f64 = 1e-12;
+/// Largest partial autocorrelation with which a model begins.
+const NEARLY_ONE: f64 = 0.98;
 /// Step of the differences over the models' parameters, which are of the order of 1.
 const STEP: f64 = 1e-3;
 
@@ -211,36 +214,21 @@ impl Signal {
 /// deviation. `None` for errors that are none.
 fn chosen(errors: &[&[f64]], most: usize) -> Option<Vec<f64>> {
     let rows: usize = errors.iter().map(|e| e.len()).sum();
-    let product = |lag: usize| {
-        let one = |e: &&[f64]| e.iter().zip(e.iter().skip(lag)).map(|(a, b)| a * b).sum::<f64>();
-        errors.iter().map(one).sum::<f64>() / rows as f64
-    };
-    let correlations: Vec<f64> = (0..=most).map(product).collect();
-    let mut power = correlations[0];
+    let (power, orders) = autoregression::orders(errors, most, NEARLY_ONE);
     if power.is_nan() || power <= NOTHING {
         return None;
     }
     let criterion = |power: f64, order: usize| rows as f64 * power.ln() + order as f64 * (rows as f64).ln();
-    let (mut partial, mut coefficients) = (Vec::new(), Vec::new());
+    let mut partial = Vec::new();
     let mut best = (criterion(power, 0), vec![0.5 * power.ln()]);
-    for order in 1..=most {
-        let told: f64 = coefficients.iter().enumerate().map(|(i, a)| a * correlations[order - 1 - i]).sum();
-        let next = ((correlations[order] - told) / power).clamp(-0.98, 0.98);
-        coefficients = longer(&coefficients, next);
-        power *= 1.0 - next * next;
-        partial.push(next.atanh());
-        let now = criterion(power, order);
+    for (before, o) in orders.iter().enumerate() {
+        partial.push(o.partial.atanh());
+        let now = criterion(o.power, before + 1);
         if now < best.0 {
-            best = (now, partial.iter().copied().chain([0.5 * power.ln()]).collect());
+            best = (now, partial.iter().copied().chain([0.5 * o.power.ln()]).collect());
         }
     }
     Some(best.1)
-}
-
-/// The coefficients of the next order, with its partial autocorrelation.
-fn longer(coefficients: &[f64], partial: f64) -> Vec<f64> {
-    let old = coefficients.iter().zip(coefficients.iter().rev());
-    old.map(|(a, b)| a - partial * b).chain([partial]).collect()
 }
 
 /// Makes errors of a model white.

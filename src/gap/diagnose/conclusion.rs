@@ -118,8 +118,7 @@ impl Conclusion<'_> {
     }
 
     fn gap(&self, setting: &Setting, recordings: &[Recording]) -> Gap {
-        let runs = held::simulate_all(setting, recordings);
-        held::gap(&runs, recordings, &self.search.last.setting.noise, &self.problem.full_scale)
+        held::gap_of(self.problem, setting, recordings, &self.search.last.setting.noise)
     }
 
     fn by_signal(&self, values: &[f64]) -> BTreeMap<String, f64> {

@@ -6,7 +6,8 @@ use super::super::filter::Setting;
 use super::super::fit::{self, Fit, Prior};
 use super::super::held;
 use super::super::problem::Problem;
-use super::refine::Refined;
+use super::refine::{Refined, switched_off};
+use crate::analysis::autoregression;
 
 /// Order of the autoregression.
 const ORDER: usize = 12;
@@ -32,18 +33,14 @@ pub(super) fn fitted(problem: &Problem<'_>, mut setting: Setting, priors: &[Prio
 /// Nats that a refined candidate gains by the course that the inputs alone bring about, over the model before and over
 /// itself without the effect: the lesser of both.
 pub(super) fn gain(problem: &Problem<'_>, refined: &Refined, before: &Fit) -> Option<f64> {
-    let h = &problem.hypotheses[refined.accepted.chosen.hypothesis];
-    let mut without = refined.fit.clone();
-    for (&place, c) in refined.assembled.attached.last()?.iter().zip(&h.coefficients) {
-        without.setting.theta[place] = c.off;
-    }
-    let own = likelihood(problem, &refined.fit)?;
-    Some(own - likelihood(problem, before)?.max(likelihood(problem, &without)?))
+    let without = switched_off(problem, &refined.accepted, &refined.assembled, &refined.fit);
+    let own = likelihood(problem, &refined.fit.setting)?;
+    Some(own - likelihood(problem, &before.setting)?.max(likelihood(problem, &without)?))
 }
 
 /// Log likelihood of the train recordings by the course that the inputs alone bring about, nats.
-fn likelihood(problem: &Problem<'_>, fit: &Fit) -> Option<f64> {
-    let runs = held::simulate_all(&fit.setting, &problem.train);
+fn likelihood(problem: &Problem<'_>, setting: &Setting) -> Option<f64> {
+    let runs = held::simulate_all(setting, &problem.train);
     let mut sum = 0.0;
     for signal in 0..problem.signals.len() {
         let errors = problem.train.iter().zip(&runs).map(|(r, run)| {
@@ -53,32 +50,11 @@ fn likelihood(problem: &Problem<'_>, fit: &Fit) -> Option<f64> {
         });
         let errors: Vec<Vec<f64>> = errors.collect::<Option<_>>()?;
         let count: usize = errors.iter().map(Vec::len).sum();
-        let variance = innovation(&errors);
+        let (power, orders) = autoregression::orders(&errors, ORDER, 1.0);
+        let variance = orders.last().map_or(power, |o| o.power);
         if count > 10 * ORDER && variance > 0.0 {
             sum -= 0.5 * count as f64 * variance.ln();
         }
     }
     Some(sum)
-}
-
-/// Variance of the innovations of an autoregression (Levinson and Durbin).
-fn innovation(series: &[Vec<f64>]) -> f64 {
-    let lagged = |k: usize| -> f64 {
-        series.iter().map(|s| s.iter().zip(s.iter().skip(k)).map(|(a, b)| a * b).sum::<f64>()).sum()
-    };
-    let count: usize = series.iter().map(Vec::len).sum();
-    let c: Vec<f64> = (0..=ORDER).map(|k| lagged(k) / count.max(1) as f64).collect();
-    let mut a: Vec<f64> = Vec::new();
-    let mut variance = c[0];
-    for k in 1..=ORDER {
-        if variance <= 0.0 {
-            break;
-        }
-        let reflection = (c[k] - a.iter().enumerate().map(|(i, a)| a * c[k - 1 - i]).sum::<f64>()) / variance;
-        let before = a.clone();
-        a.iter_mut().zip(before.iter().rev()).for_each(|(a, b)| *a -= reflection * b);
-        a.push(reflection);
-        variance *= 1.0 - reflection * reflection;
-    }
-    variance
 }

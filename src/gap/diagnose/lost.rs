@@ -4,13 +4,14 @@
 //! error; Ljung, System Identification, 1999, ch. 7), with the model's errors as noise of the sensors.
 
 use super::super::data::Recording;
+use super::super::effects::Coefficient;
 use super::super::filter::Setting;
 use super::super::fit::{Fit, Prior, vuong};
 use super::super::held;
 use super::super::hypotheses::{Hypothesis, Site};
 use super::super::problem::{Assembled, Problem};
 use super::super::screen::{self, Accepted, Candidate};
-use super::refine::{Refined, WHOLE, bounded, ready, share};
+use super::refine::{Refined, bounded, make_whole, ready, share, switched_off};
 use super::{ACCEPTED, CONSISTENT, Found, Search, driven};
 use rayon::prelude::*;
 
@@ -79,7 +80,7 @@ impl Search {
         };
         let over: Vec<(f64, f64)> = rivals.into_iter().map(over).collect();
         // and it must be the effect that closes the gap, not the parameters found with it
-        let off = switched_off(problem, &refined[index], &fit, &assembled)?;
+        let off = switched_off(problem, &refined[index].accepted, &assembled, &fit);
         let closes =
             self.gap_of(problem, &fit.setting, &problem.train) < CLOSING * self.gap_of(problem, &off, &problem.train);
         let beaten = closes && over.iter().all(|(gain, t)| *gain > ACCEPTED && *t > CONSISTENT);
@@ -98,22 +99,29 @@ impl Search {
     }
 
     fn gap_of(&self, problem: &Problem<'_>, setting: &Setting, recordings: &[Recording]) -> f64 {
-        let runs = held::simulate_all(setting, recordings);
-        held::gap(&runs, recordings, &self.last.setting.noise, &problem.full_scale).total
+        held::gap_of(problem, setting, recordings, &self.last.setting.noise).total
     }
 }
 
 /// An effect as a whole, with the first of its shapes.
 fn whole(h: &Hypothesis, index: usize) -> Option<Candidate> {
-    let mut chosen = screen::variants(h, index).into_iter().next()?;
-    let mut priors = Vec::new();
-    for (value, c) in chosen.values.iter_mut().zip(&h.coefficients) {
-        *value = share(c)?;
-        priors.push(Prior { parameter: 0, mean: *value, sigma: WHOLE * *value, min: 0.5 * *value, max: *value });
+    if !h.coefficients.iter().all(|c| share(c).is_some()) {
+        return None;
     }
+    let chosen = screen::variants(h, index).into_iter().next()?;
+    let coefficient = |c: &Coefficient| Prior {
+        parameter: 0,
+        mean: c.off,
+        sigma: c.nominal.abs(),
+        min: c.min.unwrap_or(f64::NEG_INFINITY),
+        max: c.max.unwrap_or(f64::INFINITY),
+    };
+    let mut priors: Vec<Prior> = h.coefficients.iter().map(coefficient).collect();
     let shapes = h.shapes.iter().zip(&chosen.values[h.coefficients.len()..]);
     priors.extend(shapes.map(|(s, &value)| screen::shape_prior(s, value)));
-    Some(Candidate { chosen, gain: 0.0, priors, visible: 0.0 })
+    let mut candidate = Candidate { chosen, gain: 0.0, priors, visible: 0.0 };
+    make_whole(h, &mut candidate);
+    Some(candidate)
 }
 
 /// The model with effects, parameters at their nominal values.
@@ -128,7 +136,7 @@ fn at_nominal(problem: &Problem<'_>, from: &Fit, accepted: &[Accepted]) -> Optio
 /// A model fitted by what it says from the inputs alone, from the nominal parameters.
 fn output_error(problem: &Problem<'_>, from: &Fit, accepted: &[Accepted]) -> Option<(Fit, Assembled)> {
     let (assembled, priors) = at_nominal(problem, from, accepted)?;
-    let levels: Vec<f64> = from.setting.sources.iter().map(|s| s.level * NOTHING).collect();
+    let levels: Vec<f64> = from.setting.levels().into_iter().map(|level| level * NOTHING).collect();
     // where the errors are not known yet, they are as large as the signals
     let noise: Vec<f64> = problem.full_scale.iter().zip(&from.setting.noise).map(|(f, n)| f.max(*n)).collect();
     let setting = assembled.setting(&levels, &noise, Vec::new());
@@ -138,16 +146,7 @@ fn output_error(problem: &Problem<'_>, from: &Fit, accepted: &[Accepted]) -> Opt
 /// The same fit where the effect is off again, from the parameters found with it.
 fn without(problem: &Problem<'_>, r: &Refined, fit: &Fit, assembled: &Assembled) -> Option<Fit> {
     let own = assembled.attached.last()?;
-    let setting = switched_off(problem, r, fit, assembled)?;
+    let setting = switched_off(problem, &r.accepted, assembled, fit);
     let priors: Vec<Prior> = fit.priors.iter().filter(|p| !own.contains(&p.parameter)).cloned().collect();
     driven::fitted(problem, setting, &priors)
-}
-
-/// A fit with its last effect at the off value.
-fn switched_off(problem: &Problem<'_>, r: &Refined, fit: &Fit, assembled: &Assembled) -> Option<Setting> {
-    let mut setting = fit.setting.clone();
-    let h = &problem.hypotheses[r.accepted.chosen.hypothesis];
-    let places = assembled.attached.last()?.iter();
-    places.zip(&h.coefficients).for_each(|(&place, c)| setting.theta[place] = c.off);
-    Some(setting)
 }

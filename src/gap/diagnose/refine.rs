@@ -1,6 +1,7 @@
 //! Candidates of a screen one by one: each fitted together with everything accepted before, the front to its optimum.
 
 use super::super::effects::Coefficient;
+use super::super::filter::Setting;
 use super::super::fit::{self, Fit, Prior};
 use super::super::hypotheses::Hypothesis;
 use super::super::locate;
@@ -10,18 +11,17 @@ use super::Search;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
-/// Candidates of a screen that are refined,
+/// Candidates of a screen that are refined.
 const REFINED: usize = 5;
 /// Gain that a candidate must promise to be refined, nats.
 const PROMISING: f64 = 5.0;
 /// Candidates behind this part of the best one's gain are not refined.
 const FAR: f64 = 0.1;
-/// Deviation of the share of such an effect from the whole.
-pub(super) const WHOLE: f64 = 0.3;
-/// Samples with which their shapes are tried.
-const TRIED: usize = 1500;
-/// Candidates that are there or not.
+/// Candidates that are there or not; the deviation of their share from the whole, and samples with which their shapes are
+/// tried.
 const BOUNDED: usize = 4;
+const WHOLE: f64 = 0.3;
+const TRIED: usize = 1500;
 /// Shapes without a name that are refined beside, each of another kind.
 const SHAPES: usize = 5;
 /// Iterations with which candidates are compared before the front is polished, and candidates polished.
@@ -57,7 +57,7 @@ impl Search {
     /// Fits candidates one by one; best first.
     pub(super) fn refined(&self, problem: &Problem<'_>, chosen: &[Candidate]) -> Vec<Refined> {
         let mut refined: Vec<Refined> = chosen.par_iter().filter_map(|c| self.refine(problem, c)).collect();
-        refined.sort_by(|a, b| b.fit.evidence.total_cmp(&a.fit.evidence));
+        best_first(&mut refined);
         refined
     }
 
@@ -67,12 +67,7 @@ impl Search {
         let h = &problem.hypotheses[candidate.chosen.hypothesis];
         let mut whole = candidate.clone();
         if bounded(h) {
-            for (i, c) in h.coefficients.iter().enumerate() {
-                let Some(max) = share(c) else { continue };
-                whole.chosen.values[i] = max;
-                let prior = &mut whole.priors[i];
-                (prior.mean, prior.sigma, prior.min) = (max, WHOLE * max, 0.5 * max);
-            }
+            make_whole(h, &mut whole);
             self.shape_of_whole(problem, h, &mut whole);
         }
         let accepted = whole.accepted();
@@ -96,8 +91,7 @@ impl Search {
             let mut all = self.accepted.clone();
             all.push(Accepted { chosen: Chosen { values, ..whole.chosen }, priors: whole.priors.clone() });
             let (model, _) = ready(problem, &self.last, &all)?;
-            let levels: Vec<f64> = self.last.setting.sources.iter().map(|s| s.level).collect();
-            let setting = model.setting(&levels, &self.last.setting.noise, Vec::new());
+            let setting = model.setting(&self.last.setting.levels(), &self.last.setting.noise, Vec::new());
             Some(fit::passes(&setting, first, TRIED, false)?[0].likelihood)
         };
         let best = variants
@@ -149,6 +143,10 @@ impl Search {
     }
 }
 
+pub(super) fn best_first(refined: &mut [Refined]) {
+    refined.sort_by(|a, b| b.fit.evidence.total_cmp(&a.fit.evidence));
+}
+
 /// What is refined: the best effects, the best of those that are there or not, which may look small from where they are
 /// not, and the best shape of each kind. And the rest.
 pub(super) fn promising(problem: &Problem<'_>, candidates: Vec<Candidate>) -> (Vec<Candidate>, Vec<Candidate>) {
@@ -191,6 +189,25 @@ pub(super) fn bounded(h: &Hypothesis) -> bool {
     h.family != "parameter" && h.coefficients.iter().any(|c| share(c).is_some())
 }
 
+/// Begins with the shares of an effect that is there or not at the whole.
+pub(super) fn make_whole(h: &Hypothesis, candidate: &mut Candidate) {
+    for (i, c) in h.coefficients.iter().enumerate() {
+        let Some(max) = share(c) else { continue };
+        candidate.chosen.values[i] = max;
+        let prior = &mut candidate.priors[i];
+        (prior.mean, prior.sigma, prior.min) = (max, WHOLE * max, 0.5 * max);
+    }
+}
+
+/// A fit with its last effect at the off value.
+pub(super) fn switched_off(problem: &Problem<'_>, last: &Accepted, assembled: &Assembled, fit: &Fit) -> Setting {
+    let mut setting = fit.setting.clone();
+    let coefficients = &problem.hypotheses[last.chosen.hypothesis].coefficients;
+    let places = assembled.attached.last().into_iter().flatten();
+    places.zip(coefficients).for_each(|(&place, c)| setting.theta[place] = c.off);
+    setting
+}
+
 pub(super) fn values(fit: &Fit, places: &[usize]) -> Vec<f64> {
     places.iter().map(|&p| fit.setting.theta[p]).collect()
 }
@@ -216,8 +233,7 @@ pub(super) fn ready(problem: &Problem<'_>, from: &Fit, accepted: &[Accepted]) ->
 /// Fits a set of effects, from the values of an earlier fit.
 pub(super) fn fitted(problem: &Problem<'_>, from: &Fit, accepted: &[Accepted]) -> Option<(Fit, Assembled)> {
     let (assembled, priors) = ready(problem, from, accepted)?;
-    let levels: Vec<f64> = from.setting.sources.iter().map(|s| s.level).collect();
-    let setting = assembled.setting(&levels, &from.setting.noise, Vec::new());
+    let setting = assembled.setting(&from.setting.levels(), &from.setting.noise, Vec::new());
     let fit = |s| fit::fit(s, &priors, &problem.train, Some(from.search_share()), RACE);
     let first = fit(setting.clone());
     if let Some(f) = &first
