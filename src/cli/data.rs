@@ -24,6 +24,12 @@ pub(super) fn result(path: &Path, time_column: Option<&str>, messages: &mut Mess
         let told = |e| Diagnostic::new(Code::BadData, format!("`{}` cannot be used: {e}", path.display()));
         return mat::read(&bytes).map_err(|e| told(e).into());
     }
+    if extension == "parquet" {
+        let text = format!("`{}` cannot be used: Parquet is written for other programs, and not read", path.display());
+        return Err(Diagnostic::new(Code::BadData, text)
+            .help("write the result as .csv or .mat to draw or compare it")
+            .into());
+    }
     let file = text(path, messages)?;
     let checked = read_csv(&messages.sources, file, time_column, Strictness::Result);
     checked.value.ok_or(Failure { diagnostics: checked.diagnostics })

@@ -42,6 +42,12 @@ pub(super) struct IdentifyArgs {
     /// likelihood; all parameters, or those that match
     #[arg(long, value_name = "GLOB,...", num_args = 0..=1, require_equals = true, default_missing_value = "*")]
     profile: Option<String>,
+    /// Search from so many places, the values of the model first, and keep the best end
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
+    starts: u16,
+    /// Draws the places of `--starts`
+    #[arg(long, default_value_t = 1, value_name = "N")]
+    seed: u64,
     /// Signals, autocorrelation of the errors, confidence ellipses and profiles: .svg, .png or .html
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
@@ -79,7 +85,7 @@ pub(super) fn run(args: &IdentifyArgs, messages: &mut Messages) -> Result<Ending
     let fail = |d, opened: &Opened, messages: &mut Messages| opened.failure(vec![d], messages);
     let found = Identification::new(&problem, &train, args.method.method()).map_err(|d| fail(d, &opened, messages))?;
     messages.remark(separation_words(&problem, &found).trim_end());
-    let fit = found.fit().map_err(|d| fail(d, &opened, messages))?;
+    let fit = found.fit_from(args.starts.into(), args.seed).map_err(|d| fail(d, &opened, messages))?;
     let held = if bound.has(Role::Held) { opened.load(Role::Held, messages)? } else { Vec::new() };
     let held = if held.is_empty() {
         Vec::new()

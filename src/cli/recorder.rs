@@ -8,9 +8,10 @@ use super::Failure;
 use super::checkpoint::Written;
 use super::files::{NewFile, access, print};
 use crate::diag::{Code, Diagnostic};
+use crate::results::parquet::ParquetWriter;
 use crate::results::{CsvWriter, Signal, Trajectory, csv_bytes_per_row, mat};
 
-/// Rows wait in memory until they take this much, so that writing hardly disturbs the run.
+/// Rows wait in memory until they take this much, so that writing hardly disturbs the run; in Parquet a group of rows.
 const BUFFER_BYTES: usize = 32 << 20;
 /// Results larger than this are announced before the run.
 const LARGE: u64 = 1_000_000_000;
@@ -24,6 +25,8 @@ pub(super) enum Target {
     Stdout,
     /// A Modelica `.mat` file.
     Mat(PathBuf),
+    /// A Parquet file.
+    Parquet(PathBuf),
 }
 
 impl Target {
@@ -34,6 +37,7 @@ impl Target {
         match extension.as_str() {
             _ if name == "-" => Ok(Target::Stdout),
             "mat" => Ok(Target::Mat(path)),
+            "parquet" => Ok(Target::Parquet(path)),
             "html" | "svg" | "png" => Err(Diagnostic::new(Code::BadArgument, format!("`{name}` is no result file"))
                 .help("a picture is written by `--plot`, or by `bramah plot` afterwards")
                 .into()),
@@ -44,7 +48,7 @@ impl Target {
     /// The name for messages.
     pub fn name(&self) -> String {
         match self {
-            Target::Csv(path) | Target::Mat(path) => path.display().to_string(),
+            Target::Csv(path) | Target::Mat(path) | Target::Parquet(path) => path.display().to_string(),
             Target::Stdout => "stdout".to_owned(),
         }
     }
@@ -54,8 +58,9 @@ impl Target {
 pub(super) struct Recorder {
     target: Target,
     csv: Option<CsvWriter<Box<dyn Write>>>,
+    parquet: Option<ParquetWriter<Box<dyn Write>>>,
     file: Option<NewFile>,
-    /// Rows for the CSV file, each with its time first, one after the other: with many columns a row at a time is
+    /// Rows for the file, each with its time first, one after the other: with many columns a row at a time is
     /// several times faster than a column at a time.
     waiting: Vec<f64>,
     /// All rows, where they are wanted after the run.
@@ -72,7 +77,7 @@ impl Recorder {
     pub fn new(target: Target, signals: Vec<Signal>, keep: bool) -> Result<Self, Failure> {
         let keep = keep || matches!(target, Target::Mat(_));
         let file = match &target {
-            Target::Csv(path) | Target::Mat(path) => Some(NewFile::create(path)?),
+            Target::Csv(path) | Target::Mat(path) | Target::Parquet(path) => Some(NewFile::create(path)?),
             Target::Stdout => None,
         };
         Ok(Self::on(target, file, signals, keep, None))
@@ -100,6 +105,7 @@ impl Recorder {
         let mut recorder = Recorder {
             target,
             csv: None,
+            parquet: None,
             file,
             waiting: Vec::new(),
             rows: Trajectory::new(signals),
@@ -109,19 +115,26 @@ impl Recorder {
             unread: false,
             writing: Duration::ZERO,
         };
-        recorder.open_csv(written.map(|w| w.bytes));
+        recorder.open(written.map(|w| w.bytes));
         recorder
     }
 
-    fn open_csv(&mut self, written: Option<u64>) {
+    fn open(&mut self, written: Option<u64>) {
         let out: Box<dyn Write> = match (&self.target, &self.file) {
-            (Target::Csv(_), Some(file)) => match file.handle() {
+            (Target::Csv(_) | Target::Parquet(_), Some(file)) => match file.handle() {
                 Ok(handle) => Box::new(handle),
                 Err(error) => return self.fail(&error),
             },
             (Target::Stdout, _) => Box::new(std::io::BufWriter::new(std::io::stdout())),
             _ => return,
         };
+        if matches!(self.target, Target::Parquet(_)) {
+            match ParquetWriter::new(Box::new(std::io::BufWriter::new(out)) as Box<dyn Write>, &self.rows.signals) {
+                Ok(parquet) => self.parquet = Some(parquet),
+                Err(error) => self.fail(&error),
+            }
+            return;
+        }
         let writer = match written {
             Some(bytes) => Ok(CsvWriter::resume(out, &self.rows.signals, bytes)),
             None => CsvWriter::new(out, &self.rows.signals),
@@ -139,6 +152,7 @@ impl Recorder {
             self.failure = Some(access(&PathBuf::from(self.target.name()), "written", error));
         }
         self.csv = None;
+        self.parquet = None;
     }
 
     /// Takes a row; false when it makes no sense to go on because nothing can be written any more.
@@ -147,7 +161,7 @@ impl Recorder {
         if self.keep {
             self.rows.push(time, values);
         }
-        if self.csv.is_some() {
+        if self.csv.is_some() || self.parquet.is_some() {
             self.waiting.push(time);
             self.waiting.extend_from_slice(values);
         }
@@ -175,6 +189,11 @@ impl Recorder {
             if let Err(error) = rows.try_for_each(|row| csv.row(row[0], row[1..].iter().copied())) {
                 self.fail(&error);
             }
+        }
+        if let Some(parquet) = &mut self.parquet
+            && let Err(error) = parquet.rows(&self.waiting)
+        {
+            self.fail(&error);
         }
         self.waiting.clear();
         self.writing += clock.elapsed();
@@ -221,6 +240,11 @@ impl Recorder {
         {
             self.fail(&error);
         }
+        if let Some(parquet) = self.parquet.take()
+            && let Err(error) = parquet.finish()
+        {
+            self.fail(&error);
+        }
         if let (Target::Mat(path), Some(file)) = (&self.target, &mut self.file) {
             mat::write(file, &self.rows).map_err(|e| access(path, "written", &e))?;
         }
@@ -244,7 +268,7 @@ fn kept(mut failure: Failure, file: Option<NewFile>) -> Failure {
 /// A note about a result that will be large.
 pub(super) fn announcement(signals: &[Signal], intervals: f64, target: &Target) -> Option<Diagnostic> {
     let row = match target {
-        Target::Mat(_) => 8 * (signals.len() as u64 + 1),
+        Target::Mat(_) | Target::Parquet(_) => 8 * (signals.len() as u64 + 1),
         _ => csv_bytes_per_row(signals),
     };
     let bytes = row as f64 * (intervals + 1.0);

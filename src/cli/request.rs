@@ -49,7 +49,7 @@ pub(super) struct RunArgs {
     /// Variables to write, such as 'cyl.*,v[1].p'; brackets are literal; may be repeated
     #[arg(long, value_name = "GLOB,...")]
     variables: Vec<String>,
-    /// The result: .csv, Modelica .mat, or `-` for CSV on stdout [default: CLASS.csv]
+    /// The result: .csv, Modelica .mat, .parquet, or `-` for CSV on stdout [default: CLASS.csv]
     #[arg(short, long, value_name = "FILE")]
     output_file: Option<String>,
     /// Also draw the result: .svg, .png or .html

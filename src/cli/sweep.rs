@@ -18,6 +18,7 @@ use crate::diag::{Code, Diagnostic};
 use crate::experiment::{Experiment, Sampling, Sweep};
 use crate::flat;
 use crate::plot::matrix::write as draw;
+use crate::results::parquet::write_table;
 use crate::results::{CsvWriter, Trajectory, number};
 use crate::solve::{Settings, signals};
 
@@ -42,8 +43,8 @@ pub(super) struct SweepArgs {
     /// Value of a parameter for all runs; may be repeated
     #[arg(short, long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
     set: Vec<String>,
-    /// The table [default: the experiment's name with .csv]
-    #[arg(short, long, value_name = "CSV")]
+    /// The table: .csv, or .parquet beside the .csv in which runs are kept [default: the experiment's name with .csv]
+    #[arg(short, long, value_name = "FILE")]
     output_file: Option<PathBuf>,
     /// A picture of the results over the parameters: .svg, .png or .html
     #[arg(long, value_name = "FILE")]
@@ -90,7 +91,7 @@ pub(super) fn run(args: &SweepArgs, messages: &mut Messages) -> Result<Ending, F
     let model = model::compile(&experiment, messages)?;
     let plan = Plan::new(&model, &sweep).map_err(|diagnostics| Failure { diagnostics })?;
     let settings = settings(args, &experiment, &model, &plan)?;
-    let output = output(args, file);
+    let output = with_lines(&output(args, file));
     let table = execute(args, &model, &plan, &settings, &output, messages)?;
     report(args, &sweep, &plan, &table, &output, messages)
 }
@@ -124,6 +125,23 @@ fn settings(args: &SweepArgs, experiment: &Experiment, model: &Model, plan: &Pla
         settings.wanted.extend(more.into_iter().filter(|v| !plan.wanted.contains(v)));
     }
     Ok(settings)
+}
+
+/// The file that takes a line a run: Parquet cannot grow.
+fn with_lines(output: &Path) -> PathBuf {
+    if is_parquet(output) { output.with_extension("csv") } else { output.to_owned() }
+}
+
+fn is_parquet(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("parquet"))
+}
+
+/// The whole table once more as Parquet, where that is wanted.
+fn write_parquet(args: &SweepArgs, table: &Table) -> Result<(), Failure> {
+    let Some(path) = args.output_file.as_ref().filter(|path| is_parquet(path)) else { return Ok(()) };
+    let mut bytes = Vec::new();
+    write_table(&mut bytes, &table.typed()).map_err(|e| access(path, "written", &e))?;
+    files::write(path, &bytes)
 }
 
 /// The table as far as an earlier start of the same sweep made it.
@@ -240,6 +258,7 @@ fn report(
     output: &Path,
     messages: &Messages,
 ) -> Result<Ending, Failure> {
+    write_parquet(args, table)?;
     let failed = table.rows.values().filter(|r| r.1 != "ok").count();
     let bad = if failed > 0 { format!(", {failed} failed (see the column `status`)") } else { String::new() };
     messages.remark(&format!("{} runs in {}{bad}", table.rows.len(), output.display()));
@@ -291,7 +310,8 @@ fn merge(args: &SweepArgs, messages: &Messages) -> Result<Ending, Failure> {
         }
     }
     let Some(whole) = whole else { return Ok(Ending::Fine) };
-    files::write(output, whole.text().as_bytes())?;
+    files::write(&with_lines(output), whole.text().as_bytes())?;
+    write_parquet(args, &whole)?;
     let missing = whole.runs - whole.rows.len().min(whole.runs);
     messages.remark(&format!("{} runs in {}, {missing} missing", whole.rows.len(), output.display()));
     Ok(Ending::Fine)

@@ -7,6 +7,7 @@ mod delay;
 pub mod glob;
 pub mod mat;
 pub mod number;
+pub mod parquet;
 pub mod recording;
 pub mod table;
 pub mod trajectory;

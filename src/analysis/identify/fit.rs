@@ -7,7 +7,7 @@ use super::least_squares::Minimum;
 use super::residuals::inputs_beside;
 use super::separate::{separate, without_rest};
 use super::weights::{self, Weights};
-use super::{Identification, Method, Problem, ResidualTest, Residuals};
+use super::{Identification, Method, Problem, ResidualTest, Residuals, Starts};
 use crate::study::Recording;
 use nalgebra::DMatrix;
 
@@ -38,6 +38,8 @@ pub struct Fit {
     pub courses: Vec<Course>,
     /// Why derivatives were differences along some recording; `None` where runs carried them all along.
     pub differences: Option<String>,
+    /// Where searches from several places ended.
+    pub starts: Starts,
     /// All unknowns: the parameters on the scale of the search, then initial states.
     pub(super) z: Vec<f64>,
     /// Variances of the parameters on that scale.
@@ -138,6 +140,7 @@ impl Identification<'_> {
             residuals: Vec::new(),
             courses,
             differences: None,
+            starts: Starts::default(),
             z: minimum.z.clone(),
             spread: (0..p).map(|j| covariance[(j, j)].max(0.0)).collect(),
             plain: (0..p).map(|j| plain[(j, j)].max(0.0)).collect(),

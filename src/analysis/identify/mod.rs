@@ -16,6 +16,7 @@ mod report;
 mod residuals;
 pub mod runs;
 mod separate;
+mod starts;
 mod weights;
 
 pub use fit::{Course, Fit, SignalFit};
@@ -27,6 +28,7 @@ pub use report::{Report, fit_words, profile_words, separation_words};
 pub use residuals::{Dependence, ResidualTest};
 pub use runs::Broken;
 pub use separate::{Blind, Separation};
+pub use starts::Starts;
 
 use crate::Model;
 use crate::analysis::noise;
@@ -38,6 +40,7 @@ use inverse::{Inverse, InverseModel};
 use nalgebra::{DMatrix, DVector};
 use output_error::OutputError;
 use separate::{separate, without_rest};
+use starts::search_several;
 use std::sync::{Arc, OnceLock};
 use weights::Weights;
 
@@ -257,32 +260,45 @@ impl<'a> Identification<'a> {
         effects.into_iter().take(3).map(|(_, n)| n.clone()).collect()
     }
 
-    /// Searches for the parameters.
+    /// Searches for the parameters, from their values in the model.
     ///
     /// # Errors
     /// As [`Identification::new`].
     pub fn fit(&self) -> Result<Fit, Diagnostic> {
+        self.fit_from(1, 1)
+    }
+
+    /// Searches from the values in the model and from `starts - 1` places around them, drawn within bounds and tolerances
+    /// and at most a factor of e away; the best end counts, and [`Fit::starts`] tells where the others led. The same
+    /// `seed` draws the same places.
+    ///
+    /// # Errors
+    /// As [`Identification::new`].
+    pub fn fit_from(&self, starts: usize, seed: u64) -> Result<Fit, Diagnostic> {
         match self.inverse_model()? {
             Some(mut model) => {
-                let minimum = search(self.problem, &mut model, &[]).ok_or_else(|| cannot_follow(None))?;
+                let found = search_several(self.problem, &mut model, &[], starts, seed);
+                let (minimum, starts) = found.ok_or_else(|| cannot_follow(None))?;
                 let train = self.force_fits(&mut model, &minimum);
                 let courses = model.courses(minimum.residual.as_slice());
                 let mut fit = self.estimate(&mut model, &minimum, train, courses);
                 fit.residuals = self.judge_residuals(&fit, minimum.residual.as_slice());
                 fit.differences = Some("of the inverse model".to_owned());
+                fit.starts = starts;
                 Ok(fit)
             }
             None => {
                 let mut model = self.output_error()?;
                 let floor: Vec<f64> = self.problem.full_scale.iter().map(|f| 1e-6 * f).collect();
-                let found = search(self.problem, &mut model, &floor);
-                let minimum = found.ok_or_else(|| cannot_follow(model.broken.as_ref()))?;
+                let found = search_several(self.problem, &mut model, &floor, starts, seed);
+                let (minimum, starts) = found.ok_or_else(|| cannot_follow(model.broken.as_ref()))?;
                 let residual = minimum.residual.as_slice();
                 let train = signal_fits(self.problem, model.weights(), residual, self.train);
                 let courses = model.courses(self.train, residual);
                 let mut fit = self.estimate(&mut model, &minimum, train, courses);
                 fit.residuals = self.judge_residuals(&fit, residual);
                 fit.differences = model.differences().map(str::to_owned);
+                fit.starts = starts;
                 Ok(fit)
             }
         }
@@ -350,17 +366,21 @@ fn information(model: &mut dyn Residuals, parameters: usize) -> Result<DMatrix<f
     Ok(without_rest(&all, parameters))
 }
 
+/// Minimises from a place, with the deviations of the signals as they are.
+fn search_once(problem: &Problem<'_>, model: &mut dyn Residuals, from: &[f64]) -> Option<Minimum> {
+    let bounds = problem.bounds(model.unknowns());
+    minimise(&mut Shared(model), from, &bounds, Effort::default())
+}
+
 /// Minimises, takes the deviations of the signals from the errors, and minimises again until they stay.
-fn search(problem: &Problem<'_>, model: &mut dyn Residuals, floor: &[f64]) -> Option<Minimum> {
-    let unknowns = model.unknowns();
-    let bounds = problem.bounds(unknowns);
+fn search(problem: &Problem<'_>, model: &mut dyn Residuals, floor: &[f64], from: &[f64]) -> Option<Minimum> {
     let floor = if floor.is_empty() { vec![0.0; model.weights().sigma.len()] } else { floor.to_vec() };
-    let mut z = vec![0.0; unknowns];
+    let mut z = from.to_vec();
     let start = Shared(model).residual(&z)?;
     model.weights().learn(start.as_slice(), &floor);
     let mut iterations = 0;
     for round in 0..5 {
-        let mut minimum = minimise(&mut Shared(model), &z, &bounds, Effort::default())?;
+        let mut minimum = search_once(problem, model, &z)?;
         iterations += minimum.iterations;
         minimum.iterations = iterations;
         z.clone_from(&minimum.z);

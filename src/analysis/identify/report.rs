@@ -1,6 +1,6 @@
 //! The result of an identification in numbers and in words.
 
-use super::{Fit, Identification, Method, Problem, Profile, ResidualTest, SignalFit};
+use super::{Fit, Identification, Method, Problem, Profile, ResidualTest, SignalFit, Starts};
 use crate::results::number::rounded;
 use serde::Serialize;
 use serde_json::{Map, json};
@@ -30,6 +30,9 @@ pub struct Report {
     pub profiles: Map<String, serde_json::Value>,
     /// `exact`, or `differences` and why.
     pub derivatives: String,
+    /// Where searches from several places ended, if there were several.
+    #[serde(skip_serializing_if = "Map::is_empty")]
+    pub starts: Map<String, serde_json::Value>,
     /// Whether a least value was reached.
     pub converged: bool,
     /// Parameters that ended at a bound.
@@ -83,6 +86,7 @@ impl Report {
             profiles: profiles.iter().map(|p| (problem.free[p.parameter].name.clone(), profile(p))).collect(),
             correlation: fit.correlation.row_iter().map(|r| r.iter().copied().collect()).collect(),
             derivatives: derivatives(fit),
+            starts: starts(fit),
             converged: fit.converged,
             at_bound: ends.map(|(f, _)| f.name.clone()).collect(),
             iterations: fit.iterations,
@@ -92,6 +96,12 @@ impl Report {
 
 fn derivatives(fit: &Fit) -> String {
     fit.differences.as_ref().map_or_else(|| "exact".to_owned(), |why| format!("differences: {why}"))
+}
+
+fn starts(fit: &Fit) -> Map<String, serde_json::Value> {
+    let Starts { tried, here, worse, failed } = fit.starts;
+    let all = [("tried", tried), ("here", here), ("worse", worse), ("failed", failed)];
+    all.into_iter().filter(|_| tried > 1).map(|(name, n)| (name.to_owned(), json!(n))).collect()
 }
 
 /// JSON knows no infinity.
@@ -150,6 +160,11 @@ pub fn fit_words(problem: &Problem<'_>, fit: &Fit, held: &[SignalFit]) -> String
     let mut text = String::new();
     if !fit.converged {
         text.push_str("the search did not reach a least value: the numbers below are where it stopped\n");
+    }
+    let Starts { tried, here, worse, failed } = fit.starts;
+    if tried > 1 {
+        let _ = write!(text, "of {tried} starts {here} led to this least value, {worse} to larger ones");
+        text.push_str(&if failed > 0 { format!(", {failed} could not be run\n") } else { "\n".to_owned() });
     }
     for (free, _) in problem.free.iter().zip(&fit.at_bound).filter(|(_, at)| **at) {
         let _ = writeln!(text, "`{}` ended at a bound: its deviation is that of the bounded problem", free.name);

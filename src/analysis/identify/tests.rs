@@ -324,3 +324,26 @@ fn profiles_of_a_linear_fit_agree_with_the_deviations_and_open_ones_are_open() {
         assert_eq!(picture(problem, fit, &[idle]).panels.len(), 1 + 1 + 1 + 1);
     });
 }
+
+/// The least squares of a frequency have many hollows: one start stays in a wrong one, several find the truth and say
+/// how many of them did.
+#[test]
+fn several_starts_find_the_least_of_many_minima() {
+    let model = "model Tone parameter Real w(min = 0.1) = 1; input Real u; Real x; Real y(start = 0, fixed = true);
+        equation der(y) = 0; x = sin(w*time) + u + y; end Tone;";
+    let mut dice = Dice(5);
+    let row = |t: f64| format!("{t},0,{}\n", (2.2 * t).sin() + 0.1 * dice.roll());
+    let rows: String = (0..400).map(|k| 0.05 * f64::from(k)).map(row).collect();
+    let text = format!("time,u,x\n{rows}");
+    let world = world(model, &study("w = { min = 0.1, max = 9.0 }\n"), text.clone(), text);
+    with_fit(&world, Method::Output, |problem, found, fit| {
+        assert!((fit.values[0] - 2.2).abs() > 0.5 && fit.starts.tried == 1, "{:?}", fit.values);
+        let several = found.fit_from(24, 1).expect("runs");
+        assert!((several.values[0] - 2.2).abs() < 0.01, "{:?} {:?}", several.values, several.starts);
+        let Starts { tried, here, worse, failed } = several.starts;
+        assert!(tried == 24 && here > 0 && worse > 0 && here + worse + failed == tried, "{:?}", several.starts);
+        let words = fit_words(problem, &several, &[]);
+        assert!(words.contains(&format!("of 24 starts {here} led to this least value, {worse} to larger ones")));
+        assert_eq!(found.fit_from(24, 1).expect("runs").values, several.values);
+    });
+}

@@ -1,6 +1,7 @@
 //! The table of a sweep: a line a run, written as runs finish, read back to go on, merged from parts.
 
 use crate::results::number;
+use crate::results::parquet::Values;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
@@ -105,6 +106,15 @@ impl Table {
         }
         self.rows.extend(other.rows);
         Ok(())
+    }
+
+    /// All rows as columns with their types: `run`, parameters and results, `status`.
+    pub fn typed(&self) -> Vec<(String, Values<'_>)> {
+        let run = Values::Integer(self.rows.keys().map(|&run| i64::try_from(run).ok()).collect());
+        let numbers = |k: usize| Values::Real(self.rows.values().map(|row| row.0[k]).collect());
+        let status = Values::Text(self.rows.values().map(|row| Some(row.1.as_str())).collect());
+        let columns = self.columns.iter().enumerate().map(|(k, name)| (name.clone(), numbers(k)));
+        std::iter::once(("run".to_owned(), run)).chain(columns).chain([("status".to_owned(), status)]).collect()
     }
 
     /// The values of one column by runs; NaN where a run is missing.

@@ -1,0 +1,61 @@
+//! Parquet files are what pandas reads, where Python has it: `PYTHON` names one with `pyarrow`.
+
+#![allow(clippy::disallowed_methods, reason = "tests read their own files")]
+#![allow(clippy::print_stdout, reason = "a test without what it needs says so")]
+
+use std::path::Path;
+use std::process::Command;
+
+fn bramah(folder: &Path, arguments: &[&str]) {
+    let run = Command::new(env!("CARGO_BIN_EXE_bramah")).args(arguments).current_dir(folder).output().expect("starts");
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+}
+
+/// What a Python script prints; `None` without a Python that has pyarrow.
+fn python(folder: &Path, script: &str) -> Option<String> {
+    let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let has = Command::new(&python).args(["-c", "import pyarrow.parquet"]).output();
+    if !has.is_ok_and(|o| o.status.success()) {
+        println!("skipped: `{python}` has no pyarrow");
+        return None;
+    }
+    let run = Command::new(python).args(["-c", script]).current_dir(folder).output().expect("starts");
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+    Some(String::from_utf8(run.stdout).expect("text"))
+}
+
+const MODEL: &str = "model M type Mode = enumeration(low, high);
+  parameter Real k(min = 0) = 1; Real x(unit = \"m\", start = 1, fixed = true); Boolean up; Integer n; Mode mode;
+  equation der(x) = -k*x; up = time < 0.5; n = if up then 3 else 4; mode = if up then Mode.low else Mode.high; end M;";
+
+#[test]
+fn a_run_and_a_sweep_are_read_by_pyarrow() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("M.mo"), MODEL).expect("written");
+    let sweep = "file = \"M.mo\"\nstop-time = \"1 s\"\n[sweep]\nmethod = \"list\"\n[sweep.parameters]\nk = [1, 2]\n\
+                 [sweep.results]\nend = \"final(x)\"\n";
+    std::fs::write(folder.path().join("s.toml"), sweep).expect("written");
+    let run = ["simulate", "M.mo", "--stop-time", "1", "--output-interval", "0.25", "--variables", "x,up,n,mode"];
+    for name in ["run.parquet", "run.csv"] {
+        bramah(folder.path(), &[&run[..], &["-o", name]].concat());
+    }
+    bramah(folder.path(), &["sweep", "s.toml", "-o", "s.parquet"]);
+    let script = "
+import csv, json, pyarrow.parquet as pq
+run = pq.read_table('run.parquet')
+print(run.schema.names, [str(t) for t in run.schema.types])
+print(json.loads(run.schema.metadata[b'units']))
+rows = list(csv.DictReader(open('run.csv')))
+assert len(rows) == run.num_rows > 4
+for a, b in zip(rows, run.to_pylist()):
+    assert float(a['x']) == b['x'] and float(a['time']) == b['time'] and a['up'] == str(b['up']).lower()
+    assert int(a['n']) == b['n'] and a['mode'] == b['mode'], (a, b)
+s = pq.read_table('s.parquet').to_pydict()
+print(s['run'], s['k'], [round(v, 3) for v in s['end']], s['status'])
+";
+    if let Some(said) = python(folder.path(), script) {
+        let expected = "['time', 'x', 'up', 'n', 'mode'] ['double', 'double', 'bool', 'int64', 'string']\n\
+                        {'time': 's', 'x': 'm'}\n[1, 2] [1.0, 2.0] [0.368, 0.135] ['ok', 'ok']\n";
+        assert_eq!(said, expected);
+    }
+}
