@@ -108,8 +108,8 @@ equation
 end Bench;",
         study: r#"
 [inputs]
-N = { unit = "rev/min" }
-opening = { unit = "1" }
+N = { unit = "rev/min", hold = false }
+opening = { unit = "1", hold = false }
 [signals]
 p = { unit = "Pa" }
 Q = { unit = "m3/s" }

@@ -347,3 +347,17 @@ fn several_starts_find_the_least_of_many_minima() {
         assert_eq!(found.fit_from(24, 1).expect("runs").values, several.values);
     });
 }
+
+/// A signal whose derivative has no value at the start, though the signal has: said, and left to differences.
+#[test]
+fn a_derivative_without_a_value_is_left_to_differences() {
+    let model = "model Root parameter Real k(min = 0) = 1; input Real u; Real z(start = 0, fixed = true); Real x;
+        equation der(z) = 1; x = sqrt(k*z); end Root;";
+    let rows: String = (0..50).map(|i| 0.02 * f64::from(i)).map(|t| format!("{t},0,{}\n", (2.0 * t).sqrt())).collect();
+    let text = format!("time,u,x\n{rows}");
+    let world = world(model, &study("k = { min = 0.1 }\n"), text.clone(), text);
+    with_fit(&world, Method::Output, |_, _, fit| {
+        assert!(fit.differences.as_ref().is_some_and(|why| why.contains("not finite")), "{:?}", fit.differences);
+        assert!(fit.values[0].is_finite() && fit.deviations[0] > 0.0, "{:?}", fit.values);
+    });
+}

@@ -12,8 +12,11 @@ impl<'a> Driver<'a, '_> {
         let trap = report::find_trap(self.system, &model.values);
         let mut diagnostic = report::non_finite(self.system, self.t, trap);
         if let Some(i) = self.row.iter().position(|v| !v.is_finite()) {
-            let variable = &self.system.dae.variables[self.settings.wanted[i].index()];
-            diagnostic = diagnostic.note(format!("`{}` is {} then", variable.name, self.row[i]));
+            // behind the values stand their derivatives, as often as there are directions
+            let wanted = &self.settings.wanted;
+            let variable = &self.system.dae.variables[wanted[i % wanted.len()].index()];
+            let what = if i < wanted.len() { "" } else { "a derivative of " };
+            diagnostic = diagnostic.note(format!("{what}`{}` is {} then", variable.name, self.row[i]));
         }
         Stop::new(End::NonFinite, diagnostic)
     }
