@@ -44,6 +44,10 @@
 //! # }
 //! ```
 //!
+//! Models and libraries in files are read through a [`world::World`]: `cli::DiskWorld` for the files of this machine
+//! (`Simulation::compile(&DiskWorld, &Request { source: "Press.mo".into(), ..Request::default() })`), [`world::MemoryWorld`]
+//! for texts at hand, or your own.
+//!
 //! `examples/` has a program for each use: `simulate`, `build`, `watch` (rows as they come), `cosimulate` (inputs set from
 //! outside at 1 kHz), `trajectories`, `linearize`, `identify`, `coverage` (how often its
 //! intervals hold the truth), `diagnose`.

@@ -83,3 +83,17 @@ fn misuse_is_told_by_codes() {
     assert!(run.step(0.0).is_ok() && run.step(0.1).is_ok());
     assert!(Simulation::from_text("model M Real x; end M;").is_err());
 }
+
+#[test]
+fn parameters_can_be_asked_for() {
+    let text = "model P parameter Real a = 2, b = 3*a; constant Real c = 5; Real x = b*c*time; end P;";
+    let mut simulation = Simulation::from_text(text).unwrap_or_else(|e| panic!("{e}"));
+    let value = |s: &Simulation, name| s.get(name).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!((value(&simulation, "b"), value(&simulation, "c")), (6.0, 5.0));
+    simulation.set("a", 4.0).expect("a parameter");
+    assert_eq!((value(&simulation, "a"), value(&simulation, "b")), (4.0, 12.0));
+    simulation.set("b", 1.0).expect("a parameter");
+    assert_eq!(value(&simulation, "b"), 1.0);
+    let wrong = simulation.get("x").expect_err("no parameter");
+    assert!(code(&wrong) == Code::BadSet && wrong.to_string().contains("`x` is not a parameter"));
+}

@@ -141,6 +141,28 @@ impl Simulation {
         Ok(self)
     }
 
+    /// The value that a parameter or constant will have in the next run, in its unit; those that follow others follow
+    /// values given by [`Simulation::set`], those found at the start stand at their guess. Booleans are 0 or 1, enumerations the number of their literal.
+    ///
+    /// # Errors
+    /// `E023` when there is no such parameter.
+    pub fn get(&self, name: &str) -> Result<f64, Error> {
+        let v = self.variable(name)?;
+        if self.model.dae.variables[v.index()].variability > Variability::Parameter {
+            let d = Diagnostic::new(Code::BadSet, format!("`{name}` is not a parameter"));
+            return Err(self.error(d.help("its values are in the trajectory of a run")));
+        }
+        let system = &self.model.system;
+        let mut values = system.layout.values();
+        let mut given = vec![false; self.model.dae.variables.len()];
+        for &(p, value) in &self.settings.parameters {
+            values[system.layout.var(p)] = value;
+            given[p.index()] = true;
+        }
+        system.evaluate_parameters(&mut values, &given);
+        Ok(values[system.layout.var(v)])
+    }
+
     /// Gives a top-level input its course: samples held, or joined by straight lines.
     ///
     /// # Errors
