@@ -36,7 +36,7 @@ const WORK: [(&str, u64, u64, u64); 8] = [
     ("ServoPump.System", 10781, 260, 2),
     ("ClosedCircuit.Case1", 641, 61, 2),
     ("ClosedCircuit.Case2", 622, 75, 4),
-    ("Belt", 7618, 1026, 79),
+    ("Belt", 7420, 281, 79),
     ("stiff/Robertson.mo", 309, 25, 0),
     ("stiff/AkzoNobel.mo", 342, 19, 0),
     ("stiff/TransistorAmplifier.mo", 6571, 495, 0),

@@ -57,6 +57,64 @@ fn the_unloaded_pump_delivers_its_displacement_less_the_shear_leakage() {
     assert!(fit > 0.999, "{fit}");
 }
 
+/// Backwards the line gives the same, with the sign turned.
+#[test]
+fn the_unloaded_pump_delivers_backwards_too() {
+    let mut simulation = shipped("ServoPump.NoLoad");
+    let t = run(simulation.set("N_set", -3000.0).expect("a parameter"));
+    let points = column(&t, "N").iter().zip(column(&t, "Q_A")).filter(|(n, _)| **n < -100.0);
+    let (slope, _, fit) = line(points.map(|(&n, &q)| (n / 60.0, q * 1e6)));
+    near(slope, 0.7682, 5e-3);
+    assert!(fit > 0.999, "{fit}");
+}
+
+/// Every class has what belongs to its bench, under the names of the paper's page; what does not apply is left out.
+#[test]
+fn the_benches_share_their_names() {
+    let all = ["N", "N_meas", "p_A", "p_B", "Q_A", "T_e", "T_sh"];
+    for (class, parameters, more) in [
+        ("ServoPump.NoLoad", &[("N_set", 600.0), ("ramp", 300.0), ("V_A", 1e-4), ("theta_oil", 40.0)][..], &[][..]),
+        ("ServoPump.DeadZone", &[("N_set", 40.0), ("ramp", 1.0), ("V_A", 1e-4), ("theta_oil", 40.0)], &[]),
+        (
+            "ServoPump.Load",
+            &[("N_set", 900.0), ("ramp", 500.0), ("p_load", 8e6), ("V_A", 1e-4), ("theta_oil", 40.0)],
+            &["reserve"],
+        ),
+        ("ServoPump.System", &[("x_ref", 0.06), ("p_load", 4e6), ("V_A", 1e-4), ("theta_oil", 40.0)], &["x", "v"]),
+    ] {
+        let mut simulation = shipped(class);
+        for &(name, value) in parameters {
+            simulation.set(name, value).unwrap_or_else(|e| panic!("{class}.{name}: {e}"));
+        }
+        let columns = simulation.columns();
+        for name in all.iter().chain(more) {
+            assert!(columns.iter().any(|c| c.name == *name), "{class}.{name}");
+        }
+    }
+}
+
+/// Port A closed and the pump turning backwards: the pressure builds up at B.
+#[test]
+fn the_dead_zone_is_the_same_backwards() {
+    let mut simulation = shipped("ServoPump.DeadZone");
+    let t = run(simulation.set("N_set", -48.0).expect("a parameter"));
+    near(last(&t, "p_B"), last(&run(&shipped("ServoPump.DeadZone")), "p_A"), 0.02);
+}
+
+/// Warmer oil leaks more: the dead zone grows with the reciprocal of the viscosity.
+#[test]
+fn the_dead_zone_follows_the_viscosity() {
+    let mut simulation = shipped_with("ServoPump.DeadZone", &[("compression", "false")]);
+    simulation.set("N_set", 20.0).expect("a parameter").set("ramp", 1.0).expect("a parameter");
+    let leak = |dp: f64| 1.8422541966426858e-14 * dp + 1.383532901678657e-7 * (dp / 5e5).tanh();
+    for theta in [20.0, 35.0, 50.0] {
+        let t = run(simulation.set("theta_oil", theta).expect("a parameter"));
+        let dp = last(&t, "p_A") - last(&t, "p_B");
+        let delivered = 20.0 / 60.0 * (0.8e-6 - 3.178e-8);
+        near(leak(dp) * (0.0357 * (theta - 35.0)).exp(), delivered, 0.02);
+    }
+}
+
 /// Pressure in MPa and standard deviation in r/min at 600 r/min, as printed.
 const TABLE_3: [(f64, f64); 9] = [
     (2.0, 4.138),
@@ -162,6 +220,32 @@ fn the_flow_divides_into_dead_load_and_saturation_zone() {
     assert!(last(&t, "N_T") < 0.0 && last(&t, "N_s") == 0.0);
 }
 
+/// The sampled drive and the resolved pump move the axis as the continuous and the averaged ones do.
+#[test]
+fn the_forms_of_drive_and_pump_agree() {
+    let smooth = run(&shipped("ServoPump.System"));
+    for (class, within) in [("ServoPump.SampledSystem", 2e-4), ("ServoPump.ResolvedSystem", 2e-4)] {
+        let t = run(&shipped(class));
+        for time in [0.5, 1.0, 1.6, 2.2, 3.0] {
+            let (found, wanted) = (at(&t, "x", time), at(&smooth, "x", time));
+            assert!((found - wanted).abs() < within, "{class} at {time} s: {found} instead of {wanted}");
+        }
+    }
+}
+
+/// Loads that pull the rod out are held as well, and a far reference is reached when there is time.
+#[test]
+fn the_axis_holds_against_pulling_loads_and_goes_far() {
+    let mut pulled = shipped("ServoPump.System");
+    let t = run(pulled.set("p_load", -5e6).expect("a parameter"));
+    assert!((at(&t, "x", 1.6) - 0.055).abs() < 2e-4 && (last(&t, "x") - 0.05).abs() < 2e-4);
+    let mut far = shipped("ServoPump.System");
+    far.set("x_ref", 0.1).expect("a parameter").stop_time(26.0);
+    let t = run(&far);
+    assert!((at(&t, "x", 11.5) - 0.1).abs() < 2e-4, "{}", at(&t, "x", 11.5));
+    assert!((last(&t, "x") - 0.05).abs() < 2e-4);
+}
+
 /// Extend, hold, retract under load: the axis follows, the accumulator supplies the difference of the areas, and both
 /// pilot-operated check valves open.
 #[test]
@@ -212,6 +296,20 @@ fn the_pump_reaches_the_ends_of_case_1_at_the_reference_frequencies() {
     }
 }
 
+/// Under the same names, each way of control and each motor.
+#[test]
+fn both_circuits_take_either_motor_and_control() {
+    for class in ["ClosedCircuit.Reduced", "ClosedCircuit.Bench"] {
+        for (motor, control, n_p) in [("A", "V_f", 744.0), ("B", "V_f", 796.0), ("A", "SFVC", 832.2)] {
+            let t = run(&shipped_with(class, &[("motor", motor), ("control", control), ("J_L", "4")]));
+            near(last(&t, "n_p"), n_p, 2e-3);
+            for name in ["n_p", "n_m", "p", "T_e"] {
+                near(at(&t, name, 36.0), last(&t, name), 1e-3);
+            }
+        }
+    }
+}
+
 #[test]
 fn the_ramp_of_the_frequency_makes_a_hump_of_pressure() {
     let t = run(&shipped("ClosedCircuit.Case1"));
@@ -250,8 +348,12 @@ fn stiffness_and_inertia_act_as_in_figs_10_and_11() {
     for (motor, inertia, drop, overshoot, settling) in
         [("A", 2.0, 81.3, 0.0, 0.60), ("A", 4.0, 81.3, 0.0, 1.31), ("B", 2.0, 50.5, 0.076, 0.52)]
     {
-        let mut simulation = shipped_with("ClosedCircuit.Case3", &[("motor", motor)]);
-        let t = run(simulation.set("J_L", inertia).expect("a parameter"));
+        let class = match (motor, inertia) {
+            ("B", _) => "ClosedCircuit.StepStiffMotor",
+            (_, 4.0) => "ClosedCircuit.StepHeavyLoad",
+            _ => "ClosedCircuit.Case3",
+        };
+        let t = run(&shipped(class));
         let (found_drop, found_overshoot, found_settling) = answer(&t);
         near(found_drop, drop, 0.01);
         assert!((found_overshoot - overshoot).abs() < 0.01, "{found_overshoot}");

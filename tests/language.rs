@@ -41,6 +41,34 @@ end P;");
     assert!((speed - (-2.0f64).exp()).abs() < 1e-5, "{speed}");
 }
 
+/// Modelica 3.6, 7.4: the connection with the same ports, subscripts included.
+#[test]
+fn a_broken_connection_is_the_one_with_its_subscripts() {
+    let run = run("
+package P
+  partial model Base
+    Mechanical.Rotational.Inertia inertia[2](each J = 1, each w(fixed = true, start = 1));
+    Mechanical.Rotational.Damper slow[2](each d = 1);
+    Mechanical.Rotational.Fixed wall;
+  equation
+    connect(inertia[1].flange_b, slow[1].flange_a);
+    connect(inertia[2].flange_b, slow[2].flange_a);
+    connect(slow[1].flange_b, wall.flange);
+    connect(slow[2].flange_b, wall.flange);
+  end Base;
+  model M
+    extends Base(break connect(inertia[2].flange_b, slow[2].flange_a));
+    Mechanical.Rotational.Damper fast(d = 1);
+  equation
+    connect(inertia[2].flange_b, fast.flange_a);
+    connect(fast.flange_b, slow[2].flange_a);
+  end M;
+end P;");
+    let speed = |name: &str| *run.column(name).expect("a variable").last().expect("a row");
+    assert!((speed("inertia[1].w") - (-1.0f64).exp()).abs() < 1e-5, "{}", speed("inertia[1].w"));
+    assert!((speed("inertia[2].w") - (-0.5f64).exp()).abs() < 1e-5, "{}", speed("inertia[2].w"));
+}
+
 /// An input may move a shaft whatever the order in which components are declared.
 #[test]
 fn an_input_moves_a_shaft_that_others_watch() {

@@ -75,6 +75,21 @@ fn tables_are_the_same_from_files() {
     assert_eq!((at("3", "2", ""), at("3", "2", ", hold = false")), (5.0, 8.0));
 }
 
+/// The name of a file needs no quotes within those of the shell.
+#[test]
+fn the_file_of_a_table_may_be_given_from_outside() {
+    let text = "model M\n  Signal.Table1D t(u = time, fileName = \"none.csv\");\n  Real x = t.y;\nend M;\n";
+    for given in ["t.csv", "data/t-1.csv", "\"t.csv\"", "table 1.csv"] {
+        let mut world = MemoryWorld::single("M.mo", text);
+        world.add(given.trim_matches('"'), "x,y\n0,0\n1,4\n");
+        let set = bramah::instance::Override { name: "t.fileName".into(), value: given.into() };
+        let request = Request { source: "M.mo".into(), overrides: vec![set], ..Request::default() };
+        let run =
+            Simulation::compile(&world, &request).and_then(|s| s.run()).unwrap_or_else(|e| panic!("{given}: {e}"));
+        assert_eq!(run.trajectory.column("x").and_then(|x| x.last()), Some(&4.0), "{given}");
+    }
+}
+
 /// Akima's curves are exact for parabolas away from the edges, and straight beyond them.
 #[test]
 fn a_smooth_map() {

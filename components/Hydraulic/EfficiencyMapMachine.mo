@@ -14,6 +14,12 @@ protected
 equation
   assert(size(eta_v, 1) == size(speeds, 1) and size(eta_v, 2) == size(pressures, 1), "eta_v must have a row per speed and a column per pressure");
   assert(size(eta_m, 1) == size(speeds, 1) and size(eta_m, 2) == size(pressures, 1), "eta_m must have a row per speed and a column per pressure");
+  for i in 2:size(speeds, 1) loop
+    assert(speeds[i] > speeds[i - 1], "The speeds of the maps must increase");
+  end for;
+  for i in 2:size(pressures, 1) loop
+    assert(pressures[i] > pressures[i - 1], "The pressures of the maps must increase");
+  end for;
   w_map = min(max(sqrt(w*w + 1e-4), speeds[1]), speeds[size(speeds, 1)]);
   p_map = min(max(sqrt(dp*dp + 1e6), pressures[1]), pressures[size(pressures, 1)]);
   loss_v = max(1 - Signal.Functions.interpolate2(speeds, pressures, eta_v, w_map, p_map), 0);

@@ -8,6 +8,7 @@ model Line "Pipe or hose of n cells: inertia of the oil, laminar and turbulent f
   parameter Integer n(min = 1, max = 10000) = 1 "Number of cells; at least f_max L 10/c with c about 1300 m/s";
   parameter Boolean volume_a = false "true: half a cell of volume lies at port a, for a valve that closes there" annotation(Evaluate = true);
   parameter Boolean volume_b = false "true: half a cell of volume lies at port b" annotation(Evaluate = true);
+  replaceable model Friction = LineFriction.Steady constrainedby LineFriction.Law "Law of friction";
   parameter SI.BulkModulus beta_wall(min = 1e6, nominal = 1e9) = Modelica.Constants.inf "Modulus of the wall: 0.5 to 1 GPa for hoses, infinite for tubes";
   parameter SI.Length dh = 0 "Height of port b over port a";
   parameter SI.Pressure p_start(nominal = 1e6) = 1e5 "Pressure at the start, at port a";
@@ -16,6 +17,7 @@ model Line "Pipe or hose of n cells: inertia of the oil, laminar and turbulent f
   SI.Pressure p[N](start = {p_start + (p_b_start - p_start)*x[i] for i in 1:N}, each fixed = true, each nominal = 1e6) "Pressures of the cells";
   SI.MassFlowRate m_flow[M](each start = m_flow_start, each fixed = true, each nominal = 0.1) "Mass flows between the cells, from a to b";
   SI.Mass mass(nominal = 1) "Mass of the oil";
+  Friction friction[M](L = share*L, each d = d) "Friction between the cells";
 protected
   constant Real g = Modelica.Constants.g_n;
   parameter Integer a = if volume_a then 1 else 0 "Cells before the first flow";
@@ -30,7 +32,6 @@ protected
   SI.Density rho[N](each nominal = 1000) "Densities";
   SI.BulkModulus beta[N](each nominal = 1e9) "Moduli of the oil";
   SI.Volume V_p[N](each nominal = 1e-4) "Volumes of the cells under pressure";
-  SI.Pressure drop[M](each nominal = 1e4) "Pressure drops by friction";
   SI.Density rho_m[M](each nominal = 1000) "Densities between the cells: that of the cell before, at the first that of the cell after";
   SI.MassFlowRate m_a(nominal = 0.1) "Mass flow into port a";
   SI.MassFlowRate m_b(nominal = 0.1) "Mass flow out of port b";
@@ -57,15 +58,17 @@ equation
   end for;
   for i in 1:M loop
     rho_m[i] = rho[max(i - 1 + a, 1)];
-    drop[i] = Functions.pipeFriction(m_flow[i], share[i]*L, d, rho_m[i], oil.mu);
-    share[i]*L/A*der(m_flow[i]) =
+    friction[i].m_flow = m_flow[i];
+    friction[i].rho = rho_m[i];
+    friction[i].mu = oil.mu;
+    share[i]*L/A*(1 + friction[i].added)*der(m_flow[i]) =
       (if i - 1 + a < 1 then port_a.p else p[max(i - 1 + a, 1)]) - (if i + a > N then port_b.p else p[min(i + a, N)])
-      - drop[i] - share[i]*rho_m[i]*g*dh;
+      - friction[i].dp - share[i]*rho_m[i]*g*dh;
   end for;
   mass = rho*V_p;
   annotation(Documentation(info = "<html>
 <p>Each cell stores mass, <code>d(rho V)/dt = m_i - m_(i+1)</code>; between cells the oil is accelerated, <code>L/A dm/dt = p_i - p_(i+1) - dp_f - rho g dh</code>. As it stands, half a cell's length lies at both ends, which carry a flow as state: join them to sources, volumes, or components with resistance.
 Where a valve closes at an end, or a line ends blind, let a volume lie there: <code>volume_a</code>, <code>volume_b</code>; the pressure of that port is then a state.</p>
-<p>With laminar friction the line tends to the solution by characteristics with second order in the number of cells: a wave as long as the line comes out to 2 % with 20 cells, to 0.1 % with 80. Steeper fronts ring behind them, with a wave length of two cells. Friction is quasi-steady (<code>Functions.pipeFriction</code>), which damps fast waves too little. Valid for flows far below the speed of sound.</p>
+<p>With laminar friction the line tends to the solution by characteristics with second order in the number of cells: a wave as long as the line comes out to 2 % with 20 cells, to 0.1 % with 80. Steeper fronts ring behind them, with a wave length of two cells. Friction is quasi-steady, which damps fast waves too little; <code>redeclare model Friction = LineFriction.Unsteady</code> weights the past of the flow. Valid for flows far below the speed of sound.</p>
 <p>Source: E. B. Wylie and V. L. Streeter, Fluid Transients in Systems, 1993, chapters 2 and 12.</p></html>"));
 end Line;

@@ -1,6 +1,7 @@
 within ClosedCircuit;
 model Bench "The whole bench: charge pump, flushing, filters, cooler, relief valves, load pump with proportional relief (Fig. 1)"
   parameter MotorType motor = MotorType.A "Motor of the drive" annotation(Evaluate = true);
+  parameter Control control = Control.V_f "Control of the drive" annotation(Evaluate = true);
   parameter SI.Inertia J_L(min = 0) = 2 "Inertia of the load";
   parameter SI.Frequency f(min = 0, max = 100) = 27.74 "Frequency command, where its source is constant";
   parameter SI.Voltage u(min = 0, max = 10) = 3 "Load command, where its source is constant";
@@ -8,8 +9,10 @@ model Bench "The whole bench: charge pump, flushing, filters, cooler, relief val
   inner Oil.ClosedCircuitOil oil "Oil";
   replaceable Signal.Constant frequency(k = f) constrainedby Signal.Bases.Source "Source of the frequency command";
   replaceable Signal.Constant command(k = u) constrainedby Signal.Bases.Source "Source of the load command";
-  Electrical.Drives.VfInverter inverter "1: inverter";
-  Electrical.Machines.InductionMotorSteady electricMotor(R_r = if motor == MotorType.A then 0.40 else 0.16) "2: induction motor";
+  Electrical.Drives.VfInverter inverter if control == Control.V_f "1: inverter";
+  Electrical.Machines.InductionMotorSteady electricMotor(R_r = if motor == MotorType.A then 0.40 else 0.16) if control == Control.V_f "2: induction motor";
+  Electrical.Drives.SensorlessVectorDrive vectorDrive if control == Control.SFVC "1, 2: drive under vector control";
+  Signal.Gain synchronous(k = Modelica.Constants.pi) if control == Control.SFVC "Synchronous speed of four poles";
   Mechanical.Rotational.Inertia shaft_1(J = 0.35 + 0.02, w(start = 50)) "3: rotors of motor and pump, splitter gear 1:1";
   Mechanical.Rotational.Damper bearing_1(d = 0.02) "Friction of the motor";
   Mechanical.Rotational.TorqueSensor sensor_1 "4-1: torque before the pump";
@@ -47,6 +50,9 @@ equation
   connect(inverter.f, electricMotor.f);
   connect(inverter.U, electricMotor.U);
   connect(electricMotor.flange, shaft_1.flange_a);
+  connect(frequency.y, synchronous.u);
+  connect(synchronous.y, vectorDrive.w_ref);
+  connect(vectorDrive.flange, shaft_1.flange_a);
   connect(shaft_1.flange_b, bearing_1.flange_a);
   connect(bearing_1.flange_b, housing.flange);
   connect(shaft_1.flange_b, chargePump.flange);
@@ -91,6 +97,6 @@ equation
   p = side_A.p - side_B.p;
   T_e = shaft_1.flange_a.tau;
   annotation(
-    experiment(StartTime = 0, StopTime = 30, Interval = 0.01, Tolerance = 1e-6),
+    experiment(StartTime = 0, StopTime = 40, Interval = 0.01, Tolerance = 1e-6),
     Documentation(info = "<html><p>Against <code>Reduced</code> the low side is no longer constant (it follows the charge relief valve and the flushing), the charge pump loads the motor, the hydraulic motor loses compressed oil too, and the load is a pump against a relief valve instead of a polynomial.</p></html>"));
 end Bench;

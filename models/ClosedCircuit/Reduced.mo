@@ -51,5 +51,5 @@ equation
   n_m = Modelica.Units.Conversions.to_rpm(shaft_2.w);
   p = highSide.p - p_low;
   T_e = shaft_1.flange_a.tau;
-  annotation(experiment(StartTime = 0, StopTime = 20, Interval = 0.01, Tolerance = 1e-7));
+  annotation(experiment(StartTime = 0, StopTime = 40, Interval = 0.01, Tolerance = 1e-7));
 end Reduced;

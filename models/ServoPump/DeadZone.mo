@@ -1,13 +1,14 @@
 within ServoPump;
 model DeadZone "Pressure building at very low speed with port A closed (paper's Fig. 8, result Fig. 9)"
+  parameter Real N_set(unit = "rev/min", min = -100, max = 100) = 48 "Speed at which the ramp ends; negative builds the pressure at B";
   parameter Real ramp(unit = "rev/(min.s)", min = 1e-3, max = 100) = 0.5 "Rise of the speed";
   parameter SI.Volume V_A(min = 1e-6, max = 1e-2, nominal = 1e-4, displayUnit = "ml") = 50e-6 "Oil volume at port A";
   parameter Real theta_oil(unit = "degC", min = 0, max = 90) = 35 "Temperature of the oil";
   parameter Boolean compression = true "true: with the compression flow of the pump's chambers" annotation(Evaluate = true);
-  parameter Real N_end(unit = "rev/min", min = 1, max = 500) = 48 "Speed at which the ramp ends";
   inner Oil.ServoPumpOil oil(T_0 = Modelica.Units.Conversions.from_degC(theta_oil)) "Oil";
-  Signal.Ramp speed(height = Modelica.Units.Conversions.from_rpm(N_end), duration = N_end/ramp) "Speed command";
+  Signal.Ramp speed(height = Modelica.Units.Conversions.from_rpm(N_set), duration = abs(N_set)/ramp) "Speed command";
   Mechanical.Rotational.Speed motor "1: servo motor, its speed held exactly";
+  replaceable Electrical.Drives.IdealEncoder encoder "Encoder of the motor";
   BenchPump pump(compression = compression) "2: pump";
   Hydraulic.Volume volume_A(V = V_A, p_start = 5e5) "Oil at port A, up to the valve";
   Hydraulic.Volume volume_B(V = 1e-4, p_start = 5e5) "Oil at port B";
@@ -18,12 +19,16 @@ model DeadZone "Pressure building at very low speed with port A closed (paper's 
   Hydraulic.CheckValve check_B "5.2: check valve from the accumulator to B";
   Hydraulic.AccumulatorPolytropic accumulator(V_0 = 1e-3, p_pre = 3e5, p_start = 5e5, n = 1.0) "6: accumulator";
   Real N(unit = "rev/min", nominal = 10) "Speed of the shaft";
+  Real N_meas(unit = "rev/min", nominal = 10) "Speed by the encoder";
   SI.Pressure p_A(nominal = 1e7) "Absolute pressure at port A";
   SI.Pressure p_B(nominal = 1e6) "Absolute pressure at port B";
   SI.VolumeFlowRate Q_A(nominal = 1e-7) "Volume flow out of port A of the pump";
+  SI.Torque T_e "Torque of the motor";
+  SI.Torque T_sh "Torque of the shaft";
 equation
   connect(speed.y, motor.w_ref);
   connect(motor.flange, pump.flange);
+  connect(encoder.flange, pump.flange);
   connect(pump.port_a, volume_A.port);
   connect(volume_A.port, gauge.port);
   connect(volume_A.port, flowSensor.port_a);
@@ -34,9 +39,12 @@ equation
   connect(accumulator.port, check_B.port_a);
   connect(check_B.port_b, volume_B.port);
   N = Modelica.Units.Conversions.to_rpm(pump.w);
+  N_meas = Modelica.Units.Conversions.to_rpm(encoder.w);
   p_A = volume_A.p;
   p_B = volume_B.p;
   Q_A = pump.Q_A;
+  T_e = -motor.flange.tau;
+  T_sh = pump.T_sh;
   annotation(
     experiment(StartTime = 0, StopTime = 100, Interval = 0.1, Tolerance = 1e-6),
     Documentation(info = "<html>

@@ -1,12 +1,13 @@
 within ServoPump;
 model Load "Speed held against a load pressure set by a throttle (paper's Fig. 10, tables 3 and 4)"
   parameter Real N_set(unit = "rev/min", min = -3000, max = 3000) = 600 "Speed command";
+  parameter Real ramp(unit = "rev/(min.s)", min = 1) = 3000 "Rise of the speed at the start";
   parameter SI.Pressure p_load(min = 1e5, max = 21e6, nominal = 1e7) = 10e6 "Load pressure p_A - p_B that the throttle is set for";
   parameter Real theta_oil(unit = "degC", min = 0, max = 90) = 35 "Temperature of the oil";
   parameter SI.Volume V_A(min = 1e-6, max = 1e-2, nominal = 1e-4, displayUnit = "ml") = 50e-6 "Oil volume at port A";
   parameter SI.Torque T_rated(min = 0.1) = 3.18 "Rated torque of the motor";
   inner Oil.ServoPumpOil oil(T_0 = Modelica.Units.Conversions.from_degC(theta_oil)) "Oil";
-  Signal.Ramp speed(height = Modelica.Units.Conversions.from_rpm(N_set), duration = 1) "Speed command";
+  Signal.Ramp speed(height = Modelica.Units.Conversions.from_rpm(N_set), duration = abs(N_set)/ramp) "Speed command";
   replaceable SampledDrive drive constrainedby Drive "1: servo motor";
   Mechanical.Rotational.Inertia rotor(J = 1.8e-4) "Inertia of motor and pump";
   Mechanical.Rotational.BearingFriction friction(tau_c = 0.01, tau_s = 0.05, w_s = 20, d = 0.2e-4) "Dry friction of seal and bearings";
@@ -16,6 +17,7 @@ model Load "Speed held against a load pressure set by a throttle (paper's Fig. 1
   Hydraulic.Volume volume_B(V = 1e-4, p_start = 4.5e5) "Oil at port B";
   Hydraulic.PressureSensor gauge "3: pressure gauge";
   Hydraulic.ReliefValve relief(p_set = 21e6, q_nom = 4e-5) "4: relief valve";
+  Hydraulic.ReliefValve relief_B(p_set = 21e6, q_nom = 4e-5) "The same for B, for negative speeds: the paper's bench has none and does not run so";
   Hydraulic.CheckValve check_B "5.2: check valve from the accumulator to B";
   Hydraulic.CheckValve check_A "5.1: check valve from the accumulator to A";
   Hydraulic.Accumulator accumulator(V_0 = 1e-3, p_pre = 3e5, p_start = 5e5) "6: accumulator";
@@ -44,6 +46,8 @@ equation
   connect(volume_A.port, gauge.port);
   connect(volume_A.port, relief.port_a);
   connect(relief.port_b, accumulator.port);
+  connect(volume_B.port, relief_B.port_a);
+  connect(relief_B.port_b, accumulator.port);
   connect(volume_A.port, flowSensor_1.port_a);
   connect(flowSensor_1.port_b, throttle.port_a);
   connect(throttle.port_b, flowSensor_2.port_a);
@@ -64,5 +68,5 @@ equation
   reserve = 1 - (pump.T_sh + friction.tau)/T_rated;
   annotation(
     experiment(StartTime = 0, StopTime = 8, Interval = 0.000625, Tolerance = 1e-5),
-    Documentation(info = "<html><p>The standard deviation of <code>N_meas</code> over the last 2 s, all samples of the drive, is that of tables 3 (600 r/min, 2 to 19 MPa) and 4 (10 MPa, 300 to 3000 r/min). It comes from a torque ripple once per revolution in proportion to the load, passed on by the speed loop, and from the resolution of the encoder; Stribeck friction adds little.</p></html>"));
+    Documentation(info = "<html><p>The standard deviation of <code>N_meas</code> over the last 2 s, all samples of the drive, is that of tables 3 (600 r/min, 2 to 19 MPa) and 4 (10 MPa, 300 to 3000 r/min). It comes from a torque ripple once per revolution in proportion to the load, passed on by the speed loop, and from the resolution of the encoder; Stribeck friction adds little.</p><p>The throttle is at A: with a negative speed the pump delivers into B, where nothing but the relief valve takes its flow.</p></html>"));
 end Load;

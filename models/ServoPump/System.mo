@@ -2,8 +2,9 @@ within ServoPump;
 model System "Pump-controlled cylinder with position loop (paper's Fig. 1): extend, hold, retract under load"
   parameter SI.Position x_ref(min = 0, max = 0.18, nominal = 0.1) = 0.055 "Position to extend to";
   parameter SI.Position x_start(min = 0, max = 0.18, nominal = 0.1) = 0.05 "Position at the start, returned to at the end";
-  parameter SI.Force F_load(nominal = 1e4) = 20e3 "Force against the extension";
-  parameter SI.Force F_return(nominal = 1e4) = 20e3 "Force against the retraction";
+  parameter SI.Pressure p_load(nominal = 1e7) = 3.88e6 "Pressure p_A - p_B that the load asks for while extending, without friction";
+  parameter SI.Force F_load(nominal = 1e4) = A_1*p_load + (A_1 - A_2)*(5e5 - oil.p_0) "Force against the extension";
+  parameter SI.Force F_return(nominal = 1e4) = F_load "Force against the retraction";
   parameter SI.Time t_turn(min = 1e-3) = 0.2 "Time in which the force turns round, from the begin of holding";
   parameter SI.Mass m_load(min = 1, nominal = 500) = 490 "Mass on the rod";
   parameter Real theta_oil(unit = "degC", min = 0, max = 90) = 35 "Temperature of the oil";
@@ -11,7 +12,7 @@ model System "Pump-controlled cylinder with position loop (paper's Fig. 1): exte
   parameter SI.Volume V_B(min = 1e-6, max = 1e-2, nominal = 1e-4, displayUnit = "ml") = 100e-6 "Oil volume at port B beside the stroke";
   parameter Real K_x(unit = "1/s", min = 0) = 20 "Gain of the position loop";
   parameter SI.Time t_extend = 0.1 "Begin of the extension";
-  parameter SI.Time t_move(min = 1e-3) = 1.1 "Time of extension and of retraction";
+  parameter SI.Time t_move(min = 1e-3) = max(1.1, abs(x_ref - x_start)/4.55e-3) "Time of extension and of retraction, such that the pump can follow";
   parameter SI.Time t_hold(min = 0) = 0.5 "Time of holding";
   inner Oil.ServoPumpOil oil(T_0 = Modelica.Units.Conversions.from_degC(theta_oil)) "Oil";
   Signal.SmoothMove reference(amplitude = x_ref - x_start, rising = t_move, holding = t_hold, falling = t_move, offset = x_start, startTime = t_extend) "Reference of position";
@@ -28,8 +29,8 @@ model System "Pump-controlled cylinder with position loop (paper's Fig. 1): exte
   Hydraulic.PressureSensor highPressure_A "8.1: pressure sensor of A";
   Hydraulic.PressureSensor highPressure_B "8.2: pressure sensor of B";
   Hydraulic.Cylinder cylinder(
-    A_1 = 50.27e-4, A_2 = 37.70e-4, stroke = 0.18, V_01 = V_A, V_02 = V_B, s_start = x_start,
-    p_1_start = 101325 + (F_load + 37.70e-4*(5e5 - 101325))/50.27e-4, p_2_start = 5e5) "9: cylinder";
+    A_1 = A_1, A_2 = A_2, stroke = 0.18, V_01 = V_A, V_02 = V_B, s_start = x_start,
+    p_1_start = max(oil.p_0 + (F_load + A_2*(5e5 - oil.p_0))/A_1, 5e5), p_2_start = max(oil.p_0 + (A_1*(5e5 - oil.p_0) - F_load)/A_2, 5e5)) "9: cylinder";
   Mechanical.Translational.PositionSensor positionSensor "10: displacement sensor";
   Mechanical.Translational.Mass load(m = m_load, s(start = x_start, fixed = false), v(fixed = false)) "Load";
   Signal.Ramp loadForce(offset = -F_load, height = F_load + F_return, duration = t_turn, startTime = t_extend + t_move) "Course of the load force";
@@ -44,6 +45,9 @@ model System "Pump-controlled cylinder with position loop (paper's Fig. 1): exte
   SI.VolumeFlowRate Q_A(nominal = 1e-5) "Volume flow out of port A of the pump";
   SI.Torque T_e "Torque of the motor";
   SI.Torque T_sh "Torque of the shaft";
+protected
+  constant SI.Area A_1 = 50.27e-4 "Area of the piston, 80 mm";
+  constant SI.Area A_2 = 37.70e-4 "Area less that of the rod, 40 mm";
 equation
   connect(reference.y, control.x_ref);
   connect(positionSensor.s, control.x);
@@ -81,5 +85,5 @@ equation
   T_sh = pump.T_sh;
   annotation(
     experiment(StartTime = 0, StopTime = 3, Interval = 0.002, Tolerance = 1e-6),
-    Documentation(info = "<html><p>The load always acts against the motion, as in a press that also lifts its tool out: extending, A is the high side and the accumulator supplies the difference of the areas through 7.2; retracting, B is the high side and A returns the surplus through 7.1, which B holds open.</p></html>"));
+    Documentation(info = "<html><p>The load always acts against the motion, as in a press that also lifts its tool out: extending, A is the high side and the accumulator supplies the difference of the areas through 7.2; retracting, B is the high side and A returns the surplus through 7.1, which B holds open.</p><p>The pump moves the rod by 7.6 mm/s at most. The default stroke of 5 mm and its return take 3 s; a farther <code>x_ref</code> takes longer (<code>t_move</code>), so that the stop time must grow with it: <code>t_extend + 2 t_move + t_hold</code> and some tenths.</p></html>"));
 end System;

@@ -140,6 +140,7 @@ impl<'a> Instance<'a, '_> {
         }
         let list: Vec<String> =
             request.overrides.iter().map(|o| format!("{} = {}", o.name, evaluate::override_text(&o.value))).collect();
+        self.eval.texts = request.overrides.iter().map(|o| (o.name.clone(), o.value.clone())).collect();
         let text = format!("model Set\n  extends Model(\n    {}\n  );\nend Set;\n", list.join(",\n    "));
         let before = self.library.diagnostics.len();
         let own = self.library.own.len();

@@ -223,6 +223,7 @@ impl<'a> Instance<'a, '_> {
         for f in formals {
             let given =
                 positional.next().or_else(|| named.iter().find(|(n, _)| n.name == f.name).map(|(_, v)| v.clone()));
+            let given_here = given.is_some();
             let value = match given {
                 Some(v) => self.fit_argument(callee, f, v, span)?,
                 None => match self.default_value(f)? {
@@ -237,9 +238,33 @@ impl<'a> Instance<'a, '_> {
                     }
                 },
             };
+            let place = match given_here {
+                true => span,
+                false => self.reached(f.view.scope, f.index).binding.map_or(span, |b| b.expr.span),
+            };
+            self.check_bounds(callee, f, &value, place);
             self.eval.locals.push((f.name, value));
         }
         Some(())
+    }
+
+    /// A number given to an input must lie within the bounds of its declaration; told once however often it is called.
+    fn check_bounds(&mut self, callee: &Callee<'a>, f: &Formal<'a>, value: &Val, span: Span) {
+        let Some(x) = value.as_number(&self.exprs) else { return };
+        let told = match (declared_number(f.component, "min"), declared_number(f.component, "max")) {
+            (Some(low), _) if x < low => format!("less than its `min`, {low}"),
+            (_, Some(high)) if x > high => format!("more than its `max`, {high}"),
+            _ => return,
+        };
+        let message = format!("the input `{}` of `{}` is {x}, {told}", f.name, callee.name);
+        if self.diagnostics.iter().all(|d| d.message != message) {
+            self.report(
+                Diagnostic::new(Code::OutOfRange, message)
+                    .at(span, "this value")
+                    .at(f.component.name.span, "declared here")
+                    .help("give a value within the bounds, in the unit of the input"),
+            );
+        }
     }
 
     /// Checks an argument against the declared type and number of dimensions.
@@ -520,6 +545,22 @@ impl<'a> Instance<'a, '_> {
 
     fn blank_field(&mut self, f: &Formal<'a>) -> Option<Val> {
         self.declared_local(f)
+    }
+}
+
+/// An attribute that is written as a number.
+fn declared_number(component: &ast::Component, attribute: &str) -> Option<f64> {
+    let arguments = &component.modification.as_ref()?.arguments;
+    let value = arguments.iter().find_map(|argument| match &argument.kind {
+        ast::ArgumentKind::Modify { path, modification, .. } if path.parts[0].name.as_str() == attribute => {
+            modification.as_ref()?.value.as_ref()
+        }
+        _ => None,
+    })?;
+    match value.kind {
+        ast::ExprKind::Real(x) => Some(x),
+        ast::ExprKind::Integer(i) => Some(i as f64),
+        _ => None,
     }
 }
 

@@ -8,6 +8,7 @@ use crate::expr::{Binary, ExprId, Exprs, Rel};
 use crate::flat::{MessagePart, Type, Variability};
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Subscript, UnaryOp};
 use crate::syntax::symbol::Symbol;
+use rustc_hash::FxHashMap;
 use std::rc::Rc;
 
 /// The mutable surroundings of an evaluation.
@@ -43,9 +44,11 @@ pub struct State {
     pub before: bool,
     /// The text of values given from outside.
     pub override_file: Option<FileId>,
+    /// These values as they were given, by the names of the variables.
+    pub texts: FxHashMap<String, String>,
 }
 
-/// How a value given from outside is written into the model: as Modelica, or as a quantity with its unit.
+/// How a value given from outside is written into the model: as Modelica, as a quantity with its unit, or as a text.
 pub fn override_text(value: &str) -> String {
     let parsed = crate::syntax::parse_expression(FileId(0), value);
     if parsed.diagnostics.is_empty() {
@@ -60,8 +63,15 @@ pub fn override_text(value: &str) -> String {
         Ok(_) if !unit.trim().is_empty() => {
             format!("{QUANTITY}({number}, \"{}\")", unit.trim().replace(['\\', '"'], ""))
         }
+        _ if is_text(trimmed) => format!("\"{}\"", trimmed.replace('\\', "\\\\")),
         _ => value.to_string(),
     }
+}
+
+/// The name of a file or the like: letters, digits and what stands in paths, no Modelica.
+fn is_text(value: &str) -> bool {
+    let path = |c: char| c.is_alphanumeric() || "._-/\\: ".contains(c);
+    value.chars().all(path) && value.contains(char::is_alphabetic)
 }
 
 /// The name under which a number with a unit stands in the text of values given from outside.

@@ -539,11 +539,26 @@ impl<'a> Instance<'a, '_> {
         {
             return v;
         }
-        self.binding_value(b, constant)
+        let value = self.binding_value(b, constant)?;
+        let data = &self.variables[i as usize];
+        match (data.string, &value) {
+            (false, Val::Text(_)) => {
+                let name = data.name.clone();
+                let message = format!("`{name}` is {} and cannot take {}", type_name(data.ty), value.describe());
+                self.report(Diagnostic::new(Code::TypeMismatch, message).at(b.expr.span, "the value").instance(name));
+                None
+            }
+            _ => Some(value),
+        }
     }
 
-    /// Values from outside may be quantities with units, and literals of the variable's own enumeration.
+    /// Values from outside may be quantities with units, literals of the variable's own enumeration, and texts without
+    /// quotes.
     fn outside_value(&mut self, i: u32, b: &super::modifiers::Binding<'a>) -> Option<Option<Val>> {
+        let data = &self.variables[i as usize];
+        if data.string && !matches!(b.expr.kind, ExprKind::String(_)) {
+            return self.eval.texts.get(&data.name).map(|raw| Some(Val::text(raw.trim())));
+        }
         match &b.expr.kind {
             ExprKind::Call { function, args, .. } if function.parts[0].name.name == QUANTITY => {
                 let (number, unit) = (self.eval(&args[0], b.view)?, self.eval(&args[1], b.view)?);

@@ -456,13 +456,9 @@ fn is_broken(base: &Base<'_>, a: &Expr, b: &Expr) -> bool {
     names(a) || names(b) || base.broken_connects.iter().any(|(x, y)| same_pair((a, b), (x, y)))
 }
 
+/// Whether two pairs of ports are written alike, subscripts included (MLS 7.4).
 fn same_pair(a: (&Expr, &Expr), b: (&Expr, &Expr)) -> bool {
-    let text = |e: &Expr| match &e.kind {
-        ExprKind::Reference(r) => {
-            r.parts.iter().map(|p: &ast::ReferencePart| p.name.name.as_str()).collect::<Vec<_>>().join(".")
-        }
-        _ => String::new(),
-    };
-    let (a, b) = ((text(a.0), text(a.1)), (text(b.0), text(b.1)));
+    let text = |pair: (&Expr, &Expr)| (pair.0.to_string(), pair.1.to_string());
+    let (a, b) = (text(a), text(b));
     a == b || (a.0 == b.1 && a.1 == b.0)
 }

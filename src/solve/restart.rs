@@ -196,6 +196,15 @@ impl Restart {
         ida.equations().crossings(t + h, &y, &self.yp, g);
     }
 
+    /// The slopes of algebraic unknowns, from what they moved in the Euler step: IDA predicts with them. What is left of
+    /// the correction is the bend of the states. Not at the start, where nothing tells how far a straight line serves.
+    fn learn_slopes(&mut self, probe: f64, correction: &mut [f64]) {
+        for (i, _) in self.slots.iter().enumerate().filter(|(_, (_, der))| der.is_none()) {
+            self.yp[i] = correction[i] / probe;
+            correction[i] = 0.0;
+        }
+    }
+
     /// The step with this error, in tolerances, with order one; at most `longest`.
     fn first_step(&mut self, ida: &mut Ida<Model<'_>>, t: f64, longest: f64, room: f64, error: f64) -> f64 {
         let speed = self.norm(|i| self.yp[i]);
@@ -211,6 +220,9 @@ impl Restart {
         let mut correction = std::mem::take(&mut self.correction);
         let known = ida.euler_correction(t, probe, &self.y, &self.yp, self.explicit, &mut correction);
         let h = if known {
+            if error == FIRST_ERROR {
+                self.learn_slopes(probe, &mut correction);
+            }
             let bend = self.norm(|i| correction[i]) / (probe * probe);
             (2.0 * error / bend).sqrt().min(most)
         } else {

@@ -9,7 +9,7 @@ use super::solve_block::BlockSolver;
 use super::sorting::{System, SystemRow};
 use super::{
     ActionKind, Alias, Assign, Block, Dae, Selection, StateChoice, Unknown, alias, closed_groups, discrete,
-    dummy_derivatives, events, initial, messages, parameters, regularity,
+    dummy_derivatives, duplicates, events, initial, messages, parameters, regularity,
 };
 use crate::diag::{Checked, Diagnostic};
 use crate::expr::{Node, VarId};
@@ -44,7 +44,7 @@ fn run(flat: &FlatModel, choice: &StateChoice, diagnostics: &mut Vec<Diagnostic>
     discrete::absorb_initial_pres(&mut draft);
     refuse_input_derivatives(&draft)?;
     regularity::check(&draft).map_err(|found| explain_singular(flat, &draft, &aliases, &found))?;
-    if let Some(flows) = closed_groups::find(&draft) {
+    if let Some(flows) = closed_groups::find(&draft, &aliases) {
         return Err(messages::closed_group(&draft, &aliases, &flows));
     }
 
@@ -61,6 +61,7 @@ fn run(flat: &FlatModel, choice: &StateChoice, diagnostics: &mut Vec<Diagnostic>
     let start = initial::assemble(&mut draft, &model);
     diagnostics.extend(start.diagnostics);
     blocks.sort_initial(&mut draft, &mut known, &start.system);
+    duplicates::share(&mut draft.exprs, &mut blocks.continuous);
     let rest = Rest { order, aliases, states: states.states, selections: chosen.selections };
     let mut dae = assemble(flat, draft, blocks, rest);
     dae.chosen_starts = start.chosen;

@@ -11,6 +11,7 @@ mod discrete;
 mod draft;
 mod dulmage_mendelsohn;
 mod dummy_derivatives;
+mod duplicates;
 mod events;
 mod incidence;
 mod initial;

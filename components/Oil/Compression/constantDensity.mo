@@ -1,7 +1,7 @@
 within Oil.Compression;
 function constantDensity "Textbook form: constant density and constant bulk modulus at the same time"
   extends Oil.Compression.Law;
-  input SI.BulkModulus beta_0 = 1.4e9 "Bulk modulus";
+  input SI.BulkModulus beta_0(min = 1e6) = 1.4e9 "Bulk modulus";
 algorithm
   rho := rho_0;
   beta := beta_0;

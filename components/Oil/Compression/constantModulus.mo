@@ -1,7 +1,7 @@
 within Oil.Compression;
 function constantModulus "Constant bulk modulus: rho = rho_0 exp((p - p_0)/beta_0)"
   extends Oil.Compression.Law;
-  input SI.BulkModulus beta_0 = 1.4e9 "Bulk modulus";
+  input SI.BulkModulus beta_0(min = 1e6) = 1.4e9 "Bulk modulus";
 algorithm
   rho := rho_0*exp((p - p_0)/beta_0);
   beta := beta_0;

@@ -1,7 +1,7 @@
 within Oil.Compression;
 function entrainedAir "Oil with entrained air whose undissolved share is frozen"
   extends Oil.Compression.Law;
-  input SI.BulkModulus beta_0 = 1.5e9 "Tangent bulk modulus of the air-free oil at p_0";
+  input SI.BulkModulus beta_0(min = 1e6) = 1.5e9 "Tangent bulk modulus of the air-free oil at p_0";
   input Real m(unit = "1", min = 0.1) = 10 "Growth of the bulk modulus with pressure";
   input Real alpha_0(unit = "1") = 0.01 "Share of free air at p_0";
   input Real n_g(unit = "1") = 1.2 "Polytropic exponent of the bubbles";

@@ -1,7 +1,7 @@
 within Oil.Compression;
 function linearModulus "Bulk modulus linear in pressure: rho = rho_0 (1 + m (p - p_0)/beta_0)^(1/m)"
   extends Oil.Compression.Law;
-  input SI.BulkModulus beta_0 = 1.5e9 "Tangent bulk modulus at p_0";
+  input SI.BulkModulus beta_0(min = 1e6) = 1.5e9 "Tangent bulk modulus at p_0";
   input Real m(unit = "1", min = 0.1) = 10 "Growth of the bulk modulus with pressure";
 protected
   Real x "Modulus over its value at p_0";

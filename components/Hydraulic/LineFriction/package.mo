@@ -1,0 +1,3 @@
+within Hydraulic;
+package LineFriction "Friction laws of lines"
+end LineFriction;
