@@ -169,7 +169,7 @@ struct Filter<'a> {
     safe: DVector<f64>,
     scale: DVector<f64>,
     p: DMatrix<f64>,
-    /// d z / d parameters wanted.
+    /// Transposed d z / d parameters wanted: a row for each of them, because there may be hundreds.
     s: DMatrix<f64>,
     work: Work,
     chunk: Vec<f64>,
@@ -235,7 +235,7 @@ impl Group {
     fn step(&mut self, local: &Local, active: &[usize], moved: &[f64], x: &mut [f64], h: f64) {
         let (n, full) = (self.states.len(), &local.linear.a);
         let fresh = DMatrix::from_fn(n, n, |i, j| full[(self.states[i], self.states[j])]);
-        if h != self.h || fresh != self.a {
+        if (h - self.h).abs() > SAME_STEP * h || fresh != self.a {
             self.exponential.compute(&fresh, h);
             self.a = fresh;
             self.h = h;
@@ -249,6 +249,9 @@ impl Group {
         self.states.iter().zip(change.iter()).for_each(|(&i, dx)| x[i] += dx);
     }
 }
+
+/// Steps that differ by rounding of time stamps are the same.
+const SAME_STEP: f64 = 1e-9;
 
 /// Points at which dependences are looked for: at a single one a limiter may hide them.
 const POINTS: usize = 12;
@@ -343,13 +346,13 @@ impl<'a> Filter<'a> {
             z,
             scale,
             p,
-            s: DMatrix::zeros(nz, columns),
+            s: DMatrix::zeros(columns, nz),
             work: Work {
                 a: DMatrix::zeros(nz, nz),
-                b: DMatrix::zeros(nz, columns),
+                b: DMatrix::zeros(columns, nz),
                 exponential: Exponential::new(n, nz - n),
                 next_p: DMatrix::zeros(nz, nz),
-                next_s: DMatrix::zeros(nz, columns),
+                next_s: DMatrix::zeros(columns, nz),
                 transposed: DMatrix::zeros(nz, nz),
                 total: DMatrix::zeros(nz, nz),
             },
@@ -472,7 +475,7 @@ impl<'a> Filter<'a> {
         let c = self.output(&here);
         let linear = &self.local.linear;
         let mut pc = DVector::zeros(nz);
-        let mut e = vec![0.0; width];
+        let mut e = DVector::zeros(width);
         for (row, &i) in here.iter().enumerate() {
             let direction = c.row(row).transpose();
             pc.gemv(1.0, &self.p, &direction, 0.0);
@@ -483,9 +486,8 @@ impl<'a> Filter<'a> {
             }
             let root = variance.sqrt();
             // how predicted outputs depend on the parameters; innovations do with the opposite sign
-            for (j, e) in e.iter_mut().enumerate() {
-                *e = linear.d[(i, self.setting.columns[j])] + direction.dot(&self.s.column(j));
-            }
+            e.iter_mut().zip(&self.setting.columns).for_each(|(e, &j)| *e = linear.d[(i, j)]);
+            e.gemv(1.0, &self.s, &direction, 1.0);
             self.pass.white[(k, i)] = left / root;
             self.chunk.extend(e.iter().map(|e| e / root));
             self.chunk.push(left / root);
@@ -493,9 +495,7 @@ impl<'a> Filter<'a> {
             self.pass.likelihood += likelihood;
             self.block += likelihood;
             self.z.axpy(left / variance, &pc, 1.0);
-            for (j, e) in e.iter().enumerate().filter(|(_, e)| **e != 0.0) {
-                self.s.column_mut(j).axpy(-e / variance, &pc, 1.0);
-            }
+            self.s.ger(-1.0 / variance, &e, &pc, 1.0);
             self.p.ger(-1.0 / variance, &pc, &pc, 1.0);
         }
         (here, innovation, c)
@@ -642,7 +642,7 @@ impl<'a> Filter<'a> {
         }
         for (j, &parameter) in self.setting.columns.iter().enumerate() {
             for (i, &xi) in self.active.iter().enumerate() {
-                b[(i, j)] = linear.b[(xi, parameter)] / self.scale[i];
+                b[(j, i)] = linear.b[(xi, parameter)] / self.scale[i];
             }
         }
     }
@@ -652,11 +652,12 @@ impl<'a> Filter<'a> {
         let n = self.active.len();
         let Work { b, exponential, next_p, next_s, transposed, .. } = &mut self.work;
         let m = &exponential.transition;
-        multiply(next_s, &exponential.integral, b, 0.0);
-        multiply(next_s, m, &self.s, 1.0);
+        exponential.integral.transpose_to(transposed);
+        multiply(next_s, b, transposed, 0.0);
+        m.transpose_to(transposed);
+        multiply(next_s, &self.s, transposed, 1.0);
         std::mem::swap(&mut self.s, next_s);
         multiply(next_p, m, &self.p, 0.0);
-        m.transpose_to(transposed);
         multiply(&mut self.p, next_p, transposed, 0.0);
         // noise of the sources by the trapezoidal rule over the step
         for (j, source) in self.setting.sources.iter().enumerate() {

@@ -11,7 +11,8 @@ use nalgebra::DMatrix;
 use std::ops::Range;
 
 /// The background is tried as fitted, and reduced: what a hypothesis explains must be allowed to leave it.
-const BACKGROUNDS: [f64; 2] = [1.0, 0.1];
+const FULL: f64 = 1.0;
+const REDUCED: f64 = 0.1;
 /// Samples over which a joint model is tried.
 const BEGINNING: usize = 2;
 /// Typical sizes that a coefficient may have at most, as prior deviation.
@@ -72,10 +73,10 @@ pub fn screen(problem: &Problem<'_>, base: &Fit, accepted: &[Accepted]) -> Vec<C
     let before: Vec<Chosen> = accepted.iter().map(|a| a.chosen.clone()).collect();
     let Some((chosen, assembled)) = attachable(problem, &before, chosen) else { return Vec::new() };
     let joint = |background: f64| Joint::new(problem, base, accepted, &assembled, &chosen, background);
-    let Some(full) = joint(BACKGROUNDS[0]) else { return Vec::new() };
+    let (full, reduced) = rayon::join(|| joint(FULL), || joint(REDUCED));
+    let Some(full) = full else { return Vec::new() };
     let mut found = full.weigh(&drifts, None);
-    for background in &BACKGROUNDS[1..] {
-        let Some(reduced) = joint(*background) else { continue };
+    if let Some(reduced) = reduced {
         for c in reduced.weigh(&drifts, Some(full.floor)) {
             match found.iter_mut().find(|f| f.chosen.hypothesis == c.chosen.hypothesis) {
                 Some(f) if f.gain < c.gain => *f = c,

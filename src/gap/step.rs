@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-/// Matrices up to this size are multiplied by plain loops.
+/// Products with up to so many terms a sum are done by plain loops.
 const LARGE: usize = 64;
 /// Taylor coefficients 1/(k + 1)! of phi; with arguments below [`SMALL`] the error is under 1e-8.
 const COEFFICIENTS: [f64; 7] = [1.0, 1.0 / 2.0, 1.0 / 6.0, 1.0 / 24.0, 1.0 / 120.0, 1.0 / 720.0, 1.0 / 5040.0];
@@ -14,7 +14,7 @@ const MOST_HALVINGS: i32 = 40;
 /// `out = a b + beta out` without the packing that pays for large matrices only.
 pub fn multiply(out: &mut DMatrix<f64>, a: &DMatrix<f64>, b: &DMatrix<f64>, beta: f64) {
     let (rows, inner) = a.shape();
-    if rows.max(inner) > LARGE {
+    if inner > LARGE {
         out.gemm(1.0, a, b, beta);
         return;
     }
