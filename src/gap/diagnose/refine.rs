@@ -27,8 +27,9 @@ const SHAPES: usize = 5;
 /// Iterations with which candidates are compared before the front is polished, and candidates polished.
 const RACE: usize = 2;
 const POLISHED: usize = 5;
-/// Part of the sources' levels with which a candidate is tried as well.
-const QUIET: f64 = 0.1;
+/// Those behind by this part of the front's gain and by so many nats stay as they are.
+const FAR_BEHIND: f64 = 0.5;
+const CLOSE: f64 = 200.0;
 /// A candidate that is so much worse than the model without it is not tried further, nats.
 const HOPELESS: f64 = 3e3;
 
@@ -108,8 +109,10 @@ impl Search {
     /// Those at the front are fitted to the end: comparisons are between optima only. The share of independent samples is
     /// that of the whitest: a model that explains what is missing leaves white innovations, and then all samples count.
     pub(super) fn sharpen(&mut self, problem: &Problem<'_>, refined: &mut Vec<Refined>) {
+        let front = refined.first().map_or(0.0, |r| r.fit.evidence);
+        let far = (FAR_BEHIND * (front - self.last.evidence)).max(CLOSE);
         let sharper = |(i, r): (usize, Refined)| {
-            if i >= POLISHED {
+            if i >= POLISHED || r.fit.evidence < front - far {
                 return r;
             }
             let mut fit = r.fit;
@@ -235,18 +238,16 @@ pub(super) fn fitted(problem: &Problem<'_>, from: &Fit, accepted: &[Accepted]) -
     let (assembled, priors) = ready(problem, from, accepted)?;
     let setting = assembled.setting(&from.setting.levels(), &from.setting.noise, Vec::new());
     let fit = |s| fit::fit(s, &priors, &problem.train, Some(from.search_share()), RACE);
-    let first = fit(setting.clone());
-    if let Some(f) = &first
-        && f.evidence < from.evidence - HOPELESS
-    {
-        return first.map(|f| (f, assembled));
+    let first = fit(setting)?;
+    if first.evidence < from.evidence - HOPELESS {
+        return Some((first, assembled));
     }
-    // sources as strong as the model before needed them may hide how right this one is: weaker ones are tried too
-    let mut adjusted = setting.clone();
-    fit::adjust(&mut adjusted, &problem.train);
-    let mut quiet = setting;
-    quiet.sources.iter_mut().for_each(|s| s.level *= QUIET);
-    let fits = [first, fit(adjusted), fit(quiet)];
-    let best = fits.into_iter().flatten().max_by(|a, b| a.evidence.total_cmp(&b.evidence))?;
+    // sources as strong as the model before needed them hide how right this one is
+    let mut adjusted = first.setting.clone();
+    let second = fit::adjust(&mut adjusted, &problem.train).and_then(|()| fit(adjusted));
+    let best = match second {
+        Some(s) if s.evidence > first.evidence => s,
+        _ => first,
+    };
     Some((best, assembled))
 }
