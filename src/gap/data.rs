@@ -26,6 +26,11 @@ impl Recording {
         self.times.is_empty()
     }
 
+    /// From the first sample to the last, s.
+    pub fn duration(&self) -> f64 {
+        self.times[self.times.len() - 1] - self.times[0]
+    }
+
     /// Inputs at a sample.
     pub fn input(&self, k: usize, u: &mut [f64]) {
         u.iter_mut().zip(&self.inputs).for_each(|(u, samples)| *u = samples[k]);

@@ -14,6 +14,7 @@ use crate::diag::Diagnostic;
 use crate::expr::VarId;
 use crate::flat::FlatModel;
 use crate::world::World;
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -72,6 +73,8 @@ pub struct Problem<'a> {
     pub files: Vec<String>,
     /// Recordings to learn from.
     pub train: Vec<Recording>,
+    /// How far states of the nominal model move over the recordings, by their names, SI; see [`Problem::explore`].
+    pub travel: BTreeMap<String, f64>,
 }
 
 /// A model with hypotheses attached, ready to be evaluated.
@@ -184,6 +187,26 @@ impl Problem<'_> {
         Some(all)
     }
 
+    /// Takes down how far the states of the nominal model move from its own start: what its author gave as their sizes
+    /// may be a default. Angles are left out, because laws repeat over a turn.
+    pub fn explore(&mut self) {
+        let Ok(model) = self.assemble(&[], &[]) else { return };
+        let variables = &model.plan.system.dae.variables;
+        let states = model.plan.state_variables().enumerate();
+        let signals: Vec<Signal> = states
+            .filter(|(i, _)| model.plan.state_unit(*i) != Some("rad"))
+            .filter_map(|(_, v)| variables[v.index()].name.strip_prefix(PLANT)?.strip_prefix('.'))
+            .enumerate()
+            .map(|(i, name)| Signal { name: format!("state_{i}"), variable: name.to_string(), scale: 1.0 })
+            .collect();
+        let courses = self.observe(&signals).unwrap_or_default();
+        let travel = |course: &Vec<f64>| {
+            let (least, most) = course.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, m), v| (l.min(*v), m.max(*v)));
+            most - least
+        };
+        self.travel = signals.into_iter().map(|s| s.variable).zip(courses.iter().map(travel)).collect();
+    }
+
     /// The flat model of an augmented text.
     fn flat(&self, augmented: &Augmented) -> Result<FlatModel, Vec<Diagnostic>> {
         let (overlay, request) =
@@ -236,7 +259,12 @@ impl Problem<'_> {
             }
             None => Local::start(plan.clone(), 0.0, &theta, &u),
         };
-        let sizes = sizes.map_or_else(|_| vec![1.0; plan.states()], |l| l.nominals());
+        let mut sizes = sizes.map_or_else(|_| vec![1.0; plan.states()], |l| l.nominals());
+        for (size, v) in sizes.iter_mut().zip(plan.state_variables()) {
+            let name = plan.system.dae.variables[v.index()].name.strip_prefix(PLANT).and_then(|n| n.strip_prefix('.'));
+            let travel = name.and_then(|n| self.travel.get(n)).copied();
+            *size = travel.filter(|t| t.is_finite()).map_or(*size, |t| t.max(*size));
+        }
         let most_noise = self.noise_floor.iter().map(|n| MOST_NOISE * n).collect();
         let tau = TAU.max(TAU_STEPS * self.step());
         Ok(Assembled { plan, theta, free, sources, attached, sizes, most_noise, tau, augmented })

@@ -1,6 +1,7 @@
 //! Grids of shapes fitted to what the recordings can show: times to the sampling step, thresholds to the values that
 //! occur, forms over a potential to its range.
 
+use super::data::Recording;
 use super::effects::Shape;
 use super::hypotheses::{Attachment, Hypothesis, Signal, Site};
 use super::problem::Problem;
@@ -8,6 +9,8 @@ use std::collections::BTreeMap;
 
 /// The sampling step for which the effects' own grids of times are made, s.
 const STEP: f64 = 1e-3;
+/// Times are at most this part of the longest recording.
+const LASTING: f64 = 1.0 / 3.0;
 /// Thresholds are tried where so much of what occurs lies below them.
 const QUANTILES: [f64; 5] = [0.2, 0.4, 0.6, 0.8, 0.95];
 /// Part of the speeds that are no jumps.
@@ -18,6 +21,7 @@ const PARTS: [f64; 4] = [0.4, 0.6, 0.8, 0.97];
 /// Fits all grids.
 pub fn fit(problem: &mut Problem<'_>) {
     let slower = problem.step() / STEP;
+    let longest = problem.train.iter().map(Recording::duration).fold(0.0, f64::max);
     let potentials = potentials(problem);
     let sizes = sizes(problem);
     let times: Vec<&[f64]> = problem.train.iter().map(|r| &r.times[..]).collect();
@@ -35,8 +39,8 @@ pub fn fit(problem: &mut Problem<'_>) {
         let site = h.attachments[0].site.clone();
         let size = size(&site, &sizes);
         for shape in &mut h.shapes {
-            if shape.unit == "s" && slower > 1.0 {
-                shape.grid.iter_mut().for_each(|x| *x *= slower);
+            if shape.unit == "s" {
+                time(shape, slower.max(1.0), longest);
             } else if let Some(occurs) = values(shape, &site, &potentials) {
                 shape.grid = QUANTILES.iter().map(|q| occurs[(q * (occurs.len() - 1) as f64) as usize]).collect();
                 shape.grid.retain(|x| *x > 0.0);
@@ -51,6 +55,14 @@ pub fn fit(problem: &mut Problem<'_>) {
         }
     }
     problem.hypotheses.retain(|h| h.shapes.iter().all(|s| !s.grid.is_empty()));
+}
+
+/// A time within what the recordings show: what takes longer than a part of them to fade is not seen to fade at all.
+fn time(shape: &mut Shape, slower: f64, longest: f64) {
+    let most = LASTING * longest;
+    shape.grid.iter_mut().for_each(|x| *x = (*x * slower).min(most));
+    shape.grid.dedup();
+    shape.max = Some(shape.max.map_or(most, |m| m.min(most)));
 }
 
 fn thresholds(h: &Hypothesis) -> impl Iterator<Item = usize> {

@@ -15,6 +15,7 @@ use crate::solve::Interpolation;
 use crate::study::{Bound, BoundSignal, Knowledge, Role, Study, full_scales};
 use crate::world::World;
 use std::path::{Path, PathBuf};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Standard deviation assumed for a parameter that the study does not speak of, as part of its value.
@@ -148,6 +149,7 @@ impl Nominal {
             tolerances: Vec::new(),
             files: Vec::new(),
             train: train.iter().map(|r| recording(&self.flat, &self.bound, r.clone())).collect(),
+            travel: BTreeMap::new(),
         };
         if problem.show().is_none() {
             let text = "the nominal model does not reach the end of the planned recordings";
@@ -191,7 +193,9 @@ impl Nominal {
             tolerances,
             files,
             train,
+            travel: BTreeMap::new(),
         };
+        problem.explore();
         shapes::fit(&mut problem);
         Ok(Question { problem, bound, flat, diagnostics })
     }
