@@ -2,6 +2,9 @@
 
 use std::sync::Arc;
 
+/// The start of a recording from which the initial state is estimated: this part of it, and at most so many seconds.
+const START: (f64, f64) = (0.05, 0.2);
+
 /// One recording in SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
@@ -29,6 +32,12 @@ impl Recording {
     /// From the first sample to the last, s.
     pub fn duration(&self) -> f64 {
         self.times[self.times.len() - 1] - self.times[0]
+    }
+
+    /// The first sample behind the start, from which the state is estimated and which counts for nothing else.
+    pub fn settled(&self) -> usize {
+        let until = self.times[0] + (START.0 * self.duration()).min(START.1);
+        self.times.iter().position(|t| *t >= until).unwrap_or(0).min(self.len() - 1)
     }
 
     /// Inputs at a sample.

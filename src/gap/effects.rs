@@ -92,6 +92,8 @@ pub struct Shape {
     /// A size of the signal at a sensor or command beyond which the effect acts: values outside of the range that occurs
     /// make no difference.
     pub limit: bool,
+    /// A frequency, Hz, of which the recordings have a line that the nominal model has not.
+    pub line: bool,
 }
 
 /// Parameters that take the range of a potential.
@@ -499,8 +501,9 @@ fn shapes(
         let unit = variable.unit.clone().unwrap_or_default();
         let listed = |key: &str| texts(own, key).contains(&name);
         let (threshold, level, limit) = (listed("threshold"), listed("level"), listed("limit"));
+        let line = listed("line");
         let relative = relative.contains(&name);
-        Ok(Shape { unit: unit.to_string(), grid, min, max, relative, threshold, level, limit, name })
+        Ok(Shape { unit: unit.to_string(), grid, min, max, relative, threshold, level, limit, line, name })
     };
     list.arguments.iter().map(one).collect()
 }

@@ -105,6 +105,8 @@ pub struct Pass {
 /// A linearised step: from one sample to the next.
 #[derive(Clone, Debug)]
 pub struct Step {
+    /// Behind the start of the recording: its samples count.
+    pub counted: bool,
     /// Signals with a sample.
     pub here: Vec<usize>,
     /// Measured minus predicted output.
@@ -154,6 +156,8 @@ struct Filter<'a> {
     setting: &'a Setting,
     recording: &'a Recording,
     number: usize,
+    /// Samples before it estimate the state and count for nothing else.
+    settled: usize,
     local: Local,
     /// Parameters with the sources' present values.
     theta: Vec<f64>,
@@ -335,6 +339,7 @@ impl<'a> Filter<'a> {
             setting,
             recording,
             number: 0,
+            settled: recording.settled(),
             local,
             theta,
             u: vec![0.0; recording.inputs.len()],
@@ -403,7 +408,15 @@ impl<'a> Filter<'a> {
         self.predict(k, &mut correction, h);
         if with_tape {
             let transition = self.work.total.clone();
-            self.pass.tape.push(Step { here, innovation, output, correction, transition, h });
+            self.pass.tape.push(Step {
+                counted: k >= self.settled,
+                here,
+                innovation,
+                output,
+                correction,
+                transition,
+                h,
+            });
         }
         Ok(())
     }
@@ -488,12 +501,14 @@ impl<'a> Filter<'a> {
             // how predicted outputs depend on the parameters; innovations do with the opposite sign
             e.iter_mut().zip(&self.setting.columns).for_each(|(e, &j)| *e = linear.d[(i, j)]);
             e.gemv(1.0, &self.s, &direction, 1.0);
-            self.pass.white[(k, i)] = left / root;
-            self.chunk.extend(e.iter().map(|e| e / root));
-            self.chunk.push(left / root);
-            let likelihood = -0.5 * left * left / variance - root.ln() - 0.5 * (2.0 * std::f64::consts::PI).ln();
-            self.pass.likelihood += likelihood;
-            self.block += likelihood;
+            if k >= self.settled {
+                self.pass.white[(k, i)] = left / root;
+                self.chunk.extend(e.iter().map(|e| e / root));
+                self.chunk.push(left / root);
+                let likelihood = -0.5 * left * left / variance - root.ln() - 0.5 * (2.0 * std::f64::consts::PI).ln();
+                self.pass.likelihood += likelihood;
+                self.block += likelihood;
+            }
             self.z.axpy(left / variance, &pc, 1.0);
             self.s.ger(-1.0 / variance, &e, &pc, 1.0);
             self.p.ger(-1.0 / variance, &pc, &pc, 1.0);

@@ -95,7 +95,7 @@ pub fn first_levels(assembled: &Assembled, noise: &[f64], train: &[Recording]) -
     setting.sources.clear();
     let samples = 600;
     let (_, gram) = total(&passes(&setting, &train[..1], samples, false)?);
-    let n = samples.min(train[0].len()) as f64;
+    let n = (samples.min(train[0].len()) as f64 - train[0].settled() as f64).max(1.0);
     let level = |i: usize| if gram[(i, i)] > 0.0 { 0.3 * (n / gram[(i, i)]).sqrt() } else { 1e-12 };
     Some((0..assembled.sources.len()).map(level).collect())
 }

@@ -8,9 +8,6 @@ use crate::analysis::local::Local;
 use nalgebra::DVector;
 use rayon::prelude::*;
 
-/// The start of a recording from which the initial state is estimated: this part of it, and at most so many seconds.
-const WINDOW: (f64, f64) = (0.05, 0.2);
-
 /// Residuals of one recording behind the window: samples by signals; NaN where nothing was measured.
 #[derive(Clone, Debug)]
 pub struct Residuals {
@@ -44,7 +41,7 @@ impl Gap {
 /// Simulates a recording from its inputs; the state at the end of the window comes from the window's samples.
 /// `None` when the simulation does not reach the end.
 pub fn simulate(setting: &Setting, recording: &Recording) -> Option<Residuals> {
-    let from = window(recording);
+    let from = recording.settled();
     let mut quiet = setting.clone();
     quiet.sources.clear();
     quiet.columns.clear();
@@ -62,14 +59,6 @@ pub fn from_start(setting: &Setting, recording: &Recording) -> Option<Vec<Vec<f6
     recording.input(0, &mut u);
     let local = Local::start(setting.plan.clone(), recording.times[0], &setting.theta, &u).ok()?;
     open_loop(setting, recording, 0, local.state())
-}
-
-/// The first sample that is scored.
-pub fn window(recording: &Recording) -> usize {
-    let t0 = recording.times[0];
-    let span = recording.times[recording.len() - 1] - t0;
-    let until = t0 + (WINDOW.0 * span).min(WINDOW.1);
-    recording.times.iter().position(|t| *t >= until).unwrap_or(0).min(recording.len() - 1)
 }
 
 /// Signals from the inputs, from the state at sample `from`.

@@ -138,7 +138,9 @@ fn replay(setting: &Setting, tape: &[Step], factors: &[f64], each: &mut impl FnM
             pc.gemv(1.0, &p, &direction, 0.0);
             let variance = direction.dot(&pc) + setting.noise[signal] * setting.noise[signal];
             let left = step.innovation[row] - direction.dot(&d);
-            each(Sample { signal, left, variance });
+            if step.counted {
+                each(Sample { signal, left, variance });
+            }
             d.axpy(left / variance, &pc, 1.0);
             p.ger(-1.0 / variance, &pc, &pc, 1.0);
         }

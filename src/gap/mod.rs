@@ -19,6 +19,7 @@ pub mod fixed;
 pub mod held;
 pub mod hypotheses;
 pub mod levels;
+pub mod lines;
 pub mod locate;
 pub mod plan;
 pub mod problem;

@@ -201,7 +201,8 @@ impl Problem<'_> {
             .collect();
         let courses = self.observe(&signals).unwrap_or_default();
         let travel = |course: &Vec<f64>| {
-            let (least, most) = course.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, m), v| (l.min(*v), m.max(*v)));
+            let (least, most) =
+                course.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, m), v| (l.min(*v), m.max(*v)));
             most - least
         };
         self.travel = signals.into_iter().map(|s| s.variable).zip(courses.iter().map(travel)).collect();

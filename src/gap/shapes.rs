@@ -1,9 +1,10 @@
 //! Grids of shapes fitted to what the recordings can show: times to the sampling step, thresholds to the values that
-//! occur, forms over a potential to its range.
+//! occur, forms over a potential to its range, frequencies to the lines that the nominal model has not.
 
 use super::data::Recording;
 use super::effects::Shape;
 use super::hypotheses::{Attachment, Hypothesis, Signal, Site};
+use super::lines;
 use super::problem::Problem;
 use std::collections::BTreeMap;
 
@@ -32,6 +33,8 @@ pub fn fit(problem: &mut Problem<'_>) {
             known
         })
     };
+    let periodic = problem.hypotheses.iter().any(|h| h.shapes.iter().any(|s| s.line));
+    let lines = if periodic { lines::lines(problem) } else { Vec::new() };
     let mut hypotheses = std::mem::take(&mut problem.hypotheses);
     hypotheses.retain_mut(|h| h.attachments.iter_mut().all(ranged));
     problem.hypotheses = hypotheses;
@@ -39,7 +42,9 @@ pub fn fit(problem: &mut Problem<'_>) {
         let site = h.attachments[0].site.clone();
         let size = size(&site, &sizes);
         for shape in &mut h.shapes {
-            if shape.unit == "s" {
+            if shape.line {
+                shape.grid.clone_from(&lines);
+            } else if shape.unit == "s" {
                 time(shape, slower.max(1.0), longest);
             } else if let Some(occurs) = values(shape, &site, &potentials) {
                 shape.grid = QUANTILES.iter().map(|q| occurs[(q * (occurs.len() - 1) as f64) as usize]).collect();

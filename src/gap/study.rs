@@ -14,8 +14,8 @@ use crate::lower::{Options, lower};
 use crate::solve::Interpolation;
 use crate::study::{Bound, BoundSignal, Knowledge, Role, Study, full_scales};
 use crate::world::World;
-use std::path::{Path, PathBuf};
 use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Standard deviation assumed for a parameter that the study does not speak of, as part of its value.

@@ -34,7 +34,11 @@ impl Search {
         let taken = |i: &usize| self.accepted.iter().any(|a| a.chosen.hypothesis == *i);
         let open: Vec<usize> = (0..problem.hypotheses.len()).filter(|i| unknown(i) && !taken(i)).collect();
         let first = &problem.train[..1];
-        let left = self.gap_of(problem, &self.last.setting, first);
+        // parameters that were fitted in the filter may simulate worse than those of the nominal model
+        let plain = at_nominal(problem, &self.last, &self.accepted).map_or(f64::INFINITY, |(model, _)| {
+            self.gap_of(problem, &model.setting(&[], &self.last.setting.noise, Vec::new()), first)
+        });
+        let left = self.gap_of(problem, &self.last.setting, first).min(plain);
         let near = |i: usize| {
             let candidate = whole(&problem.hypotheses[i], i)?;
             let gap = self.gap_with(problem, &candidate.accepted(), first)?;

@@ -1,0 +1,173 @@
+//! Spectral lines: frequencies at which the recordings part from the nominal model and at which no input moves. A periodic
+//! disturbance that follows no variable shows as one.
+
+use super::problem::Problem;
+use std::f64::consts::PI;
+
+/// Samples of each recording that are looked at, at most.
+const SAMPLES: usize = 4096;
+/// Periods that a recording must hold, and samples that a period must.
+const PERIODS: f64 = 2.0;
+const PER_PERIOD: f64 = 5.0;
+/// Neighbours on each side with whose median the power at a frequency is compared, and those that its own window fills.
+const NEIGHBOURS: usize = 30;
+const OWN: usize = 3;
+/// Mean logarithm over the recordings of power over its neighbours' median, from which a frequency is a line: among
+/// thousands of frequencies of one recording of noise the greatest is about 2.5.
+const LINE: f64 = 3.0;
+/// Lines at most.
+const MOST: usize = 3;
+/// Halvings of the distance between two frequencies when a line is placed.
+const FINER: usize = 8;
+
+/// Frequencies in Hz, the clearest first; empty where the nominal model does not reach the end.
+pub fn lines(problem: &Problem<'_>) -> Vec<f64> {
+    let Some(shown) = problem.observe(&problem.signals) else { return Vec::new() };
+    let mut from = 0;
+    let mut left: Vec<Vec<Series>> = vec![Vec::new(); problem.signals.len()];
+    let mut moved: Vec<Vec<Series>> = vec![Vec::new(); problem.circuit.inputs.len()];
+    for r in &problem.train {
+        let n = r.len().min(SAMPLES);
+        let step = r.duration() / (r.len() - 1).max(1) as f64;
+        for (i, own) in left.iter_mut().enumerate() {
+            let values = r.signals[i].iter().zip(&shown[i][from..]).take(n).map(|(y, s)| y - s).collect();
+            own.push(Series::new(values, step));
+        }
+        moved.iter_mut().zip(&r.inputs).for_each(|(own, u)| own.push(Series::new(u[..n].to_vec(), step)));
+        from += r.len();
+    }
+    let Some(frequencies) = frequencies(&left) else { return Vec::new() };
+    let spectra: Vec<Vec<f64>> = left.iter().map(|all| heights(all, &frequencies)).collect();
+    let inputs: Vec<Vec<f64>> = moved.iter().map(|all| heights(all, &frequencies)).collect();
+    let mut taken: Vec<usize> = Vec::new();
+    let mut found = Vec::new();
+    while found.len() < MOST {
+        let free = |k: usize| taken.iter().all(|t| t.abs_diff(k) > OWN);
+        let best = (0..spectra.len())
+            .flat_map(|i| (0..frequencies.len()).map(move |k| (i, k)))
+            .filter(|&(_, k)| free(k))
+            .max_by(|a, b| spectra[a.0][a.1].total_cmp(&spectra[b.0][b.1]));
+        let Some((i, k)) = best.filter(|&(i, k)| spectra[i][k] > LINE) else { break };
+        taken.push(k);
+        let near = k.saturating_sub(OWN)..(k + OWN + 1).min(frequencies.len());
+        if inputs.iter().all(|own| own[near.clone()].iter().all(|h| *h < LINE)) {
+            found.push(placed(&left[i], frequencies[k], frequencies[1] - frequencies[0]));
+        }
+        if taken.len() > 4 * MOST {
+            break;
+        }
+    }
+    found
+}
+
+/// Differences of samples, which leave lines and take away what drifts, in a Hann window.
+#[derive(Clone)]
+struct Series {
+    values: Vec<f64>,
+    step: f64,
+}
+
+impl Series {
+    fn new(samples: Vec<f64>, step: f64) -> Series {
+        let n = samples.len().saturating_sub(1).max(1) as f64;
+        let window = |k: usize| 0.5 - 0.5 * (2.0 * PI * (k as f64 + 0.5) / n).cos();
+        let difference = |(k, w): (usize, &[f64])| {
+            let d = (w[1] - w[0]) * window(k);
+            if d.is_finite() { d } else { 0.0 }
+        };
+        Series { values: samples.windows(2).enumerate().map(difference).collect(), step }
+    }
+
+    fn duration(&self) -> f64 {
+        self.values.len() as f64 * self.step
+    }
+
+    /// Goertzel's recurrence (Goertzel, An algorithm for the evaluation of finite trigonometric series, 1958).
+    fn power(&self, frequency: f64) -> f64 {
+        let turn = 2.0 * PI * frequency * self.step;
+        let twice = 2.0 * turn.cos();
+        let (mut one, mut two) = (0.0, 0.0);
+        for v in &self.values {
+            (one, two) = (v + twice * one - two, one);
+        }
+        one * one + two * two - twice * one * two
+    }
+}
+
+/// Frequencies that all recordings can show, as dense as the longest tells them apart.
+fn frequencies(series: &[Vec<Series>]) -> Option<Vec<f64>> {
+    let all = || series.iter().flatten();
+    let longest = all().map(Series::duration).fold(0.0, f64::max);
+    let shortest = all().map(Series::duration).fold(f64::INFINITY, f64::min);
+    let slowest = all().map(|s| s.step).fold(0.0, f64::max);
+    let (least, most) = (PERIODS / shortest, 1.0 / (PER_PERIOD * slowest));
+    let count = ((most - least) * longest).floor();
+    let enough = count.is_finite() && count > (2 * NEIGHBOURS) as f64;
+    enough.then(|| (0..count as usize).map(|k| least + k as f64 / longest).collect())
+}
+
+/// How far each frequency stands above its neighbours, as mean logarithm over the recordings.
+fn heights(series: &[Series], frequencies: &[f64]) -> Vec<f64> {
+    let mut sum = vec![0.0; frequencies.len()];
+    for s in series {
+        let powers: Vec<f64> = frequencies.iter().map(|&f| s.power(f)).collect();
+        for (k, sum) in sum.iter_mut().enumerate() {
+            let near = k.saturating_sub(NEIGHBOURS)..(k + NEIGHBOURS + 1).min(powers.len());
+            let mut others: Vec<f64> = near.filter(|n| n.abs_diff(k) > OWN).map(|n| powers[n]).collect();
+            others.sort_by(f64::total_cmp);
+            let median = others[others.len() / 2];
+            // where nothing moves there is no line either
+            *sum += if median > 0.0 { (powers[k] / median).max(1e-3).ln() } else { 0.0 };
+        }
+    }
+    sum.into_iter().map(|s| s / series.len().max(1) as f64).collect()
+}
+
+/// The frequency near one of the list at which the recordings together have most power.
+fn placed(series: &[Series], frequency: f64, distance: f64) -> f64 {
+    let size: Vec<f64> = series.iter().map(|s| s.power(frequency).max(f64::MIN_POSITIVE)).collect();
+    let power = |f: f64| series.iter().zip(&size).map(|(s, size)| s.power(f) / size).sum::<f64>();
+    let (mut best, mut reach) = (frequency, distance);
+    for _ in 0..FINER {
+        reach *= 0.5;
+        best = [best - reach, best, best + reach]
+            .into_iter()
+            .max_by(|a, b| power(*a).total_cmp(&power(*b)))
+            .unwrap_or(best);
+    }
+    best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Deterministic noise of about unit size.
+    fn noise(k: usize) -> f64 {
+        let x = (k as f64 * 12.9898).sin() * 43758.5453;
+        3.4 * (x - x.floor() - 0.5)
+    }
+
+    #[test]
+    fn a_line_in_noise_stands_out_and_is_placed() {
+        let make = |phase: f64, seed: usize| {
+            let value = |k: usize| noise(k + seed) + 0.5 * (2.0 * PI * 7.313 * k as f64 * 1e-3 + phase).sin();
+            Series::new((0..4000).map(value).collect(), 1e-3)
+        };
+        let series = vec![make(0.0, 0), make(2.0, 5000), make(4.0, 10000)];
+        let frequencies = frequencies(std::slice::from_ref(&series)).expect("enough");
+        let heights = heights(&series, &frequencies);
+        let best = (0..heights.len()).max_by(|a, b| heights[*a].total_cmp(&heights[*b])).expect("some");
+        assert!(heights[best] > LINE, "{}", heights[best]);
+        let found = placed(&series, frequencies[best], frequencies[1] - frequencies[0]);
+        assert!((found - 7.313).abs() < 0.03, "{found}");
+    }
+
+    #[test]
+    fn noise_alone_has_no_line() {
+        let make = |seed: usize| Series::new((0..4000).map(|k| noise(k + seed)).collect(), 1e-3);
+        let series = vec![make(0), make(7000)];
+        let frequencies = frequencies(std::slice::from_ref(&series)).expect("enough");
+        assert!(heights(&series, &frequencies).iter().all(|h| *h < LINE));
+    }
+}
