@@ -228,7 +228,7 @@ impl Search {
 
     /// The promising candidates, refined; best first.
     fn ranked(&mut self, problem: &Problem<'_>, candidates: Vec<Candidate>) -> Vec<Refined> {
-        let (mut chosen, rest) = promising(problem, candidates);
+        let (mut chosen, rest) = promising(problem, &self.last, candidates);
         chosen.extend(self.unseen(problem, &chosen));
         let mut refined = self.refined(problem, &chosen);
         if let Some(front) = refined.first() {

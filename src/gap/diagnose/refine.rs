@@ -17,6 +17,8 @@ const REFINED: usize = 5;
 const PROMISING: f64 = 5.0;
 /// Candidates behind this part of the best one's gain are not refined.
 const FAR: f64 = 0.1;
+/// Part of a tolerance within which a parameter counts as at its end.
+const AT_BOUND: f64 = 1e-3;
 /// Candidates that are there or not; the deviation of their share from the whole, and samples with which their shapes are
 /// tried.
 const BOUNDED: usize = 4;
@@ -151,14 +153,21 @@ pub(super) fn best_first(refined: &mut [Refined]) {
 }
 
 /// What is refined: the best effects, the best of those that are there or not, which may look small from where they are
-/// not, and the best shape of each kind. And the rest.
-pub(super) fn promising(problem: &Problem<'_>, candidates: Vec<Candidate>) -> (Vec<Candidate>, Vec<Candidate>) {
+/// not, the best shape of each kind, and parameters that their tolerances hold back. And the rest.
+pub(super) fn promising(
+    problem: &Problem<'_>,
+    last: &Fit,
+    candidates: Vec<Candidate>,
+) -> (Vec<Candidate>, Vec<Candidate>) {
     let h = |c: &Candidate| &problem.hypotheses[c.chosen.hypothesis];
     let front = candidates.iter().find(|c| !h(c).is_shape()).map_or(0.0, |c| c.gain);
     let (mut effects, mut switched) = (0, 0);
     let mut kinds = BTreeSet::new();
     candidates.into_iter().partition(|c| {
         let worth = c.gain > PROMISING.max(FAR * front);
+        if held_back(problem, last, h(c)) {
+            return true;
+        }
         if h(c).is_shape() {
             worth && kinds.len() < SHAPES && kinds.insert(h(c).effect.clone())
         } else if bounded(h(c)) {
@@ -168,6 +177,17 @@ pub(super) fn promising(problem: &Problem<'_>, candidates: Vec<Candidate>) -> (V
             effects += 1;
             worth && effects <= REFINED
         }
+    })
+}
+
+/// A parameter that stands at the end of its tolerance, beyond which sources may have taken what it would explain.
+fn held_back(problem: &Problem<'_>, last: &Fit, h: &Hypothesis) -> bool {
+    let index = if h.family == "parameter" { screen::drifting(problem, h) } else { None };
+    let prior = index.and_then(|i| last.priors.get(i));
+    prior.is_some_and(|p| {
+        let value = last.setting.theta[p.parameter];
+        let near = AT_BOUND * p.sigma;
+        value < p.min + near || value > p.max - near
     })
 }
 
