@@ -12,11 +12,11 @@ use super::held;
 use super::locate::{self, Located};
 use super::problem::{Assembled, Chosen, Problem};
 use super::recording::{self, Gross};
-use super::screen::{self, Accepted, Candidate};
+use super::screen::{self, Accepted, Screened};
 use super::verdict::Verdict;
 use conclusion::Conclusion;
 use rayon::prelude::*;
-use refine::{Refined, best_first, fitted, promising, siblings, values};
+use refine::{Refined, best_first, fitted, hidden, promising, siblings, values};
 
 /// Effects that are looked for one after another, at most.
 const MOST_EFFECTS: usize = 4;
@@ -97,6 +97,16 @@ pub struct Trial {
     pub won_and_lost: (f64, f64),
 }
 
+/// A shape that explains more than the best effect, while effects are looked for that together explain as much: two
+/// causes at one place may look like one that nobody knows.
+struct Pending {
+    shape: Refined,
+    /// Effects accepted before, and their fit.
+    accepted: usize,
+    last: Fit,
+    last_model: Assembled,
+}
+
 /// What the search came to; held recordings have not been touched.
 pub struct Search {
     /// The nominal model with parameters within their tolerances.
@@ -109,6 +119,7 @@ pub struct Search {
     last_model: Assembled,
     /// What is left after the effects, by its shape.
     shape: Option<Shaped>,
+    pending: Option<Pending>,
     /// Places that are left.
     left: Vec<Located>,
     /// All refined candidates.
@@ -147,12 +158,14 @@ pub fn search(problem: &Problem<'_>, progress: &mut dyn FnMut(Stage)) -> Result<
         accepted: Vec::new(),
         found: Vec::new(),
         shape: None,
+        pending: None,
         left: Vec::new(),
         visible: 0.0,
         trials: Vec::new(),
         gross,
     };
     while search.gross.is_empty() && search.accepted.len() < MOST_EFFECTS && search.step(problem, progress) {}
+    search.shape_or_effects(problem);
     search.prune(problem);
     progress(Stage::Locate);
     search.left = if search.accepted.is_empty() {
@@ -214,21 +227,22 @@ impl Search {
     fn step(&mut self, problem: &Problem<'_>, progress: &mut dyn FnMut(Stage)) -> bool {
         let number = self.accepted.len() + 1;
         progress(Stage::Screen(number));
-        let candidates = screen::screen(problem, &self.last, &self.accepted);
+        let screened = screen::screen(problem, &self.last, &self.accepted);
         if number == 1 {
-            let seen = candidates.iter().filter(|c| c.visible > ACCEPTED).count();
-            self.visible = seen as f64 / candidates.len().max(1) as f64;
+            let seen = screened.followed.iter().filter(|c| c.visible > ACCEPTED).count();
+            self.visible = seen as f64 / screened.followed.len().max(1) as f64;
         }
         progress(Stage::Refine(number));
-        let refined = self.ranked(problem, candidates);
+        let refined = self.ranked(problem, screened);
         let trials: Vec<Trial> = refined.iter().map(|r| self.trial(number, r)).collect();
         self.trials.extend(trials);
         self.decide(problem, refined)
     }
 
     /// The promising candidates, refined; best first.
-    fn ranked(&mut self, problem: &Problem<'_>, candidates: Vec<Candidate>) -> Vec<Refined> {
-        let (mut chosen, rest) = promising(problem, &self.last, candidates);
+    fn ranked(&mut self, problem: &Problem<'_>, screened: Screened) -> Vec<Refined> {
+        let (mut chosen, rest) = promising(problem, &self.last, screened.followed);
+        hidden(&mut chosen, screened.driven);
         chosen.extend(self.unseen(problem, &chosen));
         let mut refined = self.refined(problem, &chosen);
         if let Some(front) = refined.first() {
@@ -249,8 +263,17 @@ impl Search {
         let (shapes, mut refined): (Vec<Refined>, Vec<Refined>) =
             refined.into_iter().partition(|r| r.is_shape(problem));
         if let Some(shape) = shapes.into_iter().find(|s| self.nothing_known(problem, s, refined.first())) {
-            self.shaped(problem, shape);
-            return false;
+            let effect = refined.first().is_some_and(|best| self.convinces(problem, best));
+            let first = self.pending.is_none();
+            if first && effect {
+                let (last, last_model) = (self.last.clone(), self.last_model.clone());
+                self.pending = Some(Pending { shape, accepted: self.accepted.len(), last, last_model });
+            } else if first {
+                self.shaped(problem, shape);
+            }
+            if !effect {
+                return false;
+            }
         }
         if refined.is_empty() {
             return false;
@@ -276,7 +299,9 @@ impl Search {
             .collect();
         let found = Found { gain: self.gain(&best.fit), t: vuong(&best.fit.blocks, &self.last.blocks), alternatives };
         self.accept(best, found);
-        true
+        // a second effect is looked for beside a shape, a third one only where the two come near it
+        let behind = |p: &Pending| self.accepted.len() > p.accepted + 1 && p.shape.fit.evidence > self.last.evidence;
+        !self.pending.as_ref().is_some_and(behind)
     }
 
     /// Whether an effect gains enough, and in most blocks, or where it acts.
@@ -325,6 +350,19 @@ impl Search {
             || vuong(&shape.fit.blocks, &rival.blocks) > CONSISTENT || rare(&shape.fit, rival, gain - named);
         let driven = || driven::gain(problem, shape, &self.last).is_some_and(|driven| driven > DRIVEN * gain);
         ahead && consistent() && driven()
+    }
+
+    /// Goes back to the shape that is pending where the effects accepted since do not explain as much together.
+    fn shape_or_effects(&mut self, problem: &Problem<'_>) {
+        let Some(Pending { shape, accepted, last, last_model }) = self.pending.take() else { return };
+        let share = self.last.share;
+        let shape = Refined { fit: shape.fit.at_share(share), ..shape };
+        if shape.fit.evidence > self.last.evidence {
+            self.accepted.truncate(accepted);
+            self.found.truncate(accepted);
+            self.adopt(last.at_share(share), last_model);
+            self.shaped(problem, shape);
+        }
     }
 
     /// Takes down what is left by its shape. Effects found before are dropped where the shape without them explains more

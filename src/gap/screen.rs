@@ -5,14 +5,19 @@ use super::effects::Shape;
 use super::evidence;
 use super::filter;
 use super::fit::{self, Fit, Prior};
+use super::held;
 use super::hypotheses::Hypothesis;
 use super::problem::{Assembled, Chosen, Problem, Tolerance};
 use nalgebra::DMatrix;
+use rayon::prelude::*;
 use std::ops::Range;
 
 /// The background is tried as fitted, and reduced: what a hypothesis explains must be allowed to leave it.
 const FULL: f64 = 1.0;
 const REDUCED: f64 = 0.1;
+/// And with sources that do nothing, where what is left of a signal is so many times its noise.
+const SILENT: f64 = 1e-6;
+const OPEN: f64 = 2.0;
 /// Samples over which a joint model is tried.
 const BEGINNING: usize = 2;
 /// Typical sizes that a coefficient may have at most, as prior deviation.
@@ -41,7 +46,7 @@ impl Candidate {
 /// How far a data sheet is usually off where it is wrong, as part of the value.
 const WRONG_SHEET: f64 = 0.3;
 /// Beyond so many times that, something else is wrong.
-const AT_MOST: f64 = 2.0;
+const AT_MOST: f64 = 5.0;
 
 /// Something accepted before.
 #[derive(Clone, Debug)]
@@ -59,8 +64,17 @@ struct Entry {
     columns: Range<usize>,
 }
 
-/// Weighs every hypothesis beside those accepted; best first, one entry a hypothesis.
-pub fn screen(problem: &Problem<'_>, base: &Fit, accepted: &[Accepted]) -> Vec<Candidate> {
+/// What a screen found; best first, one entry a hypothesis.
+#[derive(Clone, Debug, Default)]
+pub struct Screened {
+    /// As the filter sees it, whose sources follow what moves slowly.
+    pub followed: Vec<Candidate>,
+    /// By what the inputs alone bring about; empty where the model simulates the recordings to within the noise.
+    pub driven: Vec<Candidate>,
+}
+
+/// Weighs every hypothesis beside those accepted.
+pub fn screen(problem: &Problem<'_>, base: &Fit, accepted: &[Accepted]) -> Screened {
     let taken = |h: usize| accepted.iter().any(|a| a.chosen.hypothesis == h);
     let open: Vec<usize> = (0..problem.hypotheses.len()).filter(|&h| !taken(h)).collect();
     let (drifts, effects): (Vec<usize>, Vec<usize>) =
@@ -71,21 +85,62 @@ pub fn screen(problem: &Problem<'_>, base: &Fit, accepted: &[Accepted]) -> Vec<C
         .flat_map(|h| variants(&problem.hypotheses[h], h))
         .collect();
     let before: Vec<Chosen> = accepted.iter().map(|a| a.chosen.clone()).collect();
-    let Some((chosen, assembled)) = attachable(problem, &before, chosen) else { return Vec::new() };
-    let joint = |background: f64| Joint::new(problem, base, accepted, &assembled, &chosen, background);
-    let (full, reduced) = rayon::join(|| joint(FULL), || joint(REDUCED));
-    let Some(full) = full else { return Vec::new() };
-    let mut found = full.weigh(&drifts, None);
-    if let Some(reduced) = reduced {
+    let Some((chosen, assembled)) = attachable(problem, &before, chosen) else { return Screened::default() };
+    let mut backgrounds = vec![Background::of(base, FULL), Background::of(base, REDUCED)];
+    backgrounds.extend(Background::silent(problem, base));
+    let joint = |b: &Background| Joint::new(problem, base, accepted, &assembled, &chosen, b);
+    let mut joints = backgrounds.par_iter().map(joint).collect::<Vec<_>>().into_iter();
+    let Some(full) = joints.next().flatten() else { return Screened::default() };
+    let mut followed = full.weigh(&drifts, None);
+    if let Some(reduced) = joints.next().flatten() {
         for c in reduced.weigh(&drifts, Some(full.floor)) {
-            match found.iter_mut().find(|f| f.chosen.hypothesis == c.chosen.hypothesis) {
+            match followed.iter_mut().find(|f| f.chosen.hypothesis == c.chosen.hypothesis) {
                 Some(f) if f.gain < c.gain => *f = c,
                 _ => {}
             }
         }
     }
-    found.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-    found
+    followed.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    let driven = joints.next().flatten().map_or_else(Vec::new, |silent| silent.weigh(&drifts, None));
+    Screened { followed, driven }
+}
+
+/// Levels of the sources and of the noise under which hypotheses are weighed, and the share of samples that count.
+struct Background {
+    levels: Vec<f64>,
+    noise: Vec<f64>,
+    share: f64,
+}
+
+impl Background {
+    /// The sources as fitted, times a factor.
+    fn of(base: &Fit, factor: f64) -> Self {
+        let levels = base.setting.levels().into_iter().map(|level| level * factor).collect();
+        Background { levels, noise: base.setting.noise.clone(), share: base.search_share() }
+    }
+
+    /// Sources that do nothing: what the model's own course leaves is noise, as strong and as coloured as it is. `None`
+    /// where it leaves no more than the sensors' noise.
+    fn silent(problem: &Problem<'_>, base: &Fit) -> Option<Self> {
+        let runs = held::simulate_all(&base.setting, &problem.train);
+        let mut left = Vec::new();
+        for (r, run) in problem.train.iter().zip(&runs) {
+            let run = run.as_ref()?;
+            let error = |k: usize, i: usize| {
+                let e = r.signals[i][run.from + k] - run.simulated[i][k];
+                if e.is_finite() { e } else { 0.0 }
+            };
+            left.push(DMatrix::from_fn(r.len() - run.from, problem.signals.len(), error));
+        }
+        let count: usize = left.iter().map(DMatrix::nrows).sum();
+        let rms = |i: usize| (left.iter().map(|l| l.column(i).norm_squared()).sum::<f64>() / count as f64).sqrt();
+        let rms: Vec<f64> = (0..problem.signals.len()).map(rms).collect();
+        let open = rms.iter().zip(&base.setting.noise).any(|(left, noise)| *left > OPEN * noise);
+        let noise = rms.iter().zip(&base.setting.noise).map(|(left, noise)| left.max(*noise)).collect();
+        let share = evidence::independent_share(&left.iter().collect::<Vec<_>>());
+        let levels = base.setting.levels().into_iter().map(|level| level * SILENT).collect();
+        open.then_some(Background { levels, noise, share })
+    }
 }
 
 /// A hypothesis at its off value with each choice of its shapes.
@@ -151,7 +206,7 @@ impl<'a> Joint<'a> {
         accepted: &[Accepted],
         assembled: &Assembled,
         chosen: &[Chosen],
-        background: f64,
+        background: &Background,
     ) -> Option<Self> {
         let mut assembled = assembled.clone();
         let mut common = fit::tolerance_priors(problem);
@@ -172,15 +227,14 @@ impl<'a> Joint<'a> {
             columns.extend(&places[..count.min(places.len())]);
             entries.push(Entry { hypothesis: c.hypothesis, values: c.values.clone(), columns: first..columns.len() });
         }
-        let levels: Vec<f64> = base.setting.sources.iter().map(|s| s.level * background).collect();
-        let mut setting = assembled.setting(&levels, &base.setting.noise, columns);
+        let mut setting = assembled.setting(&background.levels, &background.noise, columns);
         setting.common = common.len();
         setting.cuts.clone_from(&base.cuts);
         setting.groups = entries.iter().map(|e| e.columns.clone()).collect();
         let passes = fit::passes(&setting, &problem.train, usize::MAX, false)?;
         let width = setting.columns.len() + 1;
-        let gram = passes.iter().fold(DMatrix::zeros(width, width), |sum, p| sum + &p.gram) * base.search_share();
-        let likelihood = base.search_share() * passes.iter().map(|p| p.likelihood).sum::<f64>();
+        let gram = passes.iter().fold(DMatrix::zeros(width, width), |sum, p| sum + &p.gram) * background.share;
+        let likelihood = background.share * passes.iter().map(|p| p.likelihood).sum::<f64>();
         // means relative to where the model was linearised
         common.iter_mut().for_each(|p| p.mean -= assembled.theta[p.parameter]);
         let mut joint = Joint { entries, common, gram, likelihood, floor: 0.0, problem };

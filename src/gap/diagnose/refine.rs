@@ -17,6 +17,8 @@ const REFINED: usize = 5;
 const PROMISING: f64 = 5.0;
 /// Candidates behind this part of the best one's gain are not refined.
 const FAR: f64 = 0.1;
+/// Those first by what the inputs alone bring about that are refined too.
+const DRIVEN: usize = 4;
 /// Part of a tolerance within which a parameter counts as at its end.
 const AT_BOUND: f64 = 1e-3;
 /// Candidates that are there or not; the deviation of their share from the whole, and samples with which their shapes are
@@ -178,6 +180,13 @@ pub(super) fn promising(
             worth && effects <= REFINED
         }
     })
+}
+
+/// Adds the best of those that explain what the inputs alone bring about: sources that follow what moves slowly hide them.
+pub(super) fn hidden(chosen: &mut Vec<Candidate>, driven: Vec<Candidate>) {
+    let known: BTreeSet<usize> = chosen.iter().map(|c| c.chosen.hypothesis).collect();
+    let new = |c: &Candidate| c.gain > PROMISING && !known.contains(&c.chosen.hypothesis);
+    chosen.extend(driven.into_iter().take(DRIVEN).filter(new));
 }
 
 /// A parameter that stands at the end of its tolerance, beyond which sources may have taken what it would explain.
