@@ -246,7 +246,7 @@ impl Search {
         chosen.extend(self.unseen(problem, &chosen));
         let mut refined = self.refined(problem, &chosen);
         if let Some(front) = refined.first() {
-            let others = siblings(problem, &rest, front);
+            let others = siblings(problem, &chosen, &rest, front);
             refined.extend(self.refined(problem, &others));
             best_first(&mut refined);
         }
@@ -442,11 +442,11 @@ fn won_and_lost(with: &Fit, without: &Fit) -> (f64, f64) {
     blocks.fold((0.0, 0.0), |(won, lost), (a, b)| if a > b { (won + a - b, lost) } else { (won, lost + b - a) })
 }
 
-/// Among the candidates that are practically as good as the first, the one with the fewest parameters.
+/// Among the candidates that are practically as good as the first, the one with the fewest parameters, at the fewest places.
 fn simplest(problem: &Problem<'_>, refined: &[Refined]) -> usize {
     let size = |r: &Refined| {
         let h = &problem.hypotheses[r.accepted.chosen.hypothesis];
-        h.coefficients.len() + h.shapes.len()
+        (h.coefficients.len() + h.shapes.len(), h.attachments.len())
     };
     let front = refined[0].fit.evidence;
     let level = refined.iter().take_while(|r| front - r.fit.evidence < AS_GOOD).count();

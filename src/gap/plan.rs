@@ -16,6 +16,8 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 use std::sync::Arc;
 
+/// Usual sizes that an effect may have in the place of another.
+const LARGEST: f64 = 30.0;
 /// Samples looked at in all; more are counted, not run.
 const SAMPLES: usize = 4000;
 /// Further sensors that are weighed, at most.
@@ -181,7 +183,7 @@ impl Products {
             let k = most.len();
             let cross = self.gram.view((others.start, columns.start), (k, sizes.len())) * &d;
             let mut own = self.gram.view((others.start, others.start), (k, k)).clone_owned();
-            (0..k).for_each(|i| own[(i, i)] += (screen::LARGEST * most[i]).powi(-2));
+            (0..k).for_each(|i| own[(i, i)] += (LARGEST * most[i]).powi(-2));
             own.cholesky().map_or(0.0, |f| cross.dot(&f.solve(&cross)))
         };
         let best = self.variants[instead].iter().map(taken).fold(0.0, f64::max);

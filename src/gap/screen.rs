@@ -1,7 +1,7 @@
 //! All hypotheses at once: one pass of the filter gives every column, and the evidence of each hypothesis costs a small
 //! factorisation.
 
-use super::effects::Shape;
+use super::effects::{Coefficient, Shape};
 use super::evidence;
 use super::filter;
 use super::fit::{self, Fit, Prior};
@@ -20,8 +20,10 @@ const SILENT: f64 = 1e-6;
 const OPEN: f64 = 2.0;
 /// Samples over which a joint model is tried.
 const BEGINNING: usize = 2;
-/// Typical sizes that a coefficient may have at most, as prior deviation.
-pub const LARGEST: f64 = 30.0;
+/// Typical sizes that a coefficient may have at most, as prior deviation: those of a sensor or a command are known by their
+/// range, machines differ by more than that, and drag behind a gear grows with the cube of its ratio.
+const LARGEST: f64 = 1e5;
+const LARGEST_OF_RANGE: f64 = 30.0;
 
 /// A hypothesis with its evidence in the linear model.
 #[derive(Clone, Debug)]
@@ -293,7 +295,7 @@ impl<'a> Joint<'a> {
         let mut visible = 0.0;
         for (column, c) in entry.columns.clone().zip(&h.coefficients) {
             let info = evidence::new_information(gram, column, base, sigmas);
-            prior_sigmas.push((blocks / info.max(1e-300)).sqrt().min(LARGEST * c.nominal.abs().max(1e-300)));
+            prior_sigmas.push((blocks / info.max(1e-300)).sqrt().min(largest(c)));
             visible += 0.5 * c.nominal * c.nominal * info;
         }
         let mut active: Vec<usize> = (0..prior_sigmas.len()).collect();
@@ -369,6 +371,11 @@ impl<'a> Joint<'a> {
         let chosen = Chosen { hypothesis, values: vec![value] };
         Some(Candidate { chosen, gain: found.evidence, priors: vec![prior], visible })
     }
+}
+
+/// The prior deviation that a coefficient has at most.
+fn largest(c: &Coefficient) -> f64 {
+    c.nominal.abs().max(1e-300) * if c.relative { LARGEST_OF_RANGE } else { LARGEST }
 }
 
 /// Prior of a shape about the value of its grid.

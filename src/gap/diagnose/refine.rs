@@ -17,6 +17,9 @@ const REFINED: usize = 5;
 const PROMISING: f64 = 5.0;
 /// Candidates behind this part of the best one's gain are not refined.
 const FAR: f64 = 0.1;
+/// Others of the best one's kind that are refined beside it, at most, and what they may be behind in the screen, nats.
+const SIBLINGS: usize = 4;
+const LEVEL: f64 = 15.0;
 /// Those first by what the inputs alone bring about that are refined too.
 const DRIVEN: usize = 4;
 /// Part of a tolerance within which a parameter counts as at its end.
@@ -200,16 +203,25 @@ fn held_back(problem: &Problem<'_>, last: &Fit, h: &Hypothesis) -> bool {
     })
 }
 
-/// Other effects that are there or not at the place of the best one: from where they are not they all look alike (a lag,
-/// a dead time).
-pub(super) fn siblings(problem: &Problem<'_>, rest: &[Candidate], front: &Refined) -> Vec<Candidate> {
+/// Others that may be the same as the best one: effects that are there or not at its place, which all look alike from
+/// where they are not (a lag, a dead time), and those of its family that the screen could not tell from it.
+pub(super) fn siblings(
+    problem: &Problem<'_>,
+    chosen: &[Candidate],
+    rest: &[Candidate],
+    front: &Refined,
+) -> Vec<Candidate> {
     let h = |c: &Chosen| &problem.hypotheses[c.hypothesis];
+    let index = front.accepted.chosen.hypothesis;
     let own = h(&front.accepted.chosen);
+    let gain = chosen.iter().find(|c| c.chosen.hypothesis == index).map_or(f64::INFINITY, |c| c.gain);
     let alike = |c: &&Candidate| {
         let other = h(&c.chosen);
-        c.gain > PROMISING && bounded(other) && other.attachments[0].site == own.attachments[0].site
+        let switched = bounded(own) && bounded(other) && other.attachments[0].site == own.attachments[0].site;
+        let level = !own.is_shape() && other.family == own.family && c.gain > gain - LEVEL;
+        c.gain > PROMISING && (switched || level)
     };
-    if bounded(own) { rest.iter().filter(alike).cloned().collect() } else { Vec::new() }
+    rest.iter().filter(alike).take(SIBLINGS).cloned().collect()
 }
 
 /// The value at which a coefficient stands for the whole effect, if it is a share of one.
