@@ -47,6 +47,8 @@ const AS_GOOD: f64 = 2.0;
 pub(super) const NEAR: f64 = 6.0;
 /// Nor those this near that no block prefers clearly.
 const NEAR_IF_INCONSISTENT: f64 = 15.0;
+/// Part of the simulated gap that one of them must leave at most to be taken instead.
+const MUCH_NEARER: f64 = 0.8;
 /// Vuong statistic below which an alternative is worse for certain.
 const CERTAINLY_WORSE: f64 = -1.64;
 
@@ -283,18 +285,13 @@ impl Search {
             self.accept(best, found);
             return false;
         }
-        let best = refined.remove(simplest(problem, &refined));
+        let best = refined.remove(self.preferred(problem, &refined));
         if !self.convinces(problem, &best) {
             return false;
         }
-        let near = |r: &&Refined| {
-            let behind = best.fit.evidence - r.fit.evidence;
-            let worse = vuong(&r.fit.blocks, &best.fit.blocks) < CERTAINLY_WORSE;
-            behind < NEAR || behind < NEAR_IF_INCONSISTENT && !worse
-        };
         let alternatives = refined
             .iter()
-            .filter(near)
+            .filter(|r| near(r, &best))
             .map(|r| (r.accepted.chosen.clone(), best.fit.evidence - r.fit.evidence))
             .collect();
         let found = Found { gain: self.gain(&best.fit), t: vuong(&best.fit.blocks, &self.last.blocks), alternatives };
@@ -302,6 +299,19 @@ impl Search {
         // a second effect is looked for beside a shape, a third one only where the two come near it
         let behind = |p: &Pending| self.accepted.len() > p.accepted + 1 && p.shape.fit.evidence > self.last.evidence;
         !self.pending.as_ref().is_some_and(behind)
+    }
+
+    /// The simplest of the best; or, of those that cannot be told from it, one with which the model's own course comes much
+    /// nearer to the recordings, which the filter does not see.
+    fn preferred(&self, problem: &Problem<'_>, refined: &[Refined]) -> usize {
+        let first = simplest(problem, refined);
+        let gap = |i: usize| {
+            let fit = &refined[i].fit;
+            held::gap_of(problem, &fit.setting, &problem.train, &self.last.setting.noise).total
+        };
+        let level = (0..refined.len()).filter(|&i| i != first && near(&refined[i], &refined[first]));
+        let nearest = level.map(|i| (gap(i), i)).min_by(|a, b| a.0.total_cmp(&b.0));
+        nearest.filter(|(left, _)| *left < MUCH_NEARER * gap(first)).map_or(first, |(_, i)| i)
     }
 
     /// Whether an effect gains enough, and in most blocks, or where it acts.
@@ -414,19 +424,24 @@ impl Search {
                 }
                 fitted(problem, &self.last, &rest)
             };
+            // of several that could go the one goes that was the least sure
             let least = (0..self.accepted.len())
-                .filter_map(|i| without(i).map(|(f, m)| (gap(&f).beyond(&full) / closable.max(1e-300), i, f, m)))
-                .min_by(|a, b| a.0.total_cmp(&b.0));
-            match least {
-                Some((closes, i, fit, model)) if closes < CLOSES => {
-                    self.accepted.remove(i);
-                    self.found.remove(i);
-                    self.adopt(fit, model);
-                }
-                _ => break,
-            }
+                .filter_map(|i| without(i).map(|(f, m)| (i, f, m)))
+                .filter(|(_, f, _)| gap(f).beyond(&full) < CLOSES * closable)
+                .min_by(|a, b| self.found[a.0].gain.total_cmp(&self.found[b.0].gain));
+            let Some((i, fit, model)) = least else { break };
+            self.accepted.remove(i);
+            self.found.remove(i);
+            self.adopt(fit, model);
         }
     }
+}
+
+/// Whether the data cannot tell a candidate from the best one.
+fn near(r: &Refined, best: &Refined) -> bool {
+    let behind = best.fit.evidence - r.fit.evidence;
+    let worse = vuong(&r.fit.blocks, &best.fit.blocks) < CERTAINLY_WORSE;
+    behind < NEAR || behind < NEAR_IF_INCONSISTENT && !worse
 }
 
 /// An effect that acts in few blocks gains much there and loses next to nothing elsewhere; the mean over all blocks

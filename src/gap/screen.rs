@@ -9,7 +9,6 @@ use super::held;
 use super::hypotheses::Hypothesis;
 use super::problem::{Assembled, Chosen, Problem, Tolerance};
 use nalgebra::DMatrix;
-use rayon::prelude::*;
 use std::ops::Range;
 
 /// The background is tried as fitted, and reduced: what a hypothesis explains must be allowed to leave it.
@@ -18,6 +17,8 @@ const REDUCED: f64 = 0.1;
 /// And with sources that do nothing, where what is left of a signal is so many times its noise.
 const SILENT: f64 = 1e-6;
 const OPEN: f64 = 2.0;
+/// A gain by which the filter sees something plainly, nats.
+const HIDING: f64 = 200.0;
 /// Samples over which a joint model is tried.
 const BEGINNING: usize = 2;
 /// Typical sizes that a coefficient may have at most, as prior deviation: those of a sensor or a command are known by their
@@ -71,7 +72,8 @@ struct Entry {
 pub struct Screened {
     /// As the filter sees it, whose sources follow what moves slowly.
     pub followed: Vec<Candidate>,
-    /// By what the inputs alone bring about; empty where the model simulates the recordings to within the noise.
+    /// By what the inputs alone bring about; empty where the model simulates the recordings to within the noise, or where
+    /// the filter sees something plainly.
     pub driven: Vec<Candidate>,
 }
 
@@ -88,13 +90,11 @@ pub fn screen(problem: &Problem<'_>, base: &Fit, accepted: &[Accepted]) -> Scree
         .collect();
     let before: Vec<Chosen> = accepted.iter().map(|a| a.chosen.clone()).collect();
     let Some((chosen, assembled)) = attachable(problem, &before, chosen) else { return Screened::default() };
-    let mut backgrounds = vec![Background::of(base, FULL), Background::of(base, REDUCED)];
-    backgrounds.extend(Background::silent(problem, base));
-    let joint = |b: &Background| Joint::new(problem, base, accepted, &assembled, &chosen, b);
-    let mut joints = backgrounds.par_iter().map(joint).collect::<Vec<_>>().into_iter();
-    let Some(full) = joints.next().flatten() else { return Screened::default() };
+    let joint = |b: Background| Joint::new(problem, base, accepted, &assembled, &chosen, &b);
+    let (full, reduced) = rayon::join(|| joint(Background::of(base, FULL)), || joint(Background::of(base, REDUCED)));
+    let Some(full) = full else { return Screened::default() };
     let mut followed = full.weigh(&drifts, None);
-    if let Some(reduced) = joints.next().flatten() {
+    if let Some(reduced) = reduced {
         for c in reduced.weigh(&drifts, Some(full.floor)) {
             match followed.iter_mut().find(|f| f.chosen.hypothesis == c.chosen.hypothesis) {
                 Some(f) if f.gain < c.gain => *f = c,
@@ -103,7 +103,9 @@ pub fn screen(problem: &Problem<'_>, base: &Fit, accepted: &[Accepted]) -> Scree
         }
     }
     followed.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-    let driven = joints.next().flatten().map_or_else(Vec::new, |silent| silent.weigh(&drifts, None));
+    let hidden = followed.first().is_none_or(|c| c.gain < HIDING);
+    let silent = if hidden { Background::silent(problem, base).and_then(joint) } else { None };
+    let driven = silent.map_or_else(Vec::new, |silent| silent.weigh(&drifts, None));
     Screened { followed, driven }
 }
 

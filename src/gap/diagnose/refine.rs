@@ -21,7 +21,7 @@ const FAR: f64 = 0.1;
 const SIBLINGS: usize = 4;
 const LEVEL: f64 = 15.0;
 /// Those first by what the inputs alone bring about that are refined too.
-const DRIVEN: usize = 4;
+const DRIVEN: usize = 3;
 /// Part of a tolerance within which a parameter counts as at its end.
 const AT_BOUND: f64 = 1e-3;
 /// Candidates that are there or not; the deviation of their share from the whole, and samples with which their shapes are
@@ -204,7 +204,8 @@ fn held_back(problem: &Problem<'_>, last: &Fit, h: &Hypothesis) -> bool {
 }
 
 /// Others that may be the same as the best one: effects that are there or not at its place, which all look alike from
-/// where they are not (a lag, a dead time), and those of its family that the screen could not tell from it.
+/// where they are not (a lag, a dead time), and those of its family there, or elsewhere where the screen could not tell
+/// them from it.
 pub(super) fn siblings(
     problem: &Problem<'_>,
     chosen: &[Candidate],
@@ -217,9 +218,9 @@ pub(super) fn siblings(
     let gain = chosen.iter().find(|c| c.chosen.hypothesis == index).map_or(f64::INFINITY, |c| c.gain);
     let alike = |c: &&Candidate| {
         let other = h(&c.chosen);
-        let switched = bounded(own) && bounded(other) && other.attachments[0].site == own.attachments[0].site;
-        let level = !own.is_shape() && other.family == own.family && c.gain > gain - LEVEL;
-        c.gain > PROMISING && (switched || level)
+        let here = other.attachments[0].site == own.attachments[0].site;
+        let of_kind = !own.is_shape() && other.family == own.family && (here || c.gain > gain - LEVEL);
+        c.gain > PROMISING && (of_kind || here && bounded(own) && bounded(other))
     };
     rest.iter().filter(alike).take(SIBLINGS).cloned().collect()
 }
