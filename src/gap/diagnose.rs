@@ -47,8 +47,6 @@ const AS_GOOD: f64 = 2.0;
 pub(super) const NEAR: f64 = 6.0;
 /// Nor those this near that no block prefers clearly.
 const NEAR_IF_INCONSISTENT: f64 = 15.0;
-/// Part of the simulated gap that one of them must leave at most to be taken instead.
-const MUCH_NEARER: f64 = 0.8;
 /// Vuong statistic below which an alternative is worse for certain.
 const CERTAINLY_WORSE: f64 = -1.64;
 
@@ -285,7 +283,7 @@ impl Search {
             self.accept(best, found);
             return false;
         }
-        let best = refined.remove(self.preferred(problem, &refined));
+        let best = refined.remove(simplest(problem, &refined));
         if !self.convinces(problem, &best) {
             return false;
         }
@@ -299,19 +297,6 @@ impl Search {
         // a second effect is looked for beside a shape, a third one only where the two come near it
         let behind = |p: &Pending| self.accepted.len() > p.accepted + 1 && p.shape.fit.evidence > self.last.evidence;
         !self.pending.as_ref().is_some_and(behind)
-    }
-
-    /// The simplest of the best; or, of those that cannot be told from it, one with which the model's own course comes much
-    /// nearer to the recordings, which the filter does not see.
-    fn preferred(&self, problem: &Problem<'_>, refined: &[Refined]) -> usize {
-        let first = simplest(problem, refined);
-        let gap = |i: usize| {
-            let fit = &refined[i].fit;
-            held::gap_of(problem, &fit.setting, &problem.train, &self.last.setting.noise).total
-        };
-        let level = (0..refined.len()).filter(|&i| i != first && near(&refined[i], &refined[first]));
-        let nearest = level.map(|i| (gap(i), i)).min_by(|a, b| a.0.total_cmp(&b.0));
-        nearest.filter(|(left, _)| *left < MUCH_NEARER * gap(first)).map_or(first, |(_, i)| i)
     }
 
     /// Whether an effect gains enough, and in most blocks, or where it acts.

@@ -334,7 +334,7 @@ impl<'a> Joint<'a> {
     }
 
     fn priors(&self, h: &Hypothesis, values: &[f64], sigmas: &[f64]) -> Vec<Prior> {
-        let coefficient = |(c, sigma): (&super::effects::Coefficient, &f64)| Prior {
+        let coefficient = |(c, sigma): (&Coefficient, &f64)| Prior {
             parameter: 0,
             mean: c.off,
             sigma: *sigma,
