@@ -48,10 +48,11 @@ package Slide
     parameter Real F(unit = \"N\") = 0;
     parameter Real W(unit = \"N\") = 0;
     parameter Real Z(unit = \"N\") = 0;
+    parameter Real P(unit = \"N\") = 0;
     Real v(unit = \"m/s\");
   equation
     v = der(flange.s);
-    flange.f = (F + W*(1 + sin(60*flange.s)) + Z*0.5*(1 + tanh((abs(v) - 0.15)/0.01)))*v/sqrt(v^2 + 1e-5);
+    flange.f = (F + W*(1 + sin(60*flange.s)) + Z*0.5*(1 + tanh((abs(v) - 0.15)/0.01)))*v/sqrt(v^2 + 1e-5) + P*sin(9*time + 1);
   end Rub;
   model Nominal
     input Real u(unit = \"N\");
@@ -197,6 +198,24 @@ fn friction_above_a_speed_is_told_by_its_shape() {
 }
 
 /// The filter cannot follow a sensor that loses the sign where nothing else tells it.
+#[test]
+fn a_periodic_force_that_follows_nothing_is_told_as_one() {
+    let found = diagnosed(("rub.P", 3.0), 2);
+    assert_eq!(found.verdict, "outside_library", "{found:?}");
+    let term = &found.unexplained.shape.expect("a shape")[0];
+    assert_eq!(term.term, "A periodic force that follows no variable");
+    assert_eq!(found.unexplained.place.as_deref(), Some("mass.flange"));
+}
+
+#[test]
+fn a_parameter_far_beyond_its_tolerance_is_named() {
+    // 13 tolerances off
+    let found = diagnosed(("spring.c", 300.0), 2);
+    let drift = found.drifts.iter().find(|d| d.parameter == "spring.c").expect("free");
+    assert!((drift.value - 300.0).abs() < 3.0 * drift.std.max(1.0), "{drift:?}");
+    assert_eq!(found.effects[0].family, "parameter", "{found:?}");
+}
+
 #[test]
 fn a_rectifying_sensor_is_named_although_the_filter_loses_it() {
     let world = MemoryWorld::single("Slide.mo", MODEL);
