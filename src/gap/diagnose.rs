@@ -36,6 +36,8 @@ const GROWTH: f64 = 30.0;
 pub(super) const ACCEPTED: f64 = 8.0;
 /// Vuong statistic that it must have.
 const CONSISTENT: f64 = 2.0;
+/// Vuong statistic that makes up for a gain that is small because few samples count.
+const CERTAIN: f64 = 5.0;
 /// Gain from which an effect may be one that acts rarely, nats; and how much more it must win than lose.
 const RARE: f64 = 30.0;
 const RARE_RATIO: f64 = 3.5;
@@ -311,7 +313,10 @@ impl Search {
         let again = self.accepted.iter().any(|a| site(a) == &h.attachments[0].site);
         let always = h.family == "parameter" || again;
         let seldom = !always && (returned > 0.5 * gain || rare(&best.fit, &self.last, gain));
-        gain >= ACCEPTED && (vuong(&best.fit.blocks, &self.last.blocks) > CONSISTENT || seldom)
+        let t = vuong(&best.fit.blocks, &self.last.blocks);
+        // blocks are long against most colours: where they agree so well it does not matter how few samples count
+        gain >= ACCEPTED && (t > CONSISTENT || seldom)
+            || gain > 0.0 && t > CERTAIN && won_and_lost(&best.fit, &self.last).0 > RARE
     }
 
     fn accept(&mut self, best: Refined, found: Found) {
@@ -442,15 +447,19 @@ fn won_and_lost(with: &Fit, without: &Fit) -> (f64, f64) {
     blocks.fold((0.0, 0.0), |(won, lost), (a, b)| if a > b { (won + a - b, lost) } else { (won, lost + b - a) })
 }
 
-/// Among the candidates that are practically as good as the first, the one with the fewest parameters, at the fewest places.
+/// Among the candidates that are practically as good as the first, the one with the fewest parameters and states, at the
+/// fewest places.
 fn simplest(problem: &Problem<'_>, refined: &[Refined]) -> usize {
     let size = |r: &Refined| {
         let h = &problem.hypotheses[r.accepted.chosen.hypothesis];
-        (h.coefficients.len() + h.shapes.len(), h.attachments.len())
+        let states = h.attachments[0].effect.as_ref().map_or(0, |e| e.states);
+        (h.coefficients.len() + h.shapes.len() + states, h.attachments.len())
     };
-    let front = refined[0].fit.evidence;
-    let level = refined.iter().take_while(|r| front - r.fit.evidence < AS_GOOD).count();
-    (0..level).min_by_key(|&i| (size(&refined[i]), i)).unwrap_or(0)
+    let front = &refined[0].fit;
+    let as_good = |r: &Refined| {
+        front.evidence - r.fit.evidence < AS_GOOD && vuong(&r.fit.blocks, &front.blocks) > CERTAINLY_WORSE
+    };
+    (0..refined.len()).filter(|&i| i == 0 || as_good(&refined[i])).min_by_key(|&i| (size(&refined[i]), i)).unwrap_or(0)
 }
 
 impl Search {

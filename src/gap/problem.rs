@@ -23,6 +23,8 @@ use std::sync::Arc;
 /// far apart, so many of their distances.
 const TAU: f64 = 0.025;
 const TAU_STEPS: f64 = 3.0;
+/// A state that moves over so many of its nominal sizes has one that nobody chose.
+const DEFAULT: f64 = 10.0;
 /// Sources that locate a gap are so many times slower.
 pub const SLOWER: f64 = 4.0;
 /// Noise may be so much above what sixth differences show.
@@ -264,7 +266,9 @@ impl Problem<'_> {
         for (size, v) in sizes.iter_mut().zip(plan.state_variables()) {
             let name = plan.system.dae.variables[v.index()].name.strip_prefix(PLANT).and_then(|n| n.strip_prefix('.'));
             let travel = name.and_then(|n| self.travel.get(n)).copied();
-            *size = travel.filter(|t| t.is_finite()).map_or(*size, |t| t.max(*size));
+            if let Some(t) = travel.filter(|t| t.is_finite() && *t > DEFAULT * *size) {
+                *size = t;
+            }
         }
         let most_noise = self.noise_floor.iter().map(|n| MOST_NOISE * n).collect();
         let tau = TAU.max(TAU_STEPS * self.step());
