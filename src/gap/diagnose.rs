@@ -281,7 +281,8 @@ impl Search {
             return false;
         }
         if let Some((best, found)) = self.lost(problem, &refined) {
-            // nothing further can be weighed beside an effect that the filter cannot follow
+            // nothing further can be weighed beside an effect that the filter cannot follow, nor can a shape
+            self.pending = None;
             self.accept(best, found);
             return false;
         }

@@ -21,6 +21,7 @@ pub mod hypotheses;
 pub mod levels;
 pub mod lines;
 pub mod locate;
+mod passive;
 pub mod plan;
 pub mod problem;
 pub mod recording;
