@@ -77,10 +77,18 @@ pub struct Setting {
     pub cuts: Vec<Vec<bool>>,
 }
 
+/// Part of their levels at which sources do nothing.
+pub const SILENT: f64 = 1e-6;
+
 impl Setting {
     /// The sources' levels.
     pub fn levels(&self) -> Vec<f64> {
-        self.sources.iter().map(|s| s.level).collect()
+        self.levels_times(1.0)
+    }
+
+    /// The sources' levels times a factor.
+    pub fn levels_times(&self, factor: f64) -> Vec<f64> {
+        self.sources.iter().map(|s| s.level * factor).collect()
     }
 }
 

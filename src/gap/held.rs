@@ -17,6 +17,13 @@ pub struct Residuals {
     pub simulated: Vec<Vec<f64>>,
 }
 
+impl Residuals {
+    /// Measured minus simulated signal at the k-th sample scored; NaN where nothing was measured.
+    pub fn error(&self, recording: &Recording, signal: usize, k: usize) -> f64 {
+        recording.signals[signal][self.from + k] - self.simulated[signal][k]
+    }
+}
+
 /// The gap of a model.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Gap {
@@ -156,8 +163,7 @@ fn standard_error(runs: &[Option<Residuals>], recordings: &[Recording], full_sca
         for start in (0..recording.len() - run.from).step_by(length) {
             let end = (start + length).min(recording.len() - run.from);
             let square = |i: usize| {
-                let pairs =
-                    (start..end).map(|k| (recording.signals[i][run.from + k] - run.simulated[i][k]) / full_scale[i]);
+                let pairs = (start..end).map(|k| run.error(recording, i, k) / full_scale[i]);
                 let known: Vec<f64> = pairs.filter(|e| e.is_finite()).map(|e| e * e).collect();
                 known.iter().sum::<f64>() / known.len().max(1) as f64
             };

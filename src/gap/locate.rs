@@ -1,7 +1,7 @@
 //! Where the gap lies, before anything is named: each place gets a slow source of its own, and what the recordings gain
 //! in likelihood by it ranks the places.
 
-use super::filter::{self, Setting, Source};
+use super::filter::{self, SILENT, Setting, Source};
 use super::fit::{self, Fit};
 use super::levels;
 use super::problem::{Assembled, Problem, SLOWER};
@@ -15,9 +15,7 @@ const GAIN: f64 = 4.0;
 /// Strengths tried, in units of what one sample shows.
 const STRENGTHS: [f64; 2] = [1.0, 12.0];
 
-/// Part of their levels at which slow sources do nothing; and how much worse a filter with them is that has gone astray,
-/// nats.
-const QUIET: f64 = 1e-6;
+/// How much worse a filter with slow sources is that has gone astray, nats.
 const ASTRAY: f64 = 1e3;
 
 /// A place and the evidence for something missing there.
@@ -40,15 +38,15 @@ pub fn locate(problem: &Problem<'_>, base: &Fit, accepted: &[Accepted]) -> Vec<L
     let whole = |passes: &[filter::Pass]| passes.iter().map(|p| p.likelihood).sum::<f64>();
     // linearised where the slow sources lead; where they lead astray, where the model without them goes
     let mut quiet = loud.clone();
-    quiet.sources[fast..].iter_mut().for_each(|s| s.level *= QUIET);
+    quiet.sources[fast..].iter_mut().for_each(|s| s.level *= SILENT);
     let quietly = fit::passes(&quiet, &problem.train, SAMPLES, true);
     let (passes, setting, louder) = match quietly {
-        Some(quietly) if whole(&loudly) < whole(&quietly) - ASTRAY => (quietly, quiet, 1.0 / QUIET),
+        Some(quietly) if whole(&loudly) < whole(&quietly) - ASTRAY => (quietly, quiet, 1.0 / SILENT),
         _ => (loudly, loud, 1.0),
     };
     let tapes: Vec<&[filter::Step]> = passes.iter().map(|p| &p.tape[..]).collect();
     let mut factors = vec![1.0; fast];
-    factors.resize(setting.sources.len(), 1e-6);
+    factors.resize(setting.sources.len(), SILENT);
     let value = |factors: &[f64]| {
         let scaled = |(i, f): (usize, &f64)| if i < fast { *f } else { f * louder };
         let scaled: Vec<f64> = factors.iter().enumerate().map(scaled).collect();
@@ -100,7 +98,7 @@ fn rank(found: &mut [Located], factors: &[f64], fast: usize, value: &impl Fn(&[f
     for f in found.iter_mut() {
         if chosen(f) {
             let mut without = factors.to_vec();
-            without[fast + f.disturbance] = 1e-6;
+            without[fast + f.disturbance] = SILENT;
             f.evidence = share * (best - value(&without));
         }
     }

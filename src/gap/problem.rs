@@ -197,7 +197,7 @@ impl Problem<'_> {
         let states = model.plan.state_variables().enumerate();
         let signals: Vec<Signal> = states
             .filter(|(i, _)| model.plan.state_unit(*i) != Some("rad"))
-            .filter_map(|(_, v)| variables[v.index()].name.strip_prefix(PLANT)?.strip_prefix('.'))
+            .filter_map(|(_, v)| of_plant(&variables[v.index()].name))
             .enumerate()
             .map(|(i, name)| Signal { name: format!("state_{i}"), variable: name.to_string(), scale: 1.0 })
             .collect();
@@ -264,7 +264,7 @@ impl Problem<'_> {
         };
         let mut sizes = sizes.map_or_else(|_| vec![1.0; plan.states()], |l| l.nominals());
         for (size, v) in sizes.iter_mut().zip(plan.state_variables()) {
-            let name = plan.system.dae.variables[v.index()].name.strip_prefix(PLANT).and_then(|n| n.strip_prefix('.'));
+            let name = of_plant(&plan.system.dae.variables[v.index()].name);
             let travel = name.and_then(|n| self.travel.get(n)).copied();
             if let Some(t) = travel.filter(|t| t.is_finite() && *t > DEFAULT * *size) {
                 *size = t;
@@ -293,6 +293,11 @@ impl Assembled {
             cuts: Vec::new(),
         }
     }
+}
+
+/// The name that a variable of the nominal model has there.
+fn of_plant(name: &str) -> Option<&str> {
+    name.strip_prefix(PLANT)?.strip_prefix('.')
 }
 
 /// A variable by its name.

@@ -3,7 +3,7 @@
 
 use super::effects::{Coefficient, Shape};
 use super::evidence;
-use super::filter;
+use super::filter::{self, SILENT};
 use super::fit::{self, Fit, Prior};
 use super::held;
 use super::hypotheses::Hypothesis;
@@ -14,8 +14,7 @@ use std::ops::Range;
 /// The background is tried as fitted, and reduced: what a hypothesis explains must be allowed to leave it.
 const FULL: f64 = 1.0;
 const REDUCED: f64 = 0.1;
-/// And with sources that do nothing, where what is left of a signal is so many times its noise.
-const SILENT: f64 = 1e-6;
+/// And with silent sources, where what is left of a signal is so many times its noise.
 const OPEN: f64 = 2.0;
 /// A gain by which the filter sees something plainly, nats.
 const HIDING: f64 = 200.0;
@@ -119,8 +118,11 @@ struct Background {
 impl Background {
     /// The sources as fitted, times a factor.
     fn of(base: &Fit, factor: f64) -> Self {
-        let levels = base.setting.levels().into_iter().map(|level| level * factor).collect();
-        Background { levels, noise: base.setting.noise.clone(), share: base.search_share() }
+        Background {
+            levels: base.setting.levels_times(factor),
+            noise: base.setting.noise.clone(),
+            share: base.search_share(),
+        }
     }
 
     /// Sources that do nothing: what the model's own course leaves is noise, as strong and as coloured as it is. `None`
@@ -131,7 +133,7 @@ impl Background {
         for (r, run) in problem.train.iter().zip(&runs) {
             let run = run.as_ref()?;
             let error = |k: usize, i: usize| {
-                let e = r.signals[i][run.from + k] - run.simulated[i][k];
+                let e = run.error(r, i, k);
                 if e.is_finite() { e } else { 0.0 }
             };
             left.push(DMatrix::from_fn(r.len() - run.from, problem.signals.len(), error));
@@ -142,8 +144,7 @@ impl Background {
         let open = rms.iter().zip(&base.setting.noise).any(|(left, noise)| *left > OPEN * noise);
         let noise = rms.iter().zip(&base.setting.noise).map(|(left, noise)| left.max(*noise)).collect();
         let share = evidence::independent_share(&left.iter().collect::<Vec<_>>());
-        let levels = base.setting.levels().into_iter().map(|level| level * SILENT).collect();
-        open.then_some(Background { levels, noise, share })
+        open.then_some(Background { levels: base.setting.levels_times(SILENT), noise, share })
     }
 }
 
@@ -327,23 +328,10 @@ impl<'a> Joint<'a> {
                 let c = &h.coefficients[i];
                 values[i] = value(k).min(c.max.unwrap_or(f64::INFINITY));
             }
-            let priors = self.priors(h, &values, &prior_sigmas);
+            let priors = priors(h, &values, &prior_sigmas);
             let chosen = Chosen { hypothesis: entry.hypothesis, values };
             return Some(Candidate { chosen, gain: found.evidence, priors, visible });
         }
-    }
-
-    fn priors(&self, h: &Hypothesis, values: &[f64], sigmas: &[f64]) -> Vec<Prior> {
-        let coefficient = |(c, sigma): (&Coefficient, &f64)| Prior {
-            parameter: 0,
-            mean: c.off,
-            sigma: *sigma,
-            min: c.min.unwrap_or(f64::NEG_INFINITY),
-            max: c.max.unwrap_or(f64::INFINITY),
-        };
-        let mut priors: Vec<Prior> = h.coefficients.iter().zip(sigmas).map(coefficient).collect();
-        priors.extend(h.shapes.iter().zip(&values[h.coefficients.len()..]).map(|(s, &value)| shape_prior(s, value)));
-        priors
     }
 
     /// A parameter far beyond its tolerance.
@@ -378,6 +366,20 @@ impl<'a> Joint<'a> {
 /// The prior deviation that a coefficient has at most.
 fn largest(c: &Coefficient) -> f64 {
     c.nominal.abs().max(1e-300) * if c.relative { LARGEST_OF_RANGE } else { LARGEST }
+}
+
+/// Priors of an effect: of its coefficients with these deviations about their off values, then of its shapes.
+pub fn priors(h: &Hypothesis, values: &[f64], sigmas: &[f64]) -> Vec<Prior> {
+    let coefficient = |(c, sigma): (&Coefficient, &f64)| Prior {
+        parameter: 0,
+        mean: c.off,
+        sigma: *sigma,
+        min: c.min.unwrap_or(f64::NEG_INFINITY),
+        max: c.max.unwrap_or(f64::INFINITY),
+    };
+    let mut priors: Vec<Prior> = h.coefficients.iter().zip(sigmas).map(coefficient).collect();
+    priors.extend(h.shapes.iter().zip(&values[h.coefficients.len()..]).map(|(s, &value)| shape_prior(s, value)));
+    priors
 }
 
 /// Prior of a shape about the value of its grid.

@@ -45,7 +45,7 @@ fn likelihood(problem: &Problem<'_>, setting: &Setting) -> Option<f64> {
     for signal in 0..problem.signals.len() {
         let errors = problem.train.iter().zip(&runs).map(|(r, run)| {
             let run = run.as_ref()?;
-            let errors = run.simulated[signal].iter().zip(&r.signals[signal][run.from..]).map(|(s, m)| m - s);
+            let errors = (0..run.simulated[signal].len()).map(|k| run.error(r, signal, k));
             Some(errors.filter(|e| e.is_finite()).collect::<Vec<f64>>())
         });
         let errors: Vec<Vec<f64>> = errors.collect::<Option<_>>()?;

@@ -4,8 +4,7 @@
 //! error; Ljung, System Identification, 1999, ch. 7), with the model's errors as noise of the sensors.
 
 use super::super::data::Recording;
-use super::super::effects::Coefficient;
-use super::super::filter::Setting;
+use super::super::filter::{SILENT, Setting};
 use super::super::fit::{Fit, Prior, vuong};
 use super::super::held;
 use super::super::hypotheses::{Hypothesis, Site};
@@ -19,8 +18,6 @@ use rayon::prelude::*;
 const LOST: f64 = 50.0;
 /// What such an effect must leave of the simulated gap that the best effect followed leaves, to be weighed.
 const CLOSING: f64 = 0.5;
-/// Level of sources, relative, at which they do nothing.
-const NOTHING: f64 = 1e-6;
 
 impl Search {
     /// Effects of sensors that the screen cannot see from where they are not, and with which as a whole the nominal model
@@ -35,13 +32,11 @@ impl Search {
         let open: Vec<usize> = (0..problem.hypotheses.len()).filter(|i| unknown(i) && !taken(i)).collect();
         let first = &problem.train[..1];
         // parameters that were fitted in the filter may simulate worse than those of the nominal model
-        let plain = at_nominal(problem, &self.last, &self.accepted).map_or(f64::INFINITY, |(model, _)| {
-            self.gap_of(problem, &model.setting(&[], &self.last.setting.noise, Vec::new()), first)
-        });
+        let plain = self.gap_with(problem, &[], first).unwrap_or(f64::INFINITY);
         let left = self.gap_of(problem, &self.last.setting, first).min(plain);
         let near = |i: usize| {
             let candidate = whole(&problem.hypotheses[i], i)?;
-            let gap = self.gap_with(problem, &candidate.accepted(), first)?;
+            let gap = self.gap_with(problem, &[candidate.accepted()], first)?;
             (gap < CLOSING * left).then_some(candidate)
         };
         open.into_par_iter().filter_map(near).collect()
@@ -56,8 +51,10 @@ impl Search {
         };
         let left = refined.iter().find(|r| !lost(r)).map_or(&self.last, |r| &r.fit);
         let left = self.gap_of(problem, &left.setting, &problem.train);
-        let near =
-            |r: &Refined| self.gap_with(problem, &r.accepted, &problem.train).is_some_and(|gap| gap < CLOSING * left);
+        let near = |r: &Refined| {
+            self.gap_with(problem, std::slice::from_ref(&r.accepted), &problem.train)
+                .is_some_and(|gap| gap < CLOSING * left)
+        };
         let places: Vec<usize> = (0..refined.len()).filter(|&i| lost(&refined[i]) && near(&refined[i])).collect();
         if places.is_empty() {
             return None;
@@ -93,10 +90,10 @@ impl Search {
         beaten.then(|| (Refined::new(problem, refined[index].accepted.clone(), assembled, fit), found))
     }
 
-    /// The simulated gap of the nominal model with a further effect.
-    fn gap_with(&self, problem: &Problem<'_>, further: &Accepted, recordings: &[Recording]) -> Option<f64> {
+    /// The simulated gap of the nominal model with the effects accepted and further ones.
+    fn gap_with(&self, problem: &Problem<'_>, further: &[Accepted], recordings: &[Recording]) -> Option<f64> {
         let mut all = self.accepted.clone();
-        all.push(further.clone());
+        all.extend_from_slice(further);
         let (assembled, _) = at_nominal(problem, &self.last, &all)?;
         let setting = assembled.setting(&[], &self.last.setting.noise, Vec::new());
         Some(self.gap_of(problem, &setting, recordings))
@@ -113,16 +110,8 @@ fn whole(h: &Hypothesis, index: usize) -> Option<Candidate> {
         return None;
     }
     let chosen = screen::variants(h, index).into_iter().next()?;
-    let coefficient = |c: &Coefficient| Prior {
-        parameter: 0,
-        mean: c.off,
-        sigma: c.nominal.abs(),
-        min: c.min.unwrap_or(f64::NEG_INFINITY),
-        max: c.max.unwrap_or(f64::INFINITY),
-    };
-    let mut priors: Vec<Prior> = h.coefficients.iter().map(coefficient).collect();
-    let shapes = h.shapes.iter().zip(&chosen.values[h.coefficients.len()..]);
-    priors.extend(shapes.map(|(s, &value)| screen::shape_prior(s, value)));
+    let sigmas: Vec<f64> = h.coefficients.iter().map(|c| c.nominal.abs()).collect();
+    let priors = screen::priors(h, &chosen.values, &sigmas);
     let mut candidate = Candidate { chosen, gain: 0.0, priors, visible: 0.0 };
     make_whole(h, &mut candidate);
     Some(candidate)
@@ -140,7 +129,7 @@ fn at_nominal(problem: &Problem<'_>, from: &Fit, accepted: &[Accepted]) -> Optio
 /// A model fitted by what it says from the inputs alone, from the nominal parameters.
 fn output_error(problem: &Problem<'_>, from: &Fit, accepted: &[Accepted]) -> Option<(Fit, Assembled)> {
     let (assembled, priors) = at_nominal(problem, from, accepted)?;
-    let levels: Vec<f64> = from.setting.levels().into_iter().map(|level| level * NOTHING).collect();
+    let levels = from.setting.levels_times(SILENT);
     // where the errors are not known yet, they are as large as the signals
     let noise: Vec<f64> = problem.full_scale.iter().zip(&from.setting.noise).map(|(f, n)| f.max(*n)).collect();
     let setting = assembled.setting(&levels, &noise, Vec::new());
