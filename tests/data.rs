@@ -91,10 +91,10 @@ fn every_study_ties_to_its_model() {
     }
 }
 
-/// With one initial state for both records: 0.67 V without overflow and dead zone, at most 0.34 V with them.
+/// With one initial state for both records: 0.67 V without overflow and dead zone, 0.19 V with them and the sensor's curve.
 #[test]
 fn the_tanks_follow_the_validation_record() {
-    for (class, wanted) in [("CascadedTanks.Nominal", 0.67), ("CascadedTanks.Complete", 0.33)] {
+    for (class, wanted) in [("CascadedTanks.Nominal", 0.67), ("CascadedTanks.Complete", 0.194)] {
         let (bound, mut simulation) = tied(&study("CascadedTanks/gap.toml"), Some(class));
         let Some(held) = recordings(&bound, "data/cascaded_tanks", Role::Held) else { return };
         let (error, _) = errors(&mut simulation, &bound, &held[0])[0];
@@ -165,11 +165,11 @@ fn the_axis_is_identified_by_its_inverse_model() {
     assert!(report.converged && report.fit_relative.train["F"].as_f64().expect("a number") < 0.041);
 }
 
-/// 0.34 V is the reference fit.
+/// 0.34 V is the reference fit with overflow and dead zone, 0.18 V the best published grey box.
 #[test]
 fn the_tanks_are_identified() {
     let Some(report) = identified("CascadedTanks/identify.toml", "data/cascaded_tanks") else { return };
-    assert!(report.converged && report.fit.held["y"].as_f64().expect("a number") < 0.33, "{:?}", report.fit);
+    assert!(report.converged && report.fit.held["y"].as_f64().expect("a number") < 0.2, "{:?}", report.fit);
 }
 
 /// 0.18 V is published for the record that was fitted.

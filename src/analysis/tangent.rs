@@ -57,6 +57,15 @@ impl Tangent {
         Ok(Tangents { still: self.raised.iter().map(|r| r.state).collect(), starts: directions? })
     }
 
+    /// What a run carries along that starts at given states: the parameters alone move.
+    pub fn inside(&self) -> Tangents {
+        let raised = self.raised.iter().zip(&self.sizes);
+        Tangents {
+            still: self.raised.iter().map(|r| r.state).collect(),
+            starts: raised.map(|(r, &size)| vec![(r.state, size)]).collect(),
+        }
+    }
+
     fn direction(
         &self,
         settings: &Settings,

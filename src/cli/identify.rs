@@ -9,7 +9,7 @@ use super::recorder::write_text;
 use super::study::{Opened, open};
 use super::{Ending, Failure, plot};
 use crate::analysis::identify::{
-    Fit, Identification, Method, Problem, Profile, Report, fit_words, picture, profile_words, separation_words,
+    Fit, Identification, Method, Problem, Profile, Report, doubts, fit_words, picture, profile_words, separation_words,
 };
 use crate::diag::{Code, Diagnostic};
 use crate::results::Globs;
@@ -92,6 +92,7 @@ pub(super) fn run(args: &IdentifyArgs, messages: &mut Messages) -> Result<Ending
     } else {
         found.judge_held(&fit, &held).map_err(|d| fail(d, &opened, messages))?
     };
+    messages.say(&doubts(&problem, &fit, &held));
     messages.remark(fit_words(&problem, &fit, &held).trim_end());
     let profiles = profiles(args, &problem, &found, &fit).map_err(|d| fail(d, &opened, messages))?;
     if !profiles.is_empty() {

@@ -115,6 +115,7 @@ codes! {
     BadStudy = "E604", Error, "a study cannot be used";
     StuckSignal = "W605", Warning, "a measured signal never changes";
     BadCheckpoint = "E606", Error, "a run cannot go on from a checkpoint";
+    WorseThanConstant = "W607", Warning, "a fitted signal is met worse than by a constant";
     // 9xx command line
     BadArgument = "E901", Error, "an argument cannot be used";
     FileAccess = "E902", Error, "a file cannot be read or written";

@@ -22,6 +22,8 @@ pub struct Recording {
     /// One column an entry of [`Bound::signals`], each as long as `times`, with the sign applied. NaN where nothing
     /// was measured.
     pub signals: Vec<Vec<f64>>,
+    /// Into how many pieces a run along it is cut; 1 for none.
+    pub pieces: usize,
 }
 
 impl Bound {
@@ -109,6 +111,11 @@ impl Loader<'_> {
             self.diagnostics.push(at(file.span, text, "too few to use"));
             return None;
         }
+        if table.len() < 2 * file.pieces {
+            let text = format!("`{}` has {} samples for {} pieces", file.file, table.len(), file.pieces);
+            self.diagnostics.push(at(file.span, text, "each piece needs two at least"));
+            return None;
+        }
         Some(self.converted(file, table, head))
     }
 
@@ -129,7 +136,7 @@ impl Loader<'_> {
             self.check_signal(&values, &signal.entry.column, head);
             signals.push(values);
         }
-        Recording { file: file.file.clone(), role: self.role, times: table.times, inputs, signals }
+        Recording { file: file.file.clone(), role: self.role, times: table.times, inputs, signals, pieces: file.pieces }
     }
 
     fn in_unit(&mut self, values: Vec<f64>, from: &str, to: &str, sign: f64, column: &str, head: Span) -> Vec<f64> {

@@ -98,6 +98,8 @@ pub struct RecordingFile {
     pub window: Option<(f64, f64)>,
     /// It is left out where it does not exist.
     pub optional: bool,
+    /// Into how many pieces that follow each other `identify` cuts it; 1 for none.
+    pub pieces: usize,
     /// Where the file's name stands.
     pub span: Span,
 }

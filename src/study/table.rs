@@ -11,7 +11,7 @@ use crate::diag::{Checked, Code, Diagnostic, FileId, Sources, Span};
 const KEYS: &[&str] = &["version", "model", "class", "inputs", "signals", "recordings", "parameters", "effects"];
 const INPUT_KEYS: &[&str] = &["column", "unit", "hold"];
 const SIGNAL_KEYS: &[&str] = &["variable", "column", "unit", "sign", "full_scale", "accuracy"];
-const RECORDING_KEYS: &[&str] = &["file", "role", "time", "window", "optional"];
+const RECORDING_KEYS: &[&str] = &["file", "role", "time", "window", "optional", "pieces"];
 const PARAMETER_KEYS: &[&str] = &["sigma", "min", "max"];
 const EFFECT_KEYS: &[&str] = &["include", "exclude", "places", "folder"];
 
@@ -153,6 +153,7 @@ impl Table {
             time: None,
             window: None,
             optional: false,
+            pieces: 1,
             span: self.reader.span(&item.span()),
         };
         self.fields("recordings", item, RECORDING_KEYS, |reader, key, value| match key {
@@ -163,10 +164,14 @@ impl Table {
             "role" => recording.role = role(reader, key, value),
             "time" => recording.time = reader.text(key, value),
             "window" => recording.window = window(reader, key, value),
+            "pieces" => recording.pieces = pieces(reader, key, value),
             _ => recording.optional = reader.truth(key, value).unwrap_or(false),
         });
         if recording.file.is_empty() && item.get_ref().is_table() {
             self.reader.report(&item.span(), "a recording without `file`", "this one");
+        }
+        if recording.pieces > 1 && recording.role == Role::Held {
+            self.reader.report(&item.span(), "a held recording is judged by one run: it has no `pieces`", "this one");
         }
         self.study.recordings.push(recording);
     }
@@ -264,6 +269,16 @@ fn window(reader: &mut Reader, key: &str, value: &Value<'_>) -> Option<(f64, f64
         _ => {
             reader.wrong_kind(key, value, "two growing times in seconds: `[0.0, 4.0]`");
             None
+        }
+    }
+}
+
+fn pieces(reader: &mut Reader, key: &str, value: &Value<'_>) -> usize {
+    match number(value.get_ref()) {
+        Some(x) if (1.0..=1000.0).contains(&x) && x.fract() == 0.0 => x as usize,
+        _ => {
+            reader.wrong_kind(key, value, "a whole number from 1 to 1000");
+            1
         }
     }
 }

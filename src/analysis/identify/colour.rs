@@ -36,7 +36,10 @@ const STEP: f64 = 1e-3;
 pub fn spread(weights: &Weights, minimum: &Minimum) -> Spread {
     let (jacobian, unknowns) = (&minimum.jacobian, minimum.z.len());
     let mut information = jacobian.tr_mul(jacobian);
-    let small = 1e-12 * information.diagonal().max().max(f64::MIN_POSITIVE);
+    // the rows of data alone: conditions between pieces weigh much more
+    let data = weights.series.iter().map(|s| s.rows.end).max().unwrap_or(0);
+    let largest = jacobian.rows(0, data).column_iter().map(|c| c.norm_squared()).fold(f64::MIN_POSITIVE, f64::max);
+    let small = 1e-12 * largest;
     (0..unknowns).for_each(|j| information[(j, j)] += small);
     let Some(plain) = information.cholesky().map(|c| c.inverse()) else {
         let nothing = DMatrix::from_element(unknowns, unknowns, f64::INFINITY);

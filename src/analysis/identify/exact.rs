@@ -1,6 +1,6 @@
 //! Derivatives of runs along recordings, carried along by one run instead of two for each unknown.
 
-use super::output_error::FreeState;
+use super::pieces::FreeState;
 use super::runs::{Samples, Track};
 use super::{Free, Problem};
 use crate::analysis::Tangent;
@@ -28,19 +28,18 @@ impl Exact {
     }
 
     /// Derivatives of `wanted` at the samples by z: one entry an unknown (parameters, then these states), in it one column
-    /// a variable.
+    /// a variable; and the state at the end. The run begins where the one before ended, if there was one.
     ///
     /// # Errors
     /// In words, why differences have to do.
     pub fn columns(
         &self,
-        track: &Track,
+        (track, states, before): (&Track, &[FreeState], Option<&State>),
         free: &[Free],
-        states: &[FreeState],
         z: (&[f64], &[f64]),
         wanted: &[VarId],
         tolerance: f64,
-    ) -> Result<Vec<Vec<Vec<f64>>>, String> {
+    ) -> Result<(Vec<Vec<Vec<f64>>>, State), String> {
         let (first, last) = (track.times[0], track.times[track.times.len() - 1]);
         let mut settings = Settings {
             start_time: first,
@@ -51,13 +50,20 @@ impl Exact {
             wanted: wanted.to_vec(),
             ..Settings::default()
         };
-        let mut tangents = self.tangent.starts(&settings, &track.inputs)?;
+        let mut tangents = match before {
+            None => self.tangent.starts(&settings, &track.inputs)?,
+            Some(_) => self.tangent.inside(),
+        };
         if states.iter().any(|s| !self.tangent.is_state(s.variable)) {
             return Err("other states are integrated than those searched for".to_owned());
         }
         tangents.starts.extend(states.iter().map(|s| vec![(s.variable, s.size)]));
         settings.tangents = Some(tangents);
-        let from = if states.is_empty() { None } else { Some(self.start(track, &settings, states, z.1)?) };
+        let own = || if states.is_empty() { Ok(None) } else { self.start(track, &settings).map(Some) };
+        let mut from = before.map_or_else(own, |state| Ok(Some(state.clone())))?;
+        if let Some(state) = &mut from {
+            states.iter().zip(z.1).for_each(|(free, &z)| free.put(state, z));
+        }
         let unknowns = free.len() + states.len();
         let cells: Vec<VarId> = (0..=unknowns).flat_map(|_| wanted.iter().copied()).collect();
         let mut rows = Samples::new(&track.times, &cells);
@@ -72,16 +78,12 @@ impl Exact {
             let scale = if j < free.len() { free[j].slope(z.0[j]) / self.sizes[j] } else { 1.0 };
             columns.iter().map(|c| c.iter().map(|v| scale * v).collect()).collect()
         };
-        Ok(columns.chunks(wanted.len()).skip(1).enumerate().map(scaled).collect())
+        Ok((columns.chunks(wanted.len()).skip(1).enumerate().map(scaled).collect(), run.state))
     }
 
-    /// The start of the run with the states moved.
-    fn start(&self, track: &Track, settings: &Settings, states: &[FreeState], z: &[f64]) -> Result<State, String> {
+    /// The start of the run as the model has it.
+    fn start(&self, track: &Track, settings: &Settings) -> Result<State, String> {
         let at_once = Settings { stop_time: settings.start_time, interval: 0.0, ..settings.clone() };
-        let mut state = self.tangent.start(&at_once, &track.inputs, None)?;
-        for (free, z) in states.iter().zip(z) {
-            state.values[free.variable.index()] += free.size * z;
-        }
-        Ok(state)
+        self.tangent.start(&at_once, &track.inputs, None)
     }
 }

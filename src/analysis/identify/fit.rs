@@ -7,7 +7,7 @@ use super::least_squares::Minimum;
 use super::residuals::inputs_beside;
 use super::separate::{separate, without_rest};
 use super::weights::{self, Weights};
-use super::{Identification, Method, Problem, ResidualTest, Residuals, Starts};
+use super::{Identification, Joints, Method, Problem, ResidualTest, Residuals, Starts};
 use crate::study::Recording;
 use nalgebra::DMatrix;
 
@@ -40,6 +40,8 @@ pub struct Fit {
     pub differences: Option<String>,
     /// Where searches from several places ended.
     pub starts: Starts,
+    /// How pieces of recordings join; `None` where none is cut.
+    pub joints: Option<Joints>,
     /// All unknowns: the parameters on the scale of the search, then initial states.
     pub(super) z: Vec<f64>,
     /// Variances of the parameters on that scale.
@@ -141,6 +143,7 @@ impl Identification<'_> {
             courses,
             differences: None,
             starts: Starts::default(),
+            joints: None,
             z: minimum.z.clone(),
             spread: (0..p).map(|j| covariance[(j, j)].max(0.0)).collect(),
             plain: (0..p).map(|j| plain[(j, j)].max(0.0)).collect(),

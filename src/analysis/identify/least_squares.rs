@@ -9,6 +9,11 @@ pub trait LeastSquares {
     fn residual(&mut self, z: &[f64]) -> Option<DVector<f64>>;
     /// Its derivatives there, one column a variable.
     fn jacobian(&mut self, z: &[f64], residual: &DVector<f64>) -> Option<DMatrix<f64>>;
+    /// How many of the last rows are conditions, weighed much more than data: damping by their slopes as well would hold
+    /// back every step along them.
+    fn conditions(&self) -> usize {
+        0
+    }
 }
 
 /// When to stop.
@@ -80,7 +85,9 @@ pub fn minimise(problem: &mut dyn LeastSquares, start: &[f64], bounds: &Bounds, 
     let (mut converged, mut iterations) = (z.is_empty(), 0);
     while !converged && iterations < effort.iterations && damping < HOPELESS {
         iterations += 1;
-        let Some((next, expected, last)) = step(&z, &residual, &jacobian, bounds, damping, effort) else {
+        let Some((next, expected, last)) =
+            step(&z, &residual, &jacobian, bounds, (damping, problem.conditions()), effort)
+        else {
             damping *= growth;
             growth *= 2.0;
             continue;
@@ -115,13 +122,15 @@ fn step(
     residual: &DVector<f64>,
     jacobian: &DMatrix<f64>,
     bounds: &Bounds,
-    damping: f64,
+    (damping, conditions): (f64, usize),
     effort: Effort,
 ) -> Option<(Vec<f64>, f64, bool)> {
     let gradient = jacobian.tr_mul(residual);
     let mut normal = jacobian.tr_mul(jacobian);
     let mut right = -&gradient;
-    let usual = normal.diagonal().max().max(f64::MIN_POSITIVE);
+    let soft = jacobian.rows(0, jacobian.nrows() - conditions);
+    let slopes: Vec<f64> = soft.column_iter().map(|c| c.norm_squared()).collect();
+    let usual = slopes.iter().fold(f64::MIN_POSITIVE, |m: f64, s| m.max(*s));
     for j in 0..z.len() {
         if bounds.blocks(j, z[j], gradient[j]) {
             normal.row_mut(j).fill(0.0);
@@ -129,7 +138,7 @@ fn step(
             right[j] = 0.0;
             normal[(j, j)] = 1.0;
         } else {
-            normal[(j, j)] += damping * normal[(j, j)].max(1e-9 * usual);
+            normal[(j, j)] += damping * slopes[j].max(1e-9 * usual);
         }
     }
     let wanted = normal.cholesky()?.solve(&right);

@@ -2,6 +2,7 @@
 
 mod chance;
 mod colour;
+mod doubts;
 mod exact;
 mod filter;
 mod fit;
@@ -10,6 +11,7 @@ mod inverse;
 mod least_squares;
 mod output_error;
 mod picture;
+mod pieces;
 mod profile;
 mod quasi_newton;
 mod report;
@@ -19,10 +21,12 @@ mod separate;
 mod starts;
 mod weights;
 
+pub use doubts::doubts;
 pub use fit::{Course, Fit, SignalFit};
 pub use free::Free;
 pub use least_squares::{Bounds, Effort, LeastSquares, Minimum, minimise};
 pub use picture::picture;
+pub use pieces::Joints;
 pub use profile::Profile;
 pub use report::{Report, fit_words, profile_words, separation_words};
 pub use residuals::{Dependence, ResidualTest};
@@ -75,6 +79,12 @@ trait Residuals: LeastSquares {
     fn weights(&mut self) -> &mut Weights;
     /// How many unknowns: the parameters, then initial states.
     fn unknowns(&self) -> usize;
+    /// Conditions between pieces of recordings begin to count little.
+    fn loosen(&mut self) {}
+    /// They count more; false where they count as much as they ever do.
+    fn tighten(&mut self) -> bool {
+        false
+    }
 }
 
 impl<'a> Problem<'a> {
@@ -299,6 +309,8 @@ impl<'a> Identification<'a> {
                 fit.residuals = self.judge_residuals(&fit, residual);
                 fit.differences = model.differences().map(str::to_owned);
                 fit.starts = starts;
+                fit.joints = model.joints(residual);
+                fit.converged &= fit.joints.as_ref().is_none_or(|j| j.jump <= pieces::APART);
                 Ok(fit)
             }
         }
@@ -360,22 +372,35 @@ fn information(model: &mut dyn Residuals, parameters: usize) -> Result<DMatrix<f
     let jacobian = model.jacobian(&z, &residual).ok_or(None)?;
     let data = model.weights().series.iter().map(|s| s.rows.end).max().unwrap_or(0);
     let seen = jacobian.rows(0, data);
-    let mut all = seen.tr_mul(&seen);
-    // an initial state is known to about its nominal value
-    (parameters..all.nrows()).for_each(|k| all[(k, k)] += 1.0);
+    // an initial state is known to about its nominal value, one between pieces is the end of another piece
+    let states = all_states(&jacobian, parameters);
+    let all = seen.tr_mul(&seen) + states.tr_mul(&states);
     Ok(without_rest(&all, parameters))
+}
+
+/// The rows about states: what is known about them beforehand, or where they have to be.
+fn all_states(jacobian: &DMatrix<f64>, parameters: usize) -> nalgebra::DMatrixView<'_, f64> {
+    let states = jacobian.ncols() - parameters;
+    jacobian.rows(jacobian.nrows() - states, states)
 }
 
 /// Minimises from a place, with the deviations of the signals as they are.
 fn search_once(problem: &Problem<'_>, model: &mut dyn Residuals, from: &[f64]) -> Option<Minimum> {
     let bounds = problem.bounds(model.unknowns());
-    minimise(&mut Shared(model), from, &bounds, Effort::default())
+    let mut minimum = minimise(&mut Shared(model), from, &bounds, Effort::default())?;
+    while model.tighten() {
+        let iterations = minimum.iterations;
+        minimum = minimise(&mut Shared(model), &minimum.z, &bounds, Effort::default())?;
+        minimum.iterations += iterations;
+    }
+    Some(minimum)
 }
 
 /// Minimises, takes the deviations of the signals from the errors, and minimises again until they stay.
 fn search(problem: &Problem<'_>, model: &mut dyn Residuals, floor: &[f64], from: &[f64]) -> Option<Minimum> {
     let floor = if floor.is_empty() { vec![0.0; model.weights().sigma.len()] } else { floor.to_vec() };
     let mut z = from.to_vec();
+    model.loosen();
     let start = Shared(model).residual(&z)?;
     model.weights().learn(start.as_slice(), &floor);
     let mut iterations = 0;
@@ -406,6 +431,10 @@ impl LeastSquares for Shared<'_> {
     fn jacobian(&mut self, z: &[f64], residual: &DVector<f64>) -> Option<DMatrix<f64>> {
         self.0.jacobian(z, residual)
     }
+
+    fn conditions(&self) -> usize {
+        self.0.conditions()
+    }
 }
 
 /// The largest change over the range of the first.
@@ -430,3 +459,6 @@ fn cannot_follow(broken: Option<&Broken>) -> Diagnostic {
 
 #[cfg(test)]
 mod tests;
+
+#[cfg(test)]
+mod pieces_tests;

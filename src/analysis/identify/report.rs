@@ -33,6 +33,9 @@ pub struct Report {
     /// Where searches from several places ended, if there were several.
     #[serde(skip_serializing_if = "Map::is_empty")]
     pub starts: Map<String, serde_json::Value>,
+    /// How the pieces of cut recordings join: how many `count`, the largest `jump` left as a part of the range of its `state`.
+    #[serde(skip_serializing_if = "Map::is_empty")]
+    pub joints: Map<String, serde_json::Value>,
     /// Whether a least value was reached.
     pub converged: bool,
     /// Parameters that ended at a bound.
@@ -87,6 +90,7 @@ impl Report {
             correlation: fit.correlation.row_iter().map(|r| r.iter().copied().collect()).collect(),
             derivatives: derivatives(fit),
             starts: starts(fit),
+            joints: joints(fit),
             converged: fit.converged,
             at_bound: ends.map(|(f, _)| f.name.clone()).collect(),
             iterations: fit.iterations,
@@ -102,6 +106,13 @@ fn starts(fit: &Fit) -> Map<String, serde_json::Value> {
     let Starts { tried, here, worse, failed } = fit.starts;
     let all = [("tried", tried), ("here", here), ("worse", worse), ("failed", failed)];
     all.into_iter().filter(|_| tried > 1).map(|(name, n)| (name.to_owned(), json!(n))).collect()
+}
+
+fn joints(fit: &Fit) -> Map<String, serde_json::Value> {
+    let entry = |j: &super::Joints| {
+        [("count", json!(j.count)), ("jump", json!(j.jump)), ("state", json!(j.state))].map(|(n, v)| (n.to_owned(), v))
+    };
+    fit.joints.iter().flat_map(entry).collect()
 }
 
 /// JSON knows no infinity.
@@ -165,6 +176,14 @@ pub fn fit_words(problem: &Problem<'_>, fit: &Fit, held: &[SignalFit]) -> String
     if tried > 1 {
         let _ = write!(text, "of {tried} starts {here} led to this least value, {worse} to larger ones");
         text.push_str(&if failed > 0 { format!(", {failed} could not be run\n") } else { "\n".to_owned() });
+    }
+    if let Some(j) = &fit.joints {
+        let (jump, joined) = (rounded(j.jump, 2), if j.jump <= super::pieces::APART { "" } else { "do not " });
+        let _ = writeln!(
+            text,
+            "the pieces {joined}join: at {} places `{}` jumps by {jump} of its range at most",
+            j.count, j.state
+        );
     }
     for (free, _) in problem.free.iter().zip(&fit.at_bound).filter(|(_, at)| **at) {
         let _ = writeln!(text, "`{}` ended at a bound: its deviation is that of the bounded problem", free.name);

@@ -40,6 +40,12 @@ impl Track {
         let count = self.times.partition_point(|&t| t <= time).max(1);
         Track { times: self.times[..count].into(), ..self.clone() }
     }
+
+    /// The samples from one up to another, that one included.
+    #[must_use]
+    pub fn between(&self, first: usize, last: usize) -> Track {
+        Track { times: self.times[first..=last].into(), ..self.clone() }
+    }
 }
 
 /// Why a run gave no values.
@@ -83,11 +89,25 @@ impl Runner<'_> {
         from: Option<&State>,
         wanted: &[VarId],
     ) -> Result<Vec<Vec<f64>>, Broken> {
+        self.run_on(track, parameters, from, wanted).map(|(columns, _)| columns)
+    }
+
+    /// The same with the state at the last sample.
+    ///
+    /// # Errors
+    /// As [`Runner::run`].
+    pub fn run_on(
+        &self,
+        track: &Track,
+        parameters: &[(VarId, f64)],
+        from: Option<&State>,
+        wanted: &[VarId],
+    ) -> Result<(Vec<Vec<f64>>, State), Broken> {
         let mut rows = Samples::new(&track.times, wanted);
         let (first, last) = (track.times[0], track.times[track.times.len() - 1]);
         let settings = self.settings(first, last, track.interval, parameters, wanted);
-        self.simulate(&settings, &track.inputs, from, &mut rows)?;
-        Ok(rows.finish())
+        let state = self.simulate(&settings, &track.inputs, from, &mut rows)?;
+        Ok((rows.finish(), state))
     }
 
     fn settings(

@@ -38,6 +38,7 @@ pub(super) fn search_several(
     let mut ends: Vec<Minimum> = first.into_iter().collect();
     for _ in 1..count {
         let place = place(problem, unknowns, &mut random);
+        model.loosen();
         ends.extend(search_once(problem, model, &place));
     }
     let cost = |end: &Minimum| end.residual.norm_squared();

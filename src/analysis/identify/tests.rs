@@ -5,10 +5,10 @@ use crate::world::MemoryWorld;
 use std::path::Path;
 
 /// Evenly spread numbers between -1 and 1, from a congruential generator.
-struct Dice(u64);
+pub(super) struct Dice(pub(super) u64);
 
 impl Dice {
-    fn roll(&mut self) -> f64 {
+    pub(super) fn roll(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
@@ -43,7 +43,7 @@ fn study(parameters: &str) -> String {
     )
 }
 
-fn world(model: &str, study: &str, train: String, held: String) -> MemoryWorld {
+pub(super) fn world(model: &str, study: &str, train: String, held: String) -> MemoryWorld {
     let mut world = MemoryWorld::single("m.mo", model);
     world.add("study.toml", study);
     world.add("a.csv", train);
@@ -52,7 +52,7 @@ fn world(model: &str, study: &str, train: String, held: String) -> MemoryWorld {
 }
 
 /// Runs everything and hands the fit to `see`.
-fn with_fit<T>(
+pub(super) fn with_fit<T>(
     world: &MemoryWorld,
     method: Method,
     see: impl FnOnce(&Problem<'_>, &Identification<'_>, &Fit) -> T,

@@ -24,12 +24,15 @@ pub struct Weights {
     pub deviation: Vec<f64>,
     /// Per signal over how many samples its errors resemble each other.
     pub correlation: Vec<f64>,
+    /// Standard deviation of jumps between pieces of a recording, as a part of the states' ranges.
+    pub joint: f64,
 }
 
 impl Weights {
     /// With first guesses of the standard deviations.
     pub fn new(series: Vec<Series>, sigma: Vec<f64>) -> Weights {
-        Weights { series, correlation: vec![1.0; sigma.len()], deviation: sigma.clone(), sigma }
+        let correlation = vec![1.0; sigma.len()];
+        Weights { series, correlation, deviation: sigma.clone(), sigma, joint: super::pieces::USUAL }
     }
 
     /// Divides errors by their standard deviations.

@@ -1,0 +1,88 @@
+//! Doubts about a fit that a user should hear first: signals met worse than a constant would meet them.
+
+use super::{Course, Fit, Method, Problem, SignalFit};
+use crate::diag::{Code, Diagnostic};
+use crate::results::number::rounded;
+
+/// An error of this part of the signal's own deviation is what a constant leaves; what is measured and what sampling does
+/// to it may add a little.
+const CONSTANT: f64 = 1.05;
+/// From this part of the measured variation on that a multiple of the model explains, the multiple is told.
+const EXPLAINED: f64 = 0.5;
+
+/// Warnings ([`Code::WorseThanConstant`]) about signals whose errors are larger than their own deviation, on the train
+/// recordings or on held ones.
+pub fn doubts(problem: &Problem<'_>, fit: &Fit, held: &[SignalFit]) -> Vec<Diagnostic> {
+    let roles = [("train", fit.train.as_slice()), ("held", held)];
+    let found = roles.into_iter().flat_map(|(role, fits)| fits.iter().map(move |f| (role, f)));
+    let doubtful = found.filter(|(_, f)| f.relative > CONSTANT);
+    doubtful.map(|(role, signal)| doubt(problem, fit, role, signal)).collect()
+}
+
+fn doubt(problem: &Problem<'_>, fit: &Fit, role: &str, signal: &SignalFit) -> Diagnostic {
+    let (name, share) = (&signal.name, rounded(100.0 * signal.relative, 3));
+    let text = format!("`{name}` is met worse than by a constant: on {role} recordings the error is {share} %");
+    let mut d = Diagnostic::new(Code::WorseThanConstant, text).note("in parts of the signal's own deviation");
+    let span = problem.bound.signals.iter().find(|s| s.name == *name).map(|s| s.entry.span);
+    if let Some(span) = span {
+        d = d.at(span, "compared here");
+    }
+    let course = fit.courses.iter().find(|c| c.name == *name && fit.method == Method::Output);
+    if let Some(factor) = course.and_then(multiple) {
+        d = d.help(told(factor));
+    }
+    let held: Vec<&str> = problem.bound.inputs.iter().filter(|i| i.entry.hold).map(|i| i.entry.name.as_str()).collect();
+    let hold = match held[..] {
+        [] => "`hold` of an input (now all are joined by straight lines)".to_owned(),
+        _ => format!("`hold` of an input (now each sample of {} holds until the next)", held.join(", ")),
+    };
+    d.help(format!("likely causes: {hold}, the `sign` or `unit` of a column, a wrong column"))
+        .help("where the columns are right the search may have ended far off: try `--starts 12`, or `pieces`")
+}
+
+/// By which number the model has to be multiplied to give what was measured, means apart, where that explains it.
+fn multiple(course: &Course) -> Option<f64> {
+    let n = course.measured.len() as f64;
+    let modelled: Vec<f64> = course.measured.iter().zip(&course.errors).map(|(m, e)| m + e).collect();
+    let mean = |v: &[f64]| v.iter().sum::<f64>() / n;
+    let (a, b) = (mean(&course.measured), mean(&modelled));
+    let pairs = course.measured.iter().zip(&modelled).map(|(m, s)| (m - a, s - b));
+    let (mut own, mut both, mut other) = (0.0, 0.0, 0.0);
+    for (m, s) in pairs {
+        (own, both, other) = (own + m * m, both + m * s, other + s * s);
+    }
+    let explained = both * both / (own * other);
+    (explained > EXPLAINED).then(|| both / other)
+}
+
+fn told(factor: f64) -> String {
+    let times = rounded(factor, 3);
+    if factor < 0.0 {
+        format!("what was measured goes {times} times as the model goes: its `sign` may be wrong, or that of an input")
+    } else {
+        format!("what was measured goes {times} times as the model goes: a `unit` may be wrong")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn course(factor: f64) -> Course {
+        let modelled: Vec<f64> = (0..50).map(|k| (0.3 * f64::from(k)).sin()).collect();
+        let measured: Vec<f64> = modelled.iter().map(|m| 5.0 + factor * m).collect();
+        let errors = modelled.iter().zip(&measured).map(|(s, m)| s - m).collect();
+        Course { name: "y".into(), unit: "1".into(), times: vec![0.0; 50], measured, errors }
+    }
+
+    #[test]
+    fn factors_are_seen_and_told() {
+        for factor in [-1.0, 1000.0] {
+            assert!((multiple(&course(factor)).expect("a multiple") / factor - 1.0).abs() < 1e-9);
+        }
+        assert!(told(-1.0).contains("`sign`") && told(1000.0).contains("`unit`"));
+        let mut other = course(1.0);
+        other.errors = other.measured.iter().enumerate().map(|(k, m)| (k as f64).sqrt() - m).collect();
+        assert_eq!(multiple(&other), None);
+    }
+}
