@@ -115,6 +115,64 @@ def rumoca_run():
         return {'solve_s': time.perf_counter() - begun, 'steps': ''}, [float(r[n][-1]) for n in NAMES[model]]
     return run
 
+def casadi_run():
+    """IDAS with derivatives by CasADi, unknowns scaled so that one absolute tolerance serves; making it is not counted."""
+    import casadi
+    made = {}
+    def run(model, tolerance, end):
+        _, _, y0, size = scipy_problem(model)
+        if (model, tolerance) not in made:
+            x = casadi.SX.sym('x', len(y0))
+            rate = symbolic(model)([x[i]*size[i] for i in range(len(y0))])
+            dae = {'x': x, 'ode': casadi.vertcat(*(r/s for r, s in zip(rate, size)))}
+            options = {'reltol': tolerance, 'abstol': tolerance, 'max_num_steps': 10**6}
+            made[model, tolerance] = casadi.integrator('F', 'idas', dae, 0, end, options)
+        integrator = made[model, tolerance]
+        begun = time.perf_counter()
+        x = integrator(x0=[a/s for a, s in zip(y0, size)])['xf']
+        took = time.perf_counter() - begun
+        return {'solve_s': took, 'steps': integrator.stats().get('nsteps', '')}, [float(x[i])*size[i] for i in range(len(y0))]
+    return run
+
+def symbolic(model):
+    """The right-hand sides written out, for symbols."""
+    if model == 'Robertson':
+        return lambda y: (-0.04*y[0] + 1e4*y[1]*y[2], 0.04*y[0] - 1e4*y[1]*y[2] - 3e7*y[1]**2, 3e7*y[1]**2)
+    if model == 'VanDerPol':
+        return lambda y: (y[1], ((1 - y[0]**2)*y[1] - y[0])*1e6)
+    def hires(y):
+        r = 280*y[5]*y[7]
+        return (-1.71*y[0] + 0.43*y[1] + 8.32*y[2] + 0.0007, 1.71*y[0] - 8.75*y[1], -10.03*y[2] + 0.43*y[3] + 0.035*y[4],
+                8.32*y[1] + 1.71*y[2] - 1.12*y[3], -1.745*y[4] + 0.43*y[5] + 0.43*y[6],
+                -r + 0.69*y[3] + 1.71*y[4] - 0.43*y[5] + 0.69*y[6], r - 1.81*y[6], -r + 1.81*y[6])
+    return hires
+
+def sundae_run(model, tolerance, end):
+    import numpy as np
+    from sksundae.cvode import CVODE
+    f, j, y0, size = scipy_problem(model)
+    def rate(t, y, out):
+        out[:] = f(t, y)
+    def slopes(t, y, yp, out):
+        out[:] = j(t, y)
+    options = dict(rtol=tolerance, atol=[tolerance*x for x in size], jacfn=slopes, max_num_steps=10**6)
+    begun = time.perf_counter()
+    s = CVODE(rate, **options).solve(np.array([0.0, end]), np.array(y0, float))
+    took = time.perf_counter() - begun
+    return ({'solve_s': took, 'steps': ''}, list(s.y[-1])) if s.success else None
+
+def build_diffsol(folder):
+    """diffsol is a crate: its program is built by cargo, once; None where that does not work (no network, say)."""
+    if not shutil.which('cargo'):
+        return None
+    manifest = HERE + '/peers/diffsol/Cargo.toml'
+    environment = dict(os.environ, CARGO_TARGET_DIR=folder)
+    os.makedirs(folder, exist_ok=True)
+    with open(os.path.join(folder, 'build.log'), 'w') as log:
+        command = ['cargo', 'build', '--release', '--manifest-path', manifest]
+        failed = subprocess.run(command, stdout=log, stderr=log, env=environment).returncode
+    return None if failed else os.path.join(folder, 'release', 'stiff_diffsol')
+
 def scipy_sizes(model):
     return {'Robertson': [1e-6], 'HiRes': [1e-4], 'VanDerPol': [1]}[model]
 
@@ -165,7 +223,7 @@ def at_error(rows, model, peer, error):
     return None
 
 def picture(rows, model, path):
-    colours = ['#0b62a4', '#c1440e', '#2e8540', '#7a4fa3', '#8a6d00']
+    colours = ['#0b62a4', '#c1440e', '#2e8540', '#7a4fa3', '#8a6d00', '#555555', '#b0307a', '#1f9e9e', '#d08a2e']
     points = [r for r in rows if r[0] == model and r[3] > 0 and r[4] > 0]
     if not points:
         return
@@ -241,8 +299,25 @@ def main():
         versions.append(f'rumoca {rumoca.version() if callable(rumoca.version) else rumoca.version}')
     except ImportError:
         skipped.append(('rumoca', 'python3 -m pip install rumoca'))
-    skipped += [('diffsol', 'a Rust crate: needs the problem written by hand in its own language'),
-                ('OpenModelica', 'https://openmodelica.org: reads models/stiff as they are')]
+    program = build_diffsol(os.path.join(os.path.dirname(os.path.abspath(a.bramah)), 'peers', 'diffsol'))
+    if program:
+        peers['diffsol'] = lambda m, tol, end: c_run(program, m, tol, end, NAMES[m])
+        versions.append('diffsol 0.18.0, BDF, exact Jacobian')
+    else:
+        skipped.append(('diffsol', 'the network once, for `cargo build` in benches/peers/diffsol'))
+    try:
+        import casadi, numpy
+        peers['CasADi IDAS'] = casadi_run()
+        versions.append(f'CasADi {casadi.__version__}, IDAS, its own derivatives')
+    except ImportError:
+        skipped.append(('CasADi', 'python3 -m pip install casadi numpy'))
+    try:
+        import scipy, sksundae
+        peers['scikit-sundae'] = sundae_run
+        versions.append(f'scikit-sundae {sksundae.__version__}, CVODE, exact Jacobian')
+    except ImportError:
+        skipped.append(('scikit-sundae', 'python3 -m pip install scikit-sundae scipy'))
+    skipped += [('OpenModelica', 'https://openmodelica.org: reads models/stiff as they are')]
     tolerances = [10.0**-k for k in (range(3, 11) if a.full else range(3, 10, 2))]
     rows = work_precision(peers, tolerances, 11 if a.full else 5)
     if not any(r[1] == 'bramah' for r in rows):

@@ -58,6 +58,7 @@ fn map(signals: &[&str]) -> Recording {
         times: times.clone(),
         inputs: vec![speed, pressure],
         signals,
+        pieces: 1,
     }
 }
 

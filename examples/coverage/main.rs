@@ -81,6 +81,7 @@ fn noisy(bench: &Bench, clean: &[Vec<f64>], inherited: f64, dice: &mut Dice) -> 
         times: times(bench),
         inputs: bench.inputs.iter().map(|i| i.values.clone()).collect(),
         signals: clean.iter().map(&mut signal).collect(),
+        pieces: 1,
     }
 }
 
