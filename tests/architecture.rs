@@ -91,7 +91,8 @@ const MAY_USE: &[(&str, &[&str])] = &[
 const CLOCK: &str = "solve/driver.rs";
 
 /// The files that talk to C and to machine code.
-const UNSAFE: [&str; 4] = ["solve/ida.rs", "solve/ida/context.rs", "solve/ida/sensitivity.rs", "lower/native.rs"];
+const UNSAFE: [&str; 5] =
+    ["solve/ida.rs", "solve/ida/context.rs", "solve/ida/operations.rs", "solve/ida/sensitivity.rs", "lower/native.rs"];
 
 fn source() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("src")

@@ -1,8 +1,12 @@
-//! Parquet files are what pandas reads, where Python has it: `PYTHON` names one with `pyarrow`.
+//! Parquet files hold what was run, read back by the crate `parquet`, and are what pandas reads, where Python has it:
+//! `PYTHON` names one with `pyarrow`.
 
 #![allow(clippy::disallowed_methods, reason = "tests read their own files")]
 #![allow(clippy::print_stdout, reason = "a test without what it needs says so")]
 
+use parquet::basic::Type;
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::record::Field;
 use std::path::Path;
 use std::process::Command;
 
@@ -27,6 +31,38 @@ fn python(folder: &Path, script: &str) -> Option<String> {
 const MODEL: &str = "model M type Mode = enumeration(low, high);
   parameter Real k(min = 0) = 1; Real x(unit = \"m\", start = 1, fixed = true); Boolean up; Integer n; Mode mode;
   equation der(x) = -k*x; up = time < 0.5; n = if up then 3 else 4; mode = if up then Mode.low else Mode.high; end M;";
+
+#[test]
+fn a_run_is_read_back_with_its_types_and_units() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("M.mo"), MODEL).expect("written");
+    let run = ["simulate", "M.mo", "--stop-time", "1", "--output-interval", "0.25", "--variables", "x,up,n,mode"];
+    for name in ["run.parquet", "run.csv"] {
+        bramah(folder.path(), &[&run[..], &["-o", name]].concat());
+    }
+    let file = std::fs::File::open(folder.path().join("run.parquet")).expect("written");
+    let reader = SerializedFileReader::new(file).expect("a Parquet file");
+    let head = reader.metadata().file_metadata();
+    let kinds: Vec<Type> = head.schema_descr().columns().iter().map(|c| c.physical_type()).collect();
+    assert_eq!(kinds, [Type::DOUBLE, Type::DOUBLE, Type::BOOLEAN, Type::INT64, Type::BYTE_ARRAY]);
+    let units = head.key_value_metadata().expect("units").iter().find(|entry| entry.key == "units");
+    assert_eq!(units.and_then(|u| u.value.as_deref()), Some(r#"{"time":"s","x":"m"}"#));
+    let text = std::fs::read_to_string(folder.path().join("run.csv")).expect("written");
+    let rows: Vec<String> = reader.get_row_iter(None).expect("rows").map(|row| cells(&row.expect("a row"))).collect();
+    assert_eq!(rows, text.lines().skip(1).collect::<Vec<_>>());
+}
+
+/// A row as CSV writes it.
+fn cells(row: &parquet::record::Row) -> String {
+    let cell = |field: &Field| match field {
+        Field::Double(v) => v.to_string(),
+        Field::Bool(v) => v.to_string(),
+        Field::Long(v) => v.to_string(),
+        Field::Str(v) => v.clone(),
+        other => panic!("{other}"),
+    };
+    row.get_column_iter().map(|(_, field)| cell(field)).collect::<Vec<_>>().join(",")
+}
 
 #[test]
 fn a_run_and_a_sweep_are_read_by_pyarrow() {

@@ -57,8 +57,8 @@ impl Target {
 /// Takes the rows of a run.
 pub(super) struct Recorder {
     target: Target,
-    csv: Option<CsvWriter<Box<dyn Write>>>,
-    parquet: Option<ParquetWriter<Box<dyn Write>>>,
+    csv: Option<CsvWriter<Box<dyn Write + Send>>>,
+    parquet: Option<ParquetWriter<Box<dyn Write + Send>>>,
     file: Option<NewFile>,
     /// Rows for the file, each with its time first, one after the other: with many columns a row at a time is
     /// several times faster than a column at a time.
@@ -120,7 +120,7 @@ impl Recorder {
     }
 
     fn open(&mut self, written: Option<u64>) {
-        let out: Box<dyn Write> = match (&self.target, &self.file) {
+        let out: Box<dyn Write + Send> = match (&self.target, &self.file) {
             (Target::Csv(_) | Target::Parquet(_), Some(file)) => match file.handle() {
                 Ok(handle) => Box::new(handle),
                 Err(error) => return self.fail(&error),
@@ -129,7 +129,10 @@ impl Recorder {
             _ => return,
         };
         if matches!(self.target, Target::Parquet(_)) {
-            match ParquetWriter::new(Box::new(std::io::BufWriter::new(out)) as Box<dyn Write>, &self.rows.signals) {
+            match ParquetWriter::new(
+                Box::new(std::io::BufWriter::new(out)) as Box<dyn Write + Send>,
+                &self.rows.signals,
+            ) {
                 Ok(parquet) => self.parquet = Some(parquet),
                 Err(error) => self.fail(&error),
             }

@@ -318,10 +318,7 @@ impl Exprs {
 
     /// Shares `b op a` if that spelling is in the pool.
     fn commutative(&mut self, op: Binary, a: ExprId, b: ExprId) -> ExprId {
-        match self.index.get(&Node::Binary(op, b, a)) {
-            Some(&found) => found,
-            None => self.intern(Node::Binary(op, a, b)),
-        }
+        self.find(&Node::Binary(op, b, a)).unwrap_or_else(|| self.intern(Node::Binary(op, a, b)))
     }
 }
 

@@ -19,8 +19,9 @@ mod rules;
 mod tangent;
 pub mod visit;
 
-use rustc_hash::FxHashMap;
-use std::hash::{Hash, Hasher};
+use hashbrown::hash_table::{Entry, HashTable};
+use rustc_hash::{FxBuildHasher, FxHashMap};
+use std::hash::{BuildHasher, Hash, Hasher};
 
 /// A flat variable: index into `FlatModel::variables` and, later, `Dae::variables`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -174,11 +175,16 @@ impl Hash for Node {
     }
 }
 
+fn hash(node: &Node) -> u64 {
+    FxBuildHasher.hash_one(node)
+}
+
 /// A pool of expressions. Node 0 is the number 0 and node 1 the number 1.
 #[derive(Clone, Debug)]
 pub struct Exprs {
     nodes: Vec<Node>,
-    index: FxHashMap<Node, ExprId>,
+    /// Where each node stands: the ids alone, for the nodes are in the list already.
+    index: HashTable<ExprId>,
     args: Vec<ExprId>,
     arg_index: FxHashMap<Box<[ExprId]>, Args>,
     /// The function that takes values and tangents and returns tangents, by original.
@@ -193,7 +199,7 @@ impl Default for Exprs {
     fn default() -> Self {
         let mut pool = Exprs {
             nodes: Vec::new(),
-            index: FxHashMap::default(),
+            index: HashTable::new(),
             args: Vec::new(),
             arg_index: FxHashMap::default(),
             tangents: FxHashMap::default(),
@@ -234,13 +240,22 @@ impl Exprs {
 
     /// The id of exactly this node, without simplification.
     pub fn intern(&mut self, node: Node) -> ExprId {
-        if let Some(&e) = self.index.get(&node) {
-            return e;
+        let nodes = &self.nodes;
+        let same = |e: &ExprId| nodes[e.index()] == node;
+        match self.index.entry(hash(&node), same, |e| hash(&nodes[e.index()])) {
+            Entry::Occupied(found) => *found.get(),
+            Entry::Vacant(place) => {
+                let e = ExprId(u32::try_from(nodes.len()).expect("fewer than 2^32 nodes"));
+                place.insert(e);
+                self.nodes.push(node);
+                e
+            }
         }
-        let e = ExprId(u32::try_from(self.nodes.len()).expect("fewer than 2^32 nodes"));
-        self.nodes.push(node);
-        self.index.insert(node, e);
-        e
+    }
+
+    /// The id of exactly this node, if it is there.
+    fn find(&self, node: &Node) -> Option<ExprId> {
+        self.index.find(hash(node), |e| self.nodes[e.index()] == *node).copied()
     }
 
     /// The value, if the node is a number.

@@ -3,6 +3,7 @@
 //! A component owes one equation for each variable of its own and for each flow of its ports; the circuit around it
 //! supplies the other half of every port and the values of its inputs (MLS 4.8).
 
+use super::numbers::Numbers;
 use super::{FlatModel, OriginKind, Variability};
 use crate::expr::{ExprId, Node, VarId};
 use crate::instance::{Instance, ScopeId};
@@ -156,7 +157,7 @@ impl Census {
 
     /// Joined signals: one equation less than members. Flows of own ports that are joined inside: one each.
     fn connections(&mut self, instance: &Instance<'_, '_>, network: &Network, scopes: &[ScopeId]) {
-        let numbers: FxHashMap<ScopeId, u32> = scopes.iter().copied().zip(0u32..).collect();
+        let numbers = Numbers::new(scopes);
         for set in &network.flows {
             for &(i, outside) in &set.members {
                 let v = instance.variables[i as usize].id;
@@ -173,7 +174,7 @@ impl Census {
         }
         let mut groups = Groups::default();
         for pair in &network.signals {
-            let at = numbers.get(&pair.scope).copied().unwrap_or(0);
+            let at = numbers.of(pair.scope);
             if groups.join((at, pair.a), (at, pair.b)) {
                 self.brought[at as usize] += 1;
             }

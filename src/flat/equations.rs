@@ -1,5 +1,6 @@
 //! Equation and algorithm sections of every component, made scalar.
 
+use super::numbers::Numbers;
 use super::{
     Assert, Equation, FlatModel, Message, MessagePart, Origin, OriginKind, Type, Variability, When, WhenAction,
     WhenBranch,
@@ -11,7 +12,6 @@ use crate::instance::value::Val;
 use crate::instance::{Instance, ScopeId, View};
 use crate::syntax::ast::{self, ClassBody, EquationKind, Expr, ExprKind, Statement, StatementKind};
 use crate::syntax::symbol::Symbol;
-use rustc_hash::FxHashMap;
 
 /// Scalar sides of an equation with the place it comes from.
 struct Pair {
@@ -22,18 +22,14 @@ struct Pair {
 
 pub(super) struct Walker<'w, 'a, 'l> {
     instance: &'w mut Instance<'a, 'l>,
-    numbers: &'w FxHashMap<ScopeId, u32>,
+    numbers: &'w Numbers,
     flat: &'w mut FlatModel,
     /// Assertions met inside the equations of an `if` with their conditions.
     guards: Vec<ExprId>,
 }
 
 impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
-    pub(super) fn new(
-        instance: &'w mut Instance<'a, 'l>,
-        numbers: &'w FxHashMap<ScopeId, u32>,
-        flat: &'w mut FlatModel,
-    ) -> Self {
+    pub(super) fn new(instance: &'w mut Instance<'a, 'l>, numbers: &'w Numbers, flat: &'w mut FlatModel) -> Self {
         Walker { instance, numbers, flat, guards: Vec::new() }
     }
 
@@ -61,7 +57,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
     }
 
     fn origin(&self, span: Span, view: View) -> Origin {
-        let instance = self.numbers.get(&view.scope).copied().unwrap_or(0);
+        let instance = self.numbers.of(view.scope);
         Origin { span, instance, kind: OriginKind::Declared }
     }
 

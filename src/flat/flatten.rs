@@ -2,6 +2,7 @@
 
 use super::census::Census;
 use super::equations::Walker;
+use super::numbers::Numbers;
 use super::{
     Equation, Experiment, FlatModel, InstanceInfo, Origin, OriginKind, StateSelect, Type, Variability, Variable,
 };
@@ -12,16 +13,12 @@ use crate::instance::{Instance, ScopeId};
 use crate::network::{Network, component_scopes};
 use crate::syntax::ast::{self, ArgumentKind, ClassBody, ExprKind, Modification};
 use crate::syntax::symbol::Symbol;
-use rustc_hash::FxHashMap;
 
 /// Flattens an instance. The instance's expression pool moves into the flat model.
 pub fn flatten(instance: &mut Instance<'_, '_>, network: &Network) -> Checked<FlatModel> {
     let scopes = component_scopes(instance);
     let mut flat = FlatModel { class: class_name(instance, instance.root), ..FlatModel::default() };
-    let mut numbers: FxHashMap<ScopeId, u32> = FxHashMap::default();
-    for (i, &scope) in (0u32..).zip(&scopes) {
-        numbers.insert(scope, i);
-    }
+    let numbers = Numbers::new(&scopes);
     flat.instances = scopes.iter().map(|&s| instance_info(instance, s, &numbers)).collect();
     flat.experiment = experiment(instance);
     variables(instance, &numbers, &mut flat);
@@ -55,13 +52,14 @@ fn class_name(instance: &Instance<'_, '_>, scope: ScopeId) -> String {
     instance.library.full_name(instance.scope(scope).template.class)
 }
 
-fn instance_info(instance: &Instance<'_, '_>, scope: ScopeId, numbers: &FxHashMap<ScopeId, u32>) -> InstanceInfo {
+fn instance_info(instance: &Instance<'_, '_>, scope: ScopeId, numbers: &Numbers) -> InstanceInfo {
     let s = instance.scope(scope);
-    let parent = s.owner.and_then(|o| numbers.get(&o)).copied().unwrap_or(0);
+    let parent = s.owner.map_or(0, |owner| numbers.of(owner));
     InstanceInfo { name: s.name.clone(), class: class_name(instance, scope), parent, span: s.span }
 }
 
-fn variables(instance: &mut Instance<'_, '_>, numbers: &FxHashMap<ScopeId, u32>, flat: &mut FlatModel) {
+fn variables(instance: &mut Instance<'_, '_>, numbers: &Numbers, flat: &mut FlatModel) {
+    flat.variables.reserve_exact(instance.order.len());
     for k in 0..instance.order.len() {
         let i = instance.order[k];
         let v = variable(instance, i, numbers, flat);
@@ -69,18 +67,9 @@ fn variables(instance: &mut Instance<'_, '_>, numbers: &FxHashMap<ScopeId, u32>,
     }
 }
 
-fn variable(
-    instance: &mut Instance<'_, '_>,
-    i: u32,
-    numbers: &FxHashMap<ScopeId, u32>,
-    flat: &mut FlatModel,
-) -> Variable {
+fn variable(instance: &mut Instance<'_, '_>, i: u32, numbers: &Numbers, flat: &mut FlatModel) -> Variable {
     let data = &instance.variables[i as usize];
-    let origin = Origin {
-        span: data.span,
-        instance: numbers.get(&data.scope).copied().unwrap_or(0),
-        kind: OriginKind::Declared,
-    };
+    let origin = Origin { span: data.span, instance: numbers.of(data.scope), kind: OriginKind::Declared };
     let input = data.top && data.causality == Some(ast::Causality::Input);
     let output = data.top && data.causality == Some(ast::Causality::Output);
     let mut v = Variable {
@@ -191,22 +180,13 @@ fn missing_value(instance: &mut Instance<'_, '_>, i: u32, v: &mut Variable) {
 }
 
 /// Connection equations: potentials equal, flows summed, open flows zero (MLS 9.2).
-fn connections(
-    instance: &mut Instance<'_, '_>,
-    network: &Network,
-    numbers: &FxHashMap<ScopeId, u32>,
-    flat: &mut FlatModel,
-) {
+fn connections(instance: &mut Instance<'_, '_>, network: &Network, numbers: &Numbers, flat: &mut FlatModel) {
     for set in &network.potentials {
         let first = instance.variables[set.members[0].0 as usize].id;
         let lhs = instance.exprs.var(first);
         for &(i, span) in &set.members[1..] {
             let rhs = instance.exprs.var(instance.variables[i as usize].id);
-            let origin = Origin {
-                span,
-                instance: numbers.get(&set.scope).copied().unwrap_or(0),
-                kind: OriginKind::ConnectPotential,
-            };
+            let origin = Origin { span, instance: numbers.of(set.scope), kind: OriginKind::ConnectPotential };
             flat.equations.push(Equation { lhs, rhs, origin });
         }
     }
@@ -221,20 +201,12 @@ fn connections(
                 (Some(s), true) => instance.exprs.sub(s, e),
             });
         }
-        let origin = Origin {
-            span: set.span,
-            instance: numbers.get(&set.scope).copied().unwrap_or(0),
-            kind: OriginKind::ConnectFlow,
-        };
+        let origin = Origin { span: set.span, instance: numbers.of(set.scope), kind: OriginKind::ConnectFlow };
         flat.equations.push(Equation { lhs: sum.unwrap_or(Exprs::ZERO), rhs: Exprs::ZERO, origin });
     }
     for &i in &network.open {
         let data = &instance.variables[i as usize];
-        let origin = Origin {
-            span: data.span,
-            instance: numbers.get(&data.scope).copied().unwrap_or(0),
-            kind: OriginKind::OpenPort,
-        };
+        let origin = Origin { span: data.span, instance: numbers.of(data.scope), kind: OriginKind::OpenPort };
         let lhs = instance.exprs.var(data.id);
         flat.equations.push(Equation { lhs, rhs: Exprs::ZERO, origin });
     }

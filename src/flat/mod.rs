@@ -5,6 +5,7 @@ mod census;
 mod equations;
 mod explain;
 mod flatten;
+mod numbers;
 mod ports;
 mod print;
 mod roots;

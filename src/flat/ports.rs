@@ -1,6 +1,7 @@
 //! Ports that nothing is connected to, inputs without a value, and signals with two sources.
 
 use super::census::{Census, Groups, Role};
+use super::numbers::Numbers;
 use super::{FlatModel, OriginKind};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::expr::VarId;
@@ -82,12 +83,12 @@ impl<'s> Signals<'s> {
         census: &'s Census,
         scopes: &[ScopeId],
     ) -> Self {
-        let numbers: FxHashMap<ScopeId, u32> = scopes.iter().copied().zip(0u32..).collect();
+        let numbers = Numbers::new(scopes);
         let mut sets = Groups::default();
         let mut members: Vec<((u32, u32), Span)> = Vec::new();
         let mut seen: FxHashSet<(u32, u32)> = FxHashSet::default();
         for pair in &network.signals {
-            let at = numbers.get(&pair.scope).copied().unwrap_or(0);
+            let at = numbers.of(pair.scope);
             sets.join((at, pair.a), (at, pair.b));
             for v in [pair.a, pair.b] {
                 if seen.insert((at, v)) {

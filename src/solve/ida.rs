@@ -5,6 +5,7 @@
 #![allow(unsafe_code, reason = "calls into SUNDIALS; each block states why it is sound")]
 
 mod context;
+mod operations;
 mod sensitivity;
 
 use super::linear::{Lu, Singular};

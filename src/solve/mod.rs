@@ -24,6 +24,7 @@ mod selection;
 mod settings;
 mod state;
 mod tangents;
+mod vectors;
 
 pub use checkpoint::Checkpoint;
 pub use inputs::{Input, Interpolation};

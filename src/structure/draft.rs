@@ -126,6 +126,10 @@ impl Draft {
     /// Adds a variable made by the compiler.
     pub fn make_variable(&mut self, name: String, ty: Type, role: Role, origin: flat::Origin) -> VarId {
         let variability = if role == Role::Continuous { Variability::Continuous } else { Variability::Discrete };
+        // a variable is large: twice as many places as are needed would be most of what a model takes
+        if self.variables.len() == self.variables.capacity() {
+            self.variables.reserve_exact(self.variables.len() / 8 + 64);
+        }
         self.variables.push(flat::Variable { hidden: true, ..flat::Variable::plain(name, ty, variability, origin) });
         self.roles.push(role);
         self.when_assigned.push(false);

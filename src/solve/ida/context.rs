@@ -3,8 +3,9 @@
 
 #![allow(unsafe_code, reason = "functions called by SUNDIALS; each block states why it is sound")]
 
-use super::{Differentiable, Equations, Evaluation, Tolerances};
+use super::{Differentiable, Equations, Evaluation, Tolerances, operations};
 use crate::solve::linear::{Lu, Singular};
+use crate::solve::vectors::LONG;
 use std::os::raw::{c_int, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::ptr::null_mut;
@@ -275,6 +276,9 @@ pub(super) fn new_vector(values: &[f64], context: s::SUNContext) -> s::N_Vector 
         let v = s::N_VNew_Serial(i64::try_from(values.len()).expect("fewer than 2^63 unknowns"), context);
         assert!(!v.is_null(), "SUNDIALS has no memory");
         slice(v, values.len()).copy_from_slice(values);
+        if values.len() >= LONG {
+            operations::install(v);
+        }
         v
     }
 }

@@ -1,0 +1,23 @@
+//! Which component of the flat model a scope is.
+
+use crate::instance::ScopeId;
+
+/// The numbers of components, by their scopes.
+pub(super) struct Numbers(Vec<u32>);
+
+impl Numbers {
+    /// Components are numbered in the order of their scopes.
+    pub(super) fn new(scopes: &[ScopeId]) -> Numbers {
+        let places = scopes.iter().map(|s| s.0 as usize + 1).max().unwrap_or(0);
+        let mut all = vec![0; places];
+        for (&scope, i) in scopes.iter().zip(0u32..) {
+            all[scope.0 as usize] = i;
+        }
+        Numbers(all)
+    }
+
+    /// The component of a scope; 0, the model itself, for what is none.
+    pub(super) fn of(&self, scope: ScopeId) -> u32 {
+        self.0.get(scope.0 as usize).copied().unwrap_or(0)
+    }
+}
