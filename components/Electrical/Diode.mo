@@ -1,8 +1,8 @@
 within Electrical;
 model Diode "Ideal diode with knee voltage, exact switching"
   extends Bases.OnePort;
-  parameter SI.Resistance R_on(min = 0) = 1e-5 "Resistance in forward direction";
-  parameter SI.Conductance G_off(min = 0) = 1e-5 "Conductance in backward direction";
+  parameter SI.Resistance R_on(min = 1e-9, max = 1e6) = 1e-5 "Resistance in forward direction";
+  parameter SI.Conductance G_off(min = 1e-9, max = 1e3) = 1e-5 "Conductance in backward direction";
   parameter SI.Voltage V_knee(min = 0) = 0 "Knee voltage";
   Boolean off(start = true) "true: blocks";
 protected

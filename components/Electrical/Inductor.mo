@@ -1,7 +1,7 @@
 within Electrical;
 model Inductor "Inductor"
   extends Bases.OnePort(i(start = i_start, fixed = true));
-  parameter SI.Inductance L(min = 0, max = 1e6, nominal = 1e-3) = 1e-3 "Inductance";
+  parameter SI.Inductance L(min = 1e-9, max = 1e6, nominal = 1e-3) = 1e-3 "Inductance";
   parameter SI.Current i_start = 0 "Current at the start";
 equation
   assert(L > 0, "The inductance L must be positive");

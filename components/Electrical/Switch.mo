@@ -1,8 +1,8 @@
 within Electrical;
 model Switch "Switch with small resistance when closed and small conductance when open"
   extends Bases.OnePort;
-  parameter SI.Resistance R_on(min = 0) = 1e-5 "Resistance when closed";
-  parameter SI.Conductance G_off(min = 0) = 1e-5 "Conductance when open";
+  parameter SI.Resistance R_on(min = 1e-9, max = 1e6) = 1e-5 "Resistance when closed";
+  parameter SI.Conductance G_off(min = 1e-9, max = 1e3) = 1e-5 "Conductance when open";
   Interfaces.BooleanInput closed "true: closed";
 protected
   Real s "Voltage over 1 V when open, current over 1 A when closed";

@@ -5,7 +5,7 @@ model Cooler "Cooler: laminar resistance, and heat passed from the oil to the su
   parameter SI.VolumeFlowRate q_nom(min = 1e-8, nominal = 1e-3) = 1e-3 "Flow of dp_nom";
   parameter SI.DynamicViscosity mu_nom(min = 1e-4, max = 10, nominal = 0.03) = 0.04 "Viscosity of the nominal point";
   parameter SI.ThermalConductance kA(min = 0, max = 1e6, nominal = 100) = 300 "Heat transfer to the surroundings";
-  parameter SI.Temperature T_ambient = 293.15 "Temperature of the surroundings";
+  parameter SI.Temperature T_ambient(min = 220, max = 420) = 293.15 "Temperature of the surroundings";
   Interfaces.HeatPort oilHeat "Thermal mass of the oil";
 equation
   assert(dp_nom > 0 and q_nom > 0 and kA >= 0, "The nominal point must be positive, kA not negative");

@@ -2,7 +2,7 @@ within Hydraulic;
 model CounterbalanceValve "Counterbalance valve: holds a load at b, opened by the load and by a pilot; free from a to b"
   extends Bases.TwoPort;
   Interfaces.HydraulicPort port_x "Pilot; takes no flow";
-  parameter SI.Pressure p_set(min = 0, max = 1e8, nominal = 1e7) = 250e5 "Pressure at b at which it opens without pilot";
+  parameter SI.Pressure p_set(min = 1e3, max = 1e8, nominal = 1e7) = 250e5 "Pressure at b at which it opens without pilot";
   parameter Real pilotRatio(unit = "1", min = 0, max = 20) = 4 "Area of the pilot over that of the load";
   parameter SI.VolumeFlowRate q_nom(min = 1e-8, max = 0.1, nominal = 1e-3) = 1e-3 "Flow when fully open, at p_set*(1 + override)";
   parameter Real override(unit = "1", min = 0.005, max = 1) = 0.2 "Rise of pressure from cracking to fully open, over p_set";

@@ -3,7 +3,7 @@ model Junction "Three-way junction: a small volume with a loss in each branch"
   Interfaces.HydraulicPort port_a "Branch a";
   Interfaces.HydraulicPort port_b "Branch b, straight on from a";
   Interfaces.HydraulicPort port_c "Branch c, at a right angle";
-  parameter SI.Diameter d(min = 1e-4, max = 1, nominal = 1e-2) = 1e-2 "Diameter of the branches";
+  parameter SI.Diameter d(min = 1e-3, max = 1, nominal = 1e-2) = 1e-2 "Diameter of the branches";
   parameter Real zeta_straight(unit = "1", min = 1e-3, max = 1e3) = 0.1 "Loss coefficient between a and b; half of it in each branch";
   parameter Real zeta_branch(unit = "1", min = 1e-3, max = 1e3) = 1.2 "Loss coefficient into or out of c";
   parameter SI.Volume V(min = 1e-9, max = 1, nominal = 1e-5, displayUnit = "ml") = 1e-5 "Volume";

@@ -1,7 +1,7 @@
 within Hydraulic;
 model LocalLoss "Bend, junction or change of section with a loss coefficient"
   extends Bases.TwoPort;
-  parameter SI.Diameter d(min = 1e-4, max = 1, nominal = 1e-2) = 1e-2 "Diameter to which zeta belongs";
+  parameter SI.Diameter d(min = 1e-3, max = 1, nominal = 1e-2) = 1e-2 "Diameter to which zeta belongs";
   parameter Real zeta(unit = "1", min = 1e-3, max = 1e3) = 0.3 "Loss coefficient: bend 0.2 to 0.5, right angle 1.2, inlet 0.5, outlet 1";
   parameter Real Re_cr(unit = "1", min = 1, max = 5000) = 500 "Reynolds number of the laminar transition";
 equation

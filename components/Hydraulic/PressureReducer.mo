@@ -1,7 +1,7 @@
 within Hydraulic;
 model PressureReducer "Pressure reducing valve from a to b, static, drain to the surroundings"
   extends Bases.TwoPort;
-  parameter SI.Pressure p_set(min = 0, max = 1e8, nominal = 1e6) = 50e5 "Pressure at b above p_ref at which it is closed";
+  parameter SI.Pressure p_set(min = 1e3, max = 1e8, nominal = 1e6) = 50e5 "Pressure at b above p_ref at which it is closed";
   parameter SI.Pressure p_ref(nominal = 1e5) = 101325 "Pressure of the spring chamber";
   parameter SI.VolumeFlowRate q_nom(min = 1e-8, max = 0.1, nominal = 1e-3) = 1e-3 "Flow when fully open, at dp_nom";
   parameter SI.Pressure dp_nom(min = 1e3, nominal = 1e6) = 10e5 "Pressure drop of q_nom";

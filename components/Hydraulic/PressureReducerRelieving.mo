@@ -4,7 +4,7 @@ model PressureReducerRelieving "Three-way pressure reducing valve: feeds the con
   Interfaces.HydraulicPort port_b "Consumer at the reduced pressure";
   Interfaces.HydraulicPort port_t "Tank";
   outer Oil.Fluid oil "Oil of the circuit";
-  parameter SI.Pressure p_set(min = 0, max = 1e8, nominal = 1e6) = 50e5 "Pressure at b above p_ref at which both ways are closed";
+  parameter SI.Pressure p_set(min = 1e3, max = 1e8, nominal = 1e6) = 50e5 "Pressure at b above p_ref at which both ways are closed";
   parameter SI.Pressure p_ref(nominal = 1e5) = 101325 "Pressure of the spring chamber";
   parameter SI.VolumeFlowRate q_nom(min = 1e-8, max = 0.1, nominal = 1e-3) = 5e-4 "Flow of a fully open way, at dp_nom";
   parameter SI.Pressure dp_nom(min = 1e3, nominal = 1e6) = 10e5 "Pressure drop of q_nom";

@@ -1,7 +1,7 @@
 within Hydraulic;
 model ReliefValveDynamic "Relief valve whose opening follows with a time constant"
   extends Bases.TwoPort;
-  parameter SI.Pressure p_set(min = 0, max = 1e8, nominal = 1e7) = 200e5 "Pressure drop at which it begins to open";
+  parameter SI.Pressure p_set(min = 1e3, max = 1e8, nominal = 1e7) = 200e5 "Pressure drop at which it begins to open";
   parameter SI.VolumeFlowRate q_nom(min = 1e-8, max = 0.1, nominal = 1e-3) = 1e-3 "Flow when fully open, at p_set*(1 + override)";
   parameter Real override(unit = "1", min = 0.005, max = 1) = 0.1 "Rise of pressure from cracking to fully open, over p_set";
   parameter SI.Time tau(min = 1e-5, max = 1, nominal = 1e-2) = 7e-3 "Time constant of the opening, 5 to 10 ms";

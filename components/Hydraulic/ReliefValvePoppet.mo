@@ -1,12 +1,12 @@
 within Hydraulic;
 model ReliefValvePoppet "Relief valve with the motion of its poppet and the flow force"
   extends Bases.TwoPort;
-  parameter SI.Pressure p_set(min = 0, max = 1e8, nominal = 1e7) = 200e5 "Pressure drop at which it begins to open";
+  parameter SI.Pressure p_set(min = 1e3, max = 1e8, nominal = 1e7) = 200e5 "Pressure drop at which it begins to open";
   parameter SI.Diameter d(min = 1e-4, max = 0.1, nominal = 1e-3) = 4e-3 "Diameter of the seat";
   parameter SI.Angle alpha(min = 0.05, max = 1.5) = 20*Modelica.Constants.pi/180 "Half angle of the cone";
   parameter SI.Mass m(min = 1e-6, max = 10, nominal = 1e-3) = 5e-3 "Mass of the poppet";
   parameter SI.TranslationalSpringConstant k(min = 1, max = 1e9, nominal = 1e4) = 5e4 "Spring";
-  parameter Real zeta(unit = "1", min = 0, max = 10) = 1/3 "Damping over the critical one";
+  parameter Real zeta(unit = "1", min = 0.01, max = 10) = 1/3 "Damping over the critical one";
   parameter SI.Length x_max(min = 1e-6, max = 0.1, nominal = 1e-3) = 1e-3 "Greatest lift";
   parameter Real C_d(unit = "1", min = 0.1, max = 1) = 0.65 "Discharge coefficient";
   parameter Real C_v(unit = "1", min = 0.1, max = 1) = 0.98 "Velocity coefficient of the jet";
@@ -28,6 +28,6 @@ equation
   F_stop = max(-x, 0)*(1e3*k - 1e3*c*min(v, 0)/x_max) - max(x - x_max, 0)*(1e3*k + 1e3*c*max(v, 0)/x_max);
   der(x) = v;
   m*der(v) = A_s*(dp - p_set) - k*x - c*v - F_flow + F_stop;
-  q = Functions.orificeFlow(dp, pi*d*sin(alpha)*lift, C_d, rho, oil.mu, Re_cr);
+  q = Functions.orificeFlow(dp, max(pi*d*sin(alpha)*lift, 1e-16), C_d, rho, oil.mu, Re_cr);
   annotation(Documentation(info = "<html><p><code>m x'' = A_s (dp - p_set) - k x - c x' - 2 C_d C_v pi d sin a cos a x dp</code>, cross section <code>pi d sin(a) x</code>. Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, chapters 5 and 9.</p></html>"));
 end ReliefValvePoppet;

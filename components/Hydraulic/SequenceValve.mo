@@ -1,7 +1,7 @@
 within Hydraulic;
 model SequenceValve "Sequence valve: opens from a to b at a pressure at a, whatever the pressure at b"
   extends Bases.TwoPort;
-  parameter SI.Pressure p_set(min = 0, max = 1e8, nominal = 1e7) = 100e5 "Pressure at a above p_ref at which it begins to open";
+  parameter SI.Pressure p_set(min = 1e3, max = 1e8, nominal = 1e7) = 100e5 "Pressure at a above p_ref at which it begins to open";
   parameter SI.Pressure p_ref(nominal = 1e5) = 101325 "Pressure of the spring chamber, drained outside";
   parameter Real override(unit = "1", min = 0.005, max = 1) = 0.05 "Rise of that pressure to fully open, over p_set";
   parameter SI.VolumeFlowRate q_nom(min = 1e-8, max = 0.1, nominal = 1e-3) = 1e-3 "Flow when fully open, at dp_nom";

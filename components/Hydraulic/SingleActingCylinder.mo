@@ -7,7 +7,7 @@ model SingleActingCylinder "Single-acting cylinder: pressure extends, spring and
   parameter SI.Length stroke(min = 1e-4, max = 100, nominal = 0.1) = 0.2 "Stroke";
   parameter SI.Volume V_0(min = 1e-9, nominal = 1e-4, displayUnit = "ml") = 1e-4 "Volume at s = 0";
   parameter SI.Mass m(min = 1e-6, max = 1e6, nominal = 10) = 5 "Mass of piston and rod";
-  parameter SI.TranslationalSpringConstant c(min = 0) = 1e3 "Return spring";
+  parameter SI.TranslationalSpringConstant c(min = 1e-6) = 1e3 "Return spring";
   parameter SI.Force F_0(min = 0) = 200 "Force of the return spring at s = 0";
   parameter SI.Pressure p_ambient(nominal = 1e5) = 101325 "Pressure outside";
   parameter SI.Position s_start = 0.01 "Position at the start";

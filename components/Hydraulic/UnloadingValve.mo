@@ -2,7 +2,7 @@ within Hydraulic;
 model UnloadingValve "Unloading valve: opens from a to b at a pilot pressure, with hysteresis"
   extends Bases.TwoPort;
   Interfaces.HydraulicPort port_x "Pilot; takes no flow";
-  parameter SI.Pressure p_set(min = 0, max = 1e8, nominal = 1e7) = 150e5 "Pilot pressure above p_ref at which it opens";
+  parameter SI.Pressure p_set(min = 1e3, max = 1e8, nominal = 1e7) = 150e5 "Pilot pressure above p_ref at which it opens";
   parameter Real hysteresis(unit = "1", min = 1e-3, max = 0.9) = 0.15 "It closes at (1 - hysteresis) p_set";
   parameter SI.Pressure p_ref(nominal = 1e5) = 101325 "Pressure of the spring chamber";
   parameter SI.VolumeFlowRate q_nom(min = 1e-8, max = 0.1, nominal = 1e-3) = 1e-3 "Flow when fully open, at dp_nom";

@@ -1,7 +1,7 @@
 within Signal;
 block Quantizer "Rounds a signal to steps"
   extends Bases.OneToOne;
-  parameter Real step(min = 1e-60) = 0.1 "Step";
+  parameter Real step(min = 1e-12) = 0.1 "Step";
 equation
   assert(step > 0, "The step must be positive");
   y = step*floor(u/step + 0.5);

@@ -4,8 +4,8 @@ model OilMass "Heat storage of the oil of a circuit with its tank, cooled by the
   Interfaces.RealOutput T(unit = "K") "Temperature, for Oil.Fluid.T_in";
   parameter SI.HeatCapacity C(min = 1, max = 1e9, nominal = 1e4) = 15e3 "Heat capacity of oil and metal";
   parameter SI.ThermalConductance G(min = 0, max = 1e6, nominal = 10) = 12.5 "Heat transfer to the surroundings";
-  parameter SI.Temperature T_ambient = 293.15 "Temperature of the surroundings";
-  parameter SI.Temperature T_start = T_ambient "Temperature at the start";
+  parameter SI.Temperature T_ambient(min = 220, max = 420) = 293.15 "Temperature of the surroundings";
+  parameter SI.Temperature T_start(min = 220, max = 420) = T_ambient "Temperature at the start";
   SI.Temperature T_oil(start = T_start, fixed = true, nominal = 300) "Temperature of the oil";
 equation
   assert(C > 0 and G >= 0, "The heat capacity C must be positive, G not negative");

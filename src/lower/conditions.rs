@@ -5,7 +5,9 @@ use super::layout::Slot;
 use super::program::{Assembler, Defs, Order};
 use super::shape::{Rules, Shaper};
 use super::{Conditions, Program};
-use crate::expr::ExprId;
+use crate::expr::visit::Walk;
+use crate::expr::{ExprId, Node};
+use crate::flat::Variability;
 use crate::structure::{ActionKind, Dae};
 use rustc_hash::FxHashMap;
 
@@ -54,6 +56,27 @@ pub fn actions(dae: &Dae, shaper: &mut Shaper) -> ConditionsDraft {
         draft.code.value.push(value);
     }
     draft
+}
+
+/// The entries of `dae.asserts` that speak of parameters alone whose values stand before the start.
+pub fn standing(dae: &Dae) -> Vec<usize> {
+    let mut walk = Walk::default();
+    let mut stands = |condition: ExprId| {
+        let mut stands = true;
+        walk.each(&dae.exprs, &[condition], |e, node| {
+            stands &= match node {
+                Node::Num(_) => true,
+                Node::Var(v) => {
+                    let still = dae.variables[v.index()].variability <= Variability::Parameter;
+                    still && !dae.free_parameters.contains(&v)
+                }
+                _ => !dae.exprs.operands(e).as_slice().is_empty(),
+            };
+            stands
+        });
+        stands
+    };
+    (0..dae.asserts.len()).filter(|&i| stands(dae.asserts[i].condition)).collect()
 }
 
 /// `dae.asserts`: whether they hold.

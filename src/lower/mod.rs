@@ -264,18 +264,23 @@ impl Drafts {
         programs.jacobian = assembler.assemble(&defs, by_need, Some(products));
         let with_observables = self.observables.before(&kernels, &self.crossings.defs);
         programs.crossings = assembler.assemble(&with_observables, by_need, None);
-        assembler.set_native(if options.native { Compile::LongLoops } else { Compile::Nothing });
+        // a model with samples spends much of its time at events
+        let often = options.native && !dae.samples.is_empty();
+        let rarely = if options.native { Compile::LongLoops } else { Compile::Nothing };
+        assembler.set_native(if often { Compile::All } else { rarely });
         programs.crossings_alone = assembler.assemble(&self.crossings.defs, by_need, None);
-        programs.hoisted = assembler.assemble(&self.hoisted, by_need, None);
         programs.observe = assembler.assemble(&self.observables.defs, by_need, None);
-        programs.observables = self.observables;
         let actions = self.actions.assemble(None, &mut assembler);
-        let asserts = self.asserts.assemble(Some(&programs.observables), &mut assembler);
+        let asserts = self.asserts.assemble(Some(&self.observables), &mut assembler);
         let event = blocks::assemble(self.event, &mut assembler);
+        assembler.set_native(rarely);
+        programs.observables = self.observables;
+        programs.hoisted = assembler.assemble(&self.hoisted, by_need, None);
         let initial = blocks::assemble(self.initial, &mut assembler);
         let (entries, loops) = assembler.compile(&programs.functions);
         programs.loops = Arc::new(loops);
 
+        let standing_asserts = conditions::standing(&dae);
         let mut system = System {
             columns: plan.columns,
             rows: plan.rows,
@@ -287,6 +292,7 @@ impl Drafts {
             initial,
             actions,
             asserts,
+            standing_asserts,
             programs,
         };
         system.finish(&entries);

@@ -38,6 +38,8 @@ pub struct System {
     pub actions: Conditions,
     /// `Dae::asserts`, with all explicit variables they need: run after [`System::load`].
     pub asserts: Conditions,
+    /// The entries of `Dae::asserts` about parameters alone.
+    pub standing_asserts: Vec<usize>,
     pub(super) programs: Programs,
 }
 

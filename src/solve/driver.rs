@@ -181,7 +181,11 @@ pub fn start<'a>(
 }
 
 fn stop_at_start(diagnostic: Diagnostic) -> Stop {
-    let end = if diagnostic.code == Code::NonFinite { End::NonFinite } else { End::StepTooSmall };
+    let end = match diagnostic.code {
+        Code::NonFinite => End::NonFinite,
+        Code::AssertionFailed => End::Assertion,
+        _ => End::StepTooSmall,
+    };
     Stop::new(end, diagnostic)
 }
 
@@ -214,8 +218,11 @@ fn prepare<'a, 'c>(
             modes.after = true;
             Ok(())
         }
-        None => initialize::solve(system, &scales, &mut modes, &mut values)
-            .map_err(|f| report::block_failure(system, Code::InitialFailed, &f, &values, "at the start"))
+        None => initialize::check_parameters(system, settings, &values)
+            .and_then(|()| {
+                let found = initialize::solve(system, &scales, &mut modes, &mut values);
+                found.map_err(|f| report::block_failure(system, Code::InitialFailed, &f, &values, "at the start"))
+            })
             .and_then(|()| initialize::check_starts(system, &scales, &values)),
     };
     let restart = Restart::new(system, &scales, settings.tolerance);

@@ -31,6 +31,26 @@ pub fn prepare(system: &System, settings: &Settings) -> Vec<f64> {
     values
 }
 
+/// Values given from outside must satisfy what is asserted of parameters, before anything is computed from them; those
+/// of the model itself were judged with its structure.
+///
+/// # Errors
+/// The first assertion that does not hold (E503).
+pub fn check_parameters(system: &System, settings: &Settings, values: &[f64]) -> Result<(), Diagnostic> {
+    if settings.parameters.is_empty() {
+        return Ok(());
+    }
+    let asserts = system.standing_asserts.iter().map(|&i| &system.dae.asserts[i]);
+    match asserts.filter(|a| !a.warning).find(|a| system.eval(a.condition, values) == 0.0) {
+        None => Ok(()),
+        Some(assert) => {
+            let text = report::message_text(system, &assert.message, values);
+            let text = format!("{text} (with the parameters given)");
+            Err(report::at_origin(&system.dae, Code::AssertionFailed, text, assert.origin, "does not hold"))
+        }
+    }
+}
+
 fn guess(system: &System, values: &mut [f64]) {
     for (v, variable) in (0..).map(crate::expr::VarId).zip(&system.dae.variables) {
         let free = system.dae.free_parameters.contains(&v);

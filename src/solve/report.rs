@@ -124,6 +124,15 @@ pub fn non_finite(system: &System, t: f64, trap: Option<(Trap, u32)>) -> Diagnos
         .help("limit the argument (`max`, `noEvent(if ...)`), or check the start values and parameters it depends on")
 }
 
+/// E504: an equation has no slope there.
+pub fn infinite_derivative(system: &System, t: f64, row: usize, column: usize) -> Diagnostic {
+    let v = name(&system.dae, Unknown::Var(system.columns[column].variable));
+    let text = format!("how fast an equation changes with `{v}` is not finite at time {} s", number(t));
+    equation_diagnostic(&system.dae, Code::NonFinite, text, system.rows[row].equation).help(
+        "look for the root of 0, a power of 0 with an exponent below 1, or a parameter that is 0 where it divides",
+    )
+}
+
 /// What happened in a block, as a diagnostic of the given code; `when` says when, as in `at the start`.
 pub fn block_failure(system: &System, code: Code, failure: &BlockFailure, values: &[f64], when: &str) -> Diagnostic {
     match failure {

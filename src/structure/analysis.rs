@@ -8,7 +8,7 @@ use super::parameters::Known;
 use super::solve_block::BlockSolver;
 use super::sorting::{System, SystemRow};
 use super::{
-    ActionKind, Alias, Assign, Block, Dae, Selection, StateChoice, Unknown, alias, closed_groups, discrete,
+    ActionKind, Alias, Assign, Block, Dae, Selection, StateChoice, Unknown, alias, assertions, closed_groups, discrete,
     dummy_derivatives, duplicates, events, initial, messages, parameters, regularity,
 };
 use crate::diag::{Checked, Diagnostic};
@@ -17,7 +17,7 @@ use crate::flat::{Equation, FlatModel, Origin, OriginKind, StateSelect};
 
 /// Sorts a flat model into a [`Dae`].
 ///
-/// Errors: circles of parameters (E214), singular structure (E301, E302, E303), constraints that cannot be
+/// Errors: circles of parameters (E214), their ranges (E215) and what is asserted of them (E503), singular structure (E301, E302, E303), constraints that cannot be
 /// differentiated (E304), start values that contradict each other (E401). A note lists start values that were chosen.
 pub fn analyze(flat: &FlatModel, choice: &StateChoice) -> Checked<Dae> {
     let mut diagnostics = Vec::new();
@@ -39,6 +39,9 @@ fn run(flat: &FlatModel, choice: &StateChoice, diagnostics: &mut Vec<Diagnostic>
     make_discrete_equations(&mut draft);
     prefer_reinitialized(&mut draft);
     let mut known = Known::new(&draft, values.clone());
+    if !diagnostics.iter().any(Diagnostic::is_error) {
+        diagnostics.extend(assertions::check(&draft, &mut known));
+    }
     let aliases = alias::eliminate(&mut draft, &mut known, diagnostics);
     discrete::classify(&mut draft);
     discrete::absorb_initial_pres(&mut draft);

@@ -5,6 +5,7 @@
 
 mod alias;
 mod analysis;
+mod assertions;
 mod blt;
 mod closed_groups;
 mod discrete;

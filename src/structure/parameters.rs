@@ -194,6 +194,11 @@ impl Known {
         Some(self.values[e.index()]).filter(|v| !v.is_nan())
     }
 
+    /// The value of a parameter.
+    pub fn value_of(&self, v: VarId) -> Option<f64> {
+        self.variables.get(v.index()).copied().filter(|value| !value.is_nan())
+    }
+
     /// True when an expression cannot vanish, whatever variables and time are, with the parameters as they are.
     pub fn is_nonzero(&mut self, pool: &Exprs, e: ExprId) -> bool {
         self.extend(pool);

@@ -8,11 +8,11 @@ model FluxVectorDrive "Induction motor under sensorless flux vector control: rot
   parameter SI.Inductance L_m(min = 1e-9, max = 100, nominal = 1e-2) = 13.08/(120*Modelica.Constants.pi) "Magnetizing inductance";
   parameter Real R_hat(unit = "1", min = 0.1, max = 10) = 1 "Rotor resistance that the controller assumes, over the true one";
   parameter SI.MagneticFlux psi_ref(min = 1e-3, max = 100) = 0.95 "Command of rotor flux, peak";
-  parameter Real K_p(unit = "N.m.s/rad", min = 0) = 20 "Gain of the speed controller";
+  parameter Real K_p(unit = "N.m.s/rad", min = 1e-3) = 20 "Gain of the speed controller";
   parameter Real K_i(unit = "N.m/rad", min = 0) = 150 "Integral gain";
   parameter SI.Time tau_T(min = 1e-6) = 10e-3 "Time constant of the current loops";
   parameter SI.Time tau_w(min = 1e-6) = 50e-3 "Time constant of the estimated speed";
-  parameter SI.Torque T_max(min = 0) = 300 "Greatest torque";
+  parameter SI.Torque T_max(min = 1e-6) = 300 "Greatest torque";
   parameter SI.AngularVelocity w_start = 0 "Estimated speed at the start";
   SI.AngularVelocity w(nominal = 100) "Speed";
   SI.AngularVelocity w_e(nominal = 100) "Electrical angular velocity of the flux";

@@ -2,11 +2,11 @@ within Electrical.Drives;
 model SensorlessVectorDrive "Induction motor under sensorless flux vector control, reduced: torque lag, estimated speed with lag, PI controller"
   Interfaces.RealInput w_ref(unit = "rad/s") "Command of speed";
   Interfaces.RotationalFlange flange "Shaft";
-  parameter Real K_p(unit = "N.m.s/rad", min = 0) = 20 "Gain";
+  parameter Real K_p(unit = "N.m.s/rad", min = 1e-9) = 20 "Gain";
   parameter Real K_i(unit = "N.m/rad", min = 0) = 150 "Integral gain";
   parameter SI.Time tau_T(min = 1e-6) = 10e-3 "Time constant of the torque";
   parameter SI.Time tau_w(min = 1e-6) = 50e-3 "Time constant of the estimated speed";
-  parameter SI.Torque T_max(min = 0) = 300 "Greatest torque";
+  parameter SI.Torque T_max(min = 1e-6) = 300 "Greatest torque";
   parameter SI.AngularVelocity w_start = 0 "Estimated speed at the start";
   SI.AngularVelocity w(nominal = 100) "Speed";
   SI.AngularVelocity w_est(start = w_start, fixed = true, nominal = 100) "Estimated speed";

@@ -4,7 +4,7 @@ model ServoMotor "Torque-controlled PMSM with field-oriented current control and
   Interfaces.RotationalFlange flange "Shaft";
   Interfaces.Pin dc_p if externalSupply "Positive pin of the DC link";
   Interfaces.Pin dc_n if externalSupply "Negative pin of the DC link";
-  parameter SI.Torque T_max(min = 0) = 9.54 "Greatest torque";
+  parameter SI.Torque T_max(min = 1e-6) = 9.54 "Greatest torque";
   parameter SI.Voltage V_dc(min = 1) = 540 "Voltage of the DC link";
   parameter Boolean externalSupply = false "true: the DC link is joined to dc_p and dc_n, and V_dc is what the controller takes it for" annotation(Evaluate = true);
   Machines.PMSM motor "Motor";

@@ -3,7 +3,7 @@ model TorqueSource "Torque-controlled motor as a lag, with limited torque and ri
   Interfaces.RealInput T_ref(unit = "N.m") "Command of torque";
   Interfaces.RotationalFlange flange "Shaft";
   parameter SI.Time tau_i(min = 1e-6) = 0.5e-3 "Time constant of the current loop";
-  parameter SI.Torque T_max(min = 0) = 9.54 "Greatest torque";
+  parameter SI.Torque T_max(min = 1e-6) = 9.54 "Greatest torque";
   parameter SI.Torque T_cog(min = 0) = 0 "Amplitude of the cogging torque";
   parameter Integer h_c(min = 1) = 144 "Order of the cogging torque";
   SI.Torque T_e(start = 0, fixed = true) "Torque of the motor";

@@ -4,7 +4,7 @@ block VfSlipInverter "Inverter with voltage in proportion to frequency, boost an
   Interfaces.RealInput T(unit = "N.m") "Torque of the motor as the inverter estimates it";
   Interfaces.RealOutput f(unit = "Hz") "Frequency";
   Interfaces.RealOutput U(unit = "V") "Voltage of a phase, rms";
-  parameter Real k_f(unit = "V/Hz", min = 0) = 7.6 "Line voltage over frequency";
+  parameter Real k_f(unit = "V/Hz", min = 1e-6) = 7.6 "Line voltage over frequency";
   parameter SI.Voltage U_b(min = 0) = 10 "Boost of the line voltage";
   parameter SI.Voltage U_max(min = 1) = 380 "Greatest line voltage";
   parameter SI.Frequency f_boost(min = 1e-6) = 0.5 "Frequency over which the boost sets in";

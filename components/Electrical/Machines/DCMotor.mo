@@ -3,8 +3,8 @@ model DCMotor "DC motor with permanent magnets"
   Interfaces.Pin p "Positive pin";
   Interfaces.Pin n "Negative pin";
   Interfaces.RotationalFlange flange "Shaft; the inertia of the rotor is a component of its own";
-  parameter SI.Resistance R(min = 0) = 1 "Armature resistance";
-  parameter SI.Inductance L(min = 0) = 1e-3 "Armature inductance";
+  parameter SI.Resistance R(min = 1e-6) = 1 "Armature resistance";
+  parameter SI.Inductance L(min = 1e-9) = 1e-3 "Armature inductance";
   parameter SI.ElectricalTorqueConstant k(min = 0) = 0.1 "Torque constant";
   SI.Current i(start = 0, fixed = true) "Current";
   SI.Torque T_e "Torque";

@@ -4,14 +4,14 @@ model InductionMotor "Induction motor, flux model in synchronous axes"
   Interfaces.RealInput U(unit = "V") "Voltage of a phase, rms";
   Interfaces.RotationalFlange flange "Shaft; the inertia of the rotor is a component of its own";
   parameter Integer p(min = 1, max = 100) = 2 "Pole pairs";
-  parameter SI.Resistance R_s(min = 0, max = 1e3, nominal = 0.1) = 0.087 "Stator resistance at T_ref";
+  parameter SI.Resistance R_s(min = 1e-6, max = 1e3, nominal = 0.1) = 0.087 "Stator resistance at T_ref";
   parameter SI.Resistance R_r(min = 1e-6, max = 1e3, nominal = 0.1) = 0.228 "Rotor resistance at T_ref, on the stator side";
   parameter SI.Inductance L_ls(min = 1e-9, max = 10, nominal = 1e-3) = 0.302/(120*Modelica.Constants.pi) "Leakage inductance of the stator";
   parameter SI.Inductance L_lr(min = 1e-9, max = 10, nominal = 1e-3) = 0.302/(120*Modelica.Constants.pi) "Leakage inductance of the rotor, on the stator side";
   parameter SI.Inductance L_m(min = 1e-9, max = 100, nominal = 1e-2) = 13.08/(120*Modelica.Constants.pi) "Magnetizing inductance";
   parameter SI.RotationalDampingConstant B(min = 0) = 0 "Friction and windage";
-  parameter SI.TemperatureDifference dT = 0 "Windings above T_ref";
-  parameter SI.LinearTemperatureCoefficient alpha = 0.0039 "Temperature coefficient of the resistances";
+  parameter SI.TemperatureDifference dT(min = -200, max = 300) = 0 "Windings above T_ref";
+  parameter SI.LinearTemperatureCoefficient alpha(min = 0, max = 0.02) = 0.0039 "Temperature coefficient of the resistances";
   SI.AngularVelocity w(nominal = 100) "Speed";
   SI.AngularVelocity w_e(nominal = 100) "Electrical angular velocity of the supply";
   SI.AngularVelocity w_sl(nominal = 10) "Electrical slip";

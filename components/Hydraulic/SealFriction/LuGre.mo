@@ -1,7 +1,7 @@
 within Hydraulic.SealFriction;
 model LuGre "LuGre friction: bristles between seal and rod"
   extends Law;
-  parameter SI.Force F_0(min = 0, max = 1e6, nominal = 100) = 300 "Coulomb friction without pressure";
+  parameter SI.Force F_0(min = 1e-3, max = 1e6, nominal = 100) = 300 "Coulomb friction without pressure";
   parameter SI.Area k_c(min = 0, max = 1, nominal = 1e-5) = 5e-5 "Coulomb friction per sum of the pressures";
   parameter Real k_st(unit = "1", min = 1, max = 5) = 1.3 "Break-away friction over Coulomb friction";
   parameter SI.Velocity v_s(min = 1e-6, max = 1, nominal = 1e-2) = 5e-3 "Stribeck speed";

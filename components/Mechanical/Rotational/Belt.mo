@@ -4,8 +4,8 @@ model Belt "Elastic belt over two pulleys"
   Interfaces.RotationalFlange flange_b "Driven pulley, turns the same way";
   parameter SI.Radius r_a(min = 1e-4, max = 10, nominal = 0.1) = 0.05 "Radius of the driving pulley";
   parameter SI.Radius r_b(min = 1e-4, max = 10, nominal = 0.1) = 0.1 "Radius of the driven pulley";
-  parameter SI.TranslationalSpringConstant c(min = 0, max = 1e12, nominal = 1e5) = 1e5 "Stiffness of both strands together";
-  parameter SI.TranslationalDampingConstant d(min = 0, max = 1e10, nominal = 100) = 100 "Damping of both strands together";
+  parameter SI.TranslationalSpringConstant c(min = 1e-6, max = 1e12, nominal = 1e5) = 1e5 "Stiffness of both strands together";
+  parameter SI.TranslationalDampingConstant d(min = 1e-9, max = 1e10, nominal = 100) = 100 "Damping of both strands together";
   parameter SI.Force F_max(min = 1, max = 1e9, nominal = 1e3) = Modelica.Constants.inf "Force beyond which the belt slips, smoothly";
   SI.Position s_rel(nominal = 1e-3) "Stretch of the pulling strand";
   SI.Force F(nominal = 100) "Force that the belt carries over";

@@ -5,7 +5,7 @@ model Brake "Friction brake against the housing, engaged by a signal, with stick
   Interfaces.RotationalFlange flange_b "Right flange, moves with the left one";
   parameter Real mu_c(unit = "1", min = 0, max = 1) = 0.4 "Coefficient of sliding friction";
   parameter Real peak(unit = "1", min = 1, max = 10) = 1 "Coefficient of holding over that of sliding";
-  parameter SI.Length c_geo(min = 0) = 1 "Mean radius times number of faces";
+  parameter SI.Length c_geo(min = 1e-9) = 1 "Mean radius times number of faces";
   parameter SI.Force f_max(min = 0) = 1 "Normal force at u = 1";
   Interfaces.RealInput u "Normal force over f_max; not positive: open";
   SI.Angle phi "Angle";

@@ -4,7 +4,7 @@ model Clutch "Friction clutch engaged by a signal, with sticking"
   extends Bases.DryFriction;
   parameter Real mu_c(unit = "1", min = 0, max = 1) = 0.4 "Coefficient of sliding friction";
   parameter Real peak(unit = "1", min = 1, max = 10) = 1 "Coefficient of holding over that of sliding";
-  parameter SI.Length c_geo(min = 0) = 1 "Mean radius times number of faces";
+  parameter SI.Length c_geo(min = 1e-9) = 1 "Mean radius times number of faces";
   parameter SI.Force f_max(min = 0) = 1 "Normal force at u = 1";
   Interfaces.RealInput u "Normal force over f_max; not positive: open";
   SI.AngularVelocity w_rel(start = 0, nominal = 10) "Relative speed";

@@ -3,7 +3,7 @@ model ElasticGear "Gear whose teeth and shafts are elastic, with play"
   Interfaces.RotationalFlange flange_a "Driving shaft";
   Interfaces.RotationalFlange flange_b "Driven shaft";
   parameter Real ratio(unit = "1") = 1 "Angle of a over angle of b";
-  parameter SI.RotationalSpringConstant c(min = 0, max = 1e12, nominal = 1e4) = 1e4 "Stiffness, seen from b";
+  parameter SI.RotationalSpringConstant c(min = 1e-6, max = 1e12, nominal = 1e4) = 1e4 "Stiffness, seen from b";
   parameter SI.RotationalDampingConstant d(min = 0, max = 1e10, nominal = 1) = 1 "Damping, seen from b";
   parameter SI.Angle b(min = 0, max = 1, nominal = 1e-3) = 0 "Total play, seen from b";
   parameter SI.Angle w(min = 1e-9, nominal = 1e-5) = 1e-5 "Angle over which a flank takes hold";

@@ -2,7 +2,7 @@ within Mechanical.Rotational;
 model ElastoBacklash "Backlash with elastic, damped contact on both sides"
   extends Bases.Compliant;
   parameter SI.Angle b(min = 0, nominal = 1e-3) = 1e-3 "Total play";
-  parameter SI.RotationalSpringConstant c(min = 0, max = 1e12, nominal = 1e4) = 1e4 "Stiffness of the contact";
+  parameter SI.RotationalSpringConstant c(min = 1e-6, max = 1e12, nominal = 1e4) = 1e4 "Stiffness of the contact";
   parameter SI.RotationalDampingConstant d(min = 0, max = 1e10, nominal = 1) = 1 "Damping of the contact";
   parameter SI.RotationalDampingConstant d_play(min = 0, max = 1e10, nominal = 1e-3) = 0 "Damping within the play; needed, however small, where nothing with inertia is joined to a flange";
   parameter SI.Angle phi_rel0 = 0 "Relative angle in the middle of the play";

@@ -4,7 +4,7 @@ model Friction "Dry friction between two flanges with sticking: Coulomb, Stribec
   extends Bases.DryFriction;
   parameter SI.Torque tau_c(min = 0, nominal = 1) = 1 "Coulomb torque";
   parameter SI.Torque tau_s(min = 0, nominal = 1) = tau_c "Torque of sliding at vanishing speed, at least the Coulomb torque";
-  parameter SI.AngularVelocity w_s(min = 1e-9, nominal = 1) = 1 "Stribeck speed";
+  parameter SI.AngularVelocity w_s(min = 1e-6, nominal = 1) = 1 "Stribeck speed";
   parameter Real delta(unit = "1", min = 1, max = 4) = 2 "Exponent of the Stribeck curve: 2 Gauss, 1 Tustin";
   parameter SI.RotationalDampingConstant d(min = 0, nominal = 1) = 0 "Viscous friction";
   parameter Real peak(unit = "1", min = 1, max = 10) = 1 "Holding torque over tau_s";

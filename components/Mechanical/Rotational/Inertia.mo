@@ -2,12 +2,12 @@ within Mechanical.Rotational;
 model Inertia "Rigid rotor with inertia"
   Interfaces.RotationalFlange flange_a "Left flange";
   Interfaces.RotationalFlange flange_b "Right flange";
-  parameter SI.Inertia J(min = 0, max = 1e9, nominal = 0.01) = 1e-2 "Moment of inertia";
+  parameter SI.Inertia J(min = 1e-9, max = 1e9, nominal = 0.01) = 1e-2 "Moment of inertia";
   SI.Angle phi(start = 0, fixed = true, stateSelect = StateSelect.prefer) "Angle";
   SI.AngularVelocity w(nominal = 10, start = 0, fixed = true, stateSelect = StateSelect.prefer) "Angular velocity";
   SI.AngularAcceleration a "Angular acceleration";
 equation
-  assert(J >= 0, "The moment of inertia J must not be negative");
+  assert(J > 0, "The moment of inertia J must be positive");
   flange_a.phi = phi;
   flange_b.phi = phi;
   w = der(phi);

@@ -4,7 +4,7 @@ model LossyGear "Gear with an efficiency that holds for both directions of power
   Interfaces.RotationalFlange flange_b "Driven shaft";
   parameter Real ratio(unit = "1") = 1 "Angle of a over angle of b";
   parameter Real eta(unit = "1", min = 0.01, max = 1) = 0.97 "Efficiency, power out over power in";
-  parameter SI.Power P_0(min = 1e-9) = 1 "Power over which the direction changes smoothly";
+  parameter SI.Power P_0(min = 1e-3) = 1 "Power over which the direction changes smoothly";
   SI.AngularVelocity w(nominal = 10) "Speed of the driving shaft";
   SI.Power lossPower "Power lost";
 protected

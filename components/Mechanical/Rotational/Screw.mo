@@ -5,7 +5,7 @@ model Screw "Screw spindle with efficiency"
   parameter SI.Length pitch(min = 1e-6, max = 1, nominal = 1e-2) = 1e-2 "Way of the nut per revolution";
   parameter Real eta(unit = "1", min = 0.05, max = 1) = 0.9 "Efficiency when the spindle drives";
   parameter Real eta_back(unit = "1", min = 0, max = 1) = 2 - 1/eta "Efficiency when the nut drives; 0 self-locking";
-  parameter SI.Power P_0(min = 1e-9) = 1 "Power over which the direction changes smoothly";
+  parameter SI.Power P_0(min = 1e-3) = 1 "Power over which the direction changes smoothly";
   SI.Power lossPower "Power lost";
 protected
   parameter Real lead(unit = "m/rad") = pitch/(2*Modelica.Constants.pi) "Way per radian";

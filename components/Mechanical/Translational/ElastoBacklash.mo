@@ -2,7 +2,7 @@ within Mechanical.Translational;
 model ElastoBacklash "Backlash with elastic, damped contact on both sides"
   extends Bases.Compliant;
   parameter SI.Position b(min = 0, nominal = 1e-4) = 1e-4 "Total play";
-  parameter SI.TranslationalSpringConstant c(min = 0, max = 1e12, nominal = 1e6) = 1e6 "Stiffness of the contact";
+  parameter SI.TranslationalSpringConstant c(min = 1e-6, max = 1e12, nominal = 1e6) = 1e6 "Stiffness of the contact";
   parameter SI.TranslationalDampingConstant d(min = 0, max = 1e10, nominal = 1e3) = 1e3 "Damping of the contact";
   parameter SI.TranslationalDampingConstant d_play(min = 0, max = 1e10, nominal = 1) = 0 "Damping within the play; needed, however small, where nothing with inertia is joined to a flange";
   parameter SI.Position s_rel0 = 0 "Relative position in the middle of the play";

@@ -3,7 +3,7 @@ model EndStops "End stops against the housing on both sides, elastic and damped,
   Interfaces.TranslationalFlange flange "Flange";
   parameter SI.Position s_min = 0 "Lower stop";
   parameter SI.Position s_max = 1 "Upper stop";
-  parameter SI.TranslationalSpringConstant k(min = 0, max = 1e12, nominal = 1e8) = 1e8 "Stiffness";
+  parameter SI.TranslationalSpringConstant k(min = 1e-3, max = 1e12, nominal = 1e8) = 1e8 "Stiffness";
   parameter Real c(unit = "N.s/m2", min = 0, max = 1e14, nominal = 1e9) = 1e9 "Damping per depth of penetration";
   parameter SI.Distance d_0(min = 1e-9, max = 1e-2, nominal = 1e-4) = 1e-4 "Depth over which the contact sets in smoothly";
   SI.Velocity v(nominal = 0.1) "Velocity";

@@ -4,7 +4,7 @@ model Friction "Dry friction between two flanges with sticking: Coulomb, Stribec
   extends Bases.DryFriction;
   parameter SI.Force f_c(min = 0, nominal = 100) = 10 "Coulomb force";
   parameter SI.Force f_s(min = 0, nominal = 100) = f_c "Force of sliding at vanishing speed, at least the Coulomb force";
-  parameter SI.Velocity v_s(min = 1e-9, nominal = 1e-2) = 1e-2 "Stribeck speed";
+  parameter SI.Velocity v_s(min = 1e-6, nominal = 1e-2) = 1e-2 "Stribeck speed";
   parameter Real delta(unit = "1", min = 1, max = 4) = 2 "Exponent of the Stribeck curve: 2 Gauss, 1 Tustin";
   parameter SI.TranslationalDampingConstant d(min = 0, nominal = 1e3) = 0 "Viscous friction";
   parameter Real peak(unit = "1", min = 1, max = 10) = 1 "Holding force over f_s";

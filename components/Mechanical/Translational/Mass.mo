@@ -2,12 +2,12 @@ within Mechanical.Translational;
 model Mass "Rigid mass sliding along one axis"
   Interfaces.TranslationalFlange flange_a "Left flange";
   Interfaces.TranslationalFlange flange_b "Right flange";
-  parameter SI.Mass m(min = 0, max = 1e9, nominal = 1) = 1 "Mass";
+  parameter SI.Mass m(min = 1e-5, max = 1e9, nominal = 1) = 1 "Mass";
   SI.Position s(nominal = 1e-2, start = 0, fixed = true, stateSelect = StateSelect.prefer) "Position";
   SI.Velocity v(nominal = 0.1, start = 0, fixed = true, stateSelect = StateSelect.prefer) "Velocity";
   SI.Acceleration a "Acceleration";
 equation
-  assert(m >= 0, "The mass m must not be negative");
+  assert(m > 0, "The mass m must be positive");
   flange_a.s = s;
   flange_b.s = s;
   v = der(s);

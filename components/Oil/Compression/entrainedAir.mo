@@ -17,14 +17,14 @@ algorithm
   floor_slope := 1/(1 + exp(min(-p/p_w, 200)));
   x := max(1 + m*(p_s - p_0)/beta_0, 1e-3);
   v_l := (1 - alpha_0)*x^(-1/m);
-  v_g := alpha_0*x_u*(p_0/p_s)^(1/n_g);
+  v_g := max(alpha_0*x_u, 1e-6)*(p_0/p_s)^(1/n_g);
   rho := rho_0/(v_l + v_g);
   beta := (v_l + v_g)/((v_l/(beta_0*x) + v_g/(n_g*p_s))*floor_slope);
   annotation(Inline = true, Documentation(info = "<html>
 <p>Volume of oil and of bubbles added, <code>v = (1 - alpha_0) (1 + m (p - p_0)/beta_0)^(-1/m) + alpha_0 x_u (p_0/p)^(1/n_g)</code>, the bulk modulus
 being its exact logarithmic derivative. The mass of the air is neglected. 1 % of frozen air gives 0.012, 0.196, 0.992, 1.407 and
 1.684 GPa at 0.1, 0.5, 2, 5 and 20 MPa. Below some kilopascal the pressure is floored (softplus of width <code>p_w</code>): the bubbles grow without limit instead
-of the pressure becoming negative.</p>
+of the pressure becoming negative. A millionth of the volume always counts as bubbles: from such nuclei even oil without air opens a void when it is drawn apart.</p>
 <p>Exponent: 1.0 for slow, 1.2 for usual, 1.4 for fast processes. Source: family of compression-only mixtures (Wylie, Cho, Nykaenen), see
 S. Kim and H. Murrenhoff, J. Fluids Eng. 134 (2012) 021201.</p></html>"));
 end entrainedAir;

@@ -100,13 +100,25 @@ impl<'a> Driver<'a, '_> {
     pub(super) fn non_finite(&mut self, t: f64) -> Stop {
         let system = self.system;
         let model = self.ida().equations();
-        let (at, trap) = match model.trap.take() {
-            Some((at, y, yp)) => {
-                model.observe(at, &y, &yp);
-                (at, report::find_trap(system, &model.values))
-            }
-            None => (t, None),
+        let Some((at, y, yp)) = model.trap.take() else {
+            return Stop::new(End::NonFinite, report::non_finite(system, t, None));
         };
-        Stop::new(End::NonFinite, report::non_finite(system, at, trap))
+        model.observe(at, &y, &yp);
+        let trap = report::find_trap(system, &model.values);
+        let derivative = if trap.is_some() { None } else { infinite_derivative(model, at, &y, &yp) };
+        let diagnostic = match derivative {
+            Some((row, column)) => report::infinite_derivative(system, at, row, column),
+            None => report::non_finite(system, at, trap),
+        };
+        Stop::new(End::NonFinite, diagnostic)
     }
+}
+
+/// Row and column of the first entry of the Jacobian that is not finite.
+fn infinite_derivative(model: &mut Model<'_>, t: f64, y: &[f64], yp: &[f64]) -> Option<(usize, usize)> {
+    let pattern = &model.system.pattern;
+    let mut entries = vec![0.0; pattern.nnz()];
+    model.jacobian(t, 1.0, y, yp, &mut entries);
+    let k = entries.iter().position(|v| !v.is_finite())?;
+    Some((pattern.rowidx[k], pattern.colptr.partition_point(|&start| start <= k) - 1))
 }

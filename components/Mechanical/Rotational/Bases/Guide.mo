@@ -4,7 +4,7 @@ partial model Guide "Friction of a shaft against the housing: ports and paramete
   Interfaces.RotationalFlange flange_b "Right flange, moves with the left one";
   parameter SI.Torque tau_c(min = 0, nominal = 1) = 1 "Coulomb torque";
   parameter SI.Torque tau_s(min = 0, nominal = 1) = tau_c "Torque of sliding at vanishing speed, at least the Coulomb torque";
-  parameter SI.AngularVelocity w_s(min = 1e-9, nominal = 1) = 1 "Stribeck speed";
+  parameter SI.AngularVelocity w_s(min = 1e-6, nominal = 1) = 1 "Stribeck speed";
   parameter SI.RotationalDampingConstant d(min = 0, nominal = 1) = 0 "Viscous friction";
   SI.Angle phi(start = 0) "Angle";
   SI.AngularVelocity w(start = 0, nominal = 10) "Angular velocity";

@@ -1,6 +1,6 @@
 within Mechanical.Translational.Bases;
 partial model DryFriction "Dry friction as an automaton with the states stuck, sliding forward, sliding backward and free"
-  parameter SI.Velocity v_small = 1e10 "Sliding speed above which a reversal counts as a jump; lower it only where reinit changes the speed";
+  parameter SI.Velocity v_small(min = 1e-6) = 1e10 "Sliding speed above which a reversal counts as a jump; lower it only where reinit changes the speed";
   constant Integer Backward = -1 "Mode: sliding backward";
   constant Integer Stuck = 0 "Mode: held, no motion";
   constant Integer Forward = 1 "Mode: sliding forward";

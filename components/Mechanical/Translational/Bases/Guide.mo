@@ -4,7 +4,7 @@ partial model Guide "Friction of a slider against the housing: ports and paramet
   Interfaces.TranslationalFlange flange_b "Right flange, moves with the left one";
   parameter SI.Force f_c(min = 0, nominal = 100) = 10 "Coulomb force";
   parameter SI.Force f_s(min = 0, nominal = 100) = f_c "Force of sliding at vanishing speed, at least the Coulomb force";
-  parameter SI.Velocity v_s(min = 1e-9, nominal = 1e-2) = 1e-2 "Stribeck speed";
+  parameter SI.Velocity v_s(min = 1e-6, nominal = 1e-2) = 1e-2 "Stribeck speed";
   parameter SI.TranslationalDampingConstant d(min = 0, nominal = 1e3) = 0 "Viscous friction";
   SI.Position s(nominal = 1e-2, start = 0) "Position";
   SI.Velocity v(start = 0, nominal = 0.1) "Velocity";
