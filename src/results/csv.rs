@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 
 use super::number;
+use super::texts::Texts;
 use super::trajectory::{Kind, Signal};
 
 /// Writes a head line and then one line a row.
@@ -13,6 +14,7 @@ use super::trajectory::{Kind, Signal};
 pub struct CsvWriter<W: Write> {
     out: W,
     kinds: Vec<Kind>,
+    texts: Texts,
     line: String,
     bytes: u64,
 }
@@ -30,7 +32,7 @@ impl<W: Write> CsvWriter<W> {
         }
         line.push('\n');
         let kinds = signals.iter().map(|s| s.kind.clone()).collect();
-        let mut writer = CsvWriter { out, kinds, line, bytes: 0 };
+        let mut writer = CsvWriter { out, kinds, texts: Texts::default(), line, bytes: 0 };
         writer.flush_line()?;
         Ok(writer)
     }
@@ -38,7 +40,7 @@ impl<W: Write> CsvWriter<W> {
     /// Goes on behind `bytes` that an earlier writer of the same signals has written.
     pub fn resume(out: W, signals: &[Signal], bytes: u64) -> Self {
         let kinds = signals.iter().map(|s| s.kind.clone()).collect();
-        CsvWriter { out, kinds, line: String::new(), bytes }
+        CsvWriter { out, kinds, texts: Texts::default(), line: String::new(), bytes }
     }
 
     /// Hands everything to the system and returns how many bytes were written so far.
@@ -59,7 +61,7 @@ impl<W: Write> CsvWriter<W> {
         number::push(&mut self.line, time);
         for (kind, value) in self.kinds.iter().zip(values) {
             self.line.push(',');
-            push_value(&mut self.line, kind, value);
+            push_value(&mut self.line, &mut self.texts, kind, value);
         }
         self.line.push('\n');
         self.flush_line()
@@ -101,14 +103,14 @@ fn push_name(line: &mut String, name: &str) {
     }
 }
 
-fn push_value(line: &mut String, kind: &Kind, value: f64) {
+fn push_value(line: &mut String, texts: &mut Texts, kind: &Kind, value: f64) {
     match kind {
         Kind::Boolean if !value.is_nan() => line.push_str(if value == 0.0 { "false" } else { "true" }),
         Kind::Enumeration(literals) => match literal(literals, value) {
             Some(name) => line.push_str(name),
             None => number::push(line, value),
         },
-        _ => number::push(line, value),
+        _ => texts.push(line, value),
     }
 }
 

@@ -10,6 +10,7 @@ pub mod number;
 pub mod parquet;
 pub mod recording;
 pub mod table;
+mod texts;
 pub mod trajectory;
 mod tube;
 
