@@ -4,6 +4,7 @@
 use super::draft::{Draft, Role};
 use super::dulmage_mendelsohn::Part;
 use super::parameters::Known;
+use super::places;
 use super::regularity::Singularity;
 use super::{Alias, Unknown};
 use crate::diag::{Code, Diagnostic, Severity, Span};
@@ -163,8 +164,13 @@ pub(super) fn closed_group(draft: &Draft, aliases: &[Alias], flows: &[VarId]) ->
     let (level, advice) = kind_of_level(draft, &levels);
     let message = format!("nothing fixes the {level} of {{{}}}", listed(&components));
     let mut made = Diagnostic::new(Code::NoReference, message);
-    for v in levels.iter().take(MOST_ITEMS) {
-        made = made.at(variable(v).origin.span, format!("only differences of `{}` to others matter", variable(v).name));
+    let mut told: Vec<Span> = Vec::new();
+    for v in &levels {
+        let place = places::own_place(draft, *v);
+        if !told.contains(&place) && told.len() < MOST_ITEMS {
+            made = made.at(place, format!("only differences of `{}` to others matter", variable(v).name));
+            told.push(place);
+        }
     }
     made.note(
         "these components pass on all that flows in, so the sum of flows at one node follows from the other nodes",
@@ -338,7 +344,7 @@ impl Report<'_> {
     fn labelled(&self, mut made: Diagnostic, unknowns: &[VarId]) -> Diagnostic {
         for &v in unknowns.iter().take(MOST_ITEMS) {
             let variable = &self.draft.variables[v.index()];
-            made = made.at(self.place(v), format!("`{}` is undetermined", variable.name));
+            made = made.at(places::own_place(self.draft, v), format!("`{}` is undetermined", variable.name));
         }
         match unknowns.first() {
             Some(&v) => {
@@ -367,17 +373,6 @@ impl Report<'_> {
         })
     }
 
-    /// The declaration of a variable; of a connector's, that of the component with the connector.
-    fn place(&self, v: VarId) -> Span {
-        let origin = self.draft.variables[v.index()].origin;
-        if !self.has_flow(origin.instance) {
-            return origin.span;
-        }
-        let connector = &self.draft.instances[origin.instance as usize];
-        let component = &self.draft.instances[connector.parent as usize];
-        if component.name.is_empty() { connector.span } else { component.span }
-    }
-
     /// All names of a quantity.
     fn names_of(&self, v: VarId) -> impl Iterator<Item = VarId> {
         let others = self.aliases.iter().filter(move |a| a.target == v).map(|a| a.variable);
@@ -388,13 +383,8 @@ impl Report<'_> {
     fn is_potential(&self, v: VarId) -> bool {
         self.names_of(v).any(|v| {
             let variable = &self.draft.variables[v.index()];
-            !variable.flow && self.has_flow(variable.origin.instance)
+            !variable.flow && places::is_connector(self.draft, variable.origin.instance)
         })
-    }
-
-    /// Whether an instance is a connector: it has a flow variable of its own.
-    fn has_flow(&self, instance: u32) -> bool {
-        self.draft.variables.iter().any(|v| v.flow && v.origin.instance == instance)
     }
 
     /// The components whose connectors carry these potentials, in order.
@@ -402,7 +392,7 @@ impl Report<'_> {
         let mut found: Vec<u32> = Vec::new();
         for v in unknowns.iter().flat_map(|&v| self.names_of(v)) {
             let instance = self.draft.variables[v.index()].origin.instance;
-            if self.has_flow(instance) {
+            if places::is_connector(self.draft, instance) {
                 found.push(self.draft.instances[instance as usize].parent);
             }
         }

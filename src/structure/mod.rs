@@ -20,6 +20,7 @@ mod matching;
 mod messages;
 mod pantelides;
 mod parameters;
+mod places;
 mod print;
 mod regularity;
 mod solve_block;

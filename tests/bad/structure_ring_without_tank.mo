@@ -1,4 +1,4 @@
-//! E302: "nothing fixes the pressure level of {pump, filter, valve"
+//! E302 at 4: "nothing fixes the pressure level of {pump, filter, valve"
 model M
   inner Oil.ISOVG46 oil;
   Hydraulic.Pump pump;

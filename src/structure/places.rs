@@ -1,0 +1,31 @@
+//! Places of messages: in the model that was given, where a library's own text would tell its user nothing.
+
+use super::draft::Draft;
+use crate::diag::Span;
+use crate::expr::VarId;
+
+/// Where a variable is declared; of a connector's, where the component with the connector is. If that stands in another
+/// file than the model, the innermost component around it that does not, or else the one at the model's top level.
+pub(super) fn own_place(draft: &Draft, v: VarId) -> Span {
+    let origin = draft.variables[v.index()].origin;
+    let own_file = draft.instances[0].span.file;
+    let (mut place, mut at) = (origin.span, origin.instance);
+    if at != 0 && is_connector(draft, at) {
+        let connector = &draft.instances[at as usize];
+        (place, at) = (connector.span, connector.parent);
+        if at != 0 {
+            let component = &draft.instances[at as usize];
+            (place, at) = (component.span, component.parent);
+        }
+    }
+    while at != 0 && place.file != own_file {
+        let holder = &draft.instances[at as usize];
+        (place, at) = (holder.span, holder.parent);
+    }
+    place
+}
+
+/// Whether an instance has a flow variable of its own.
+pub(super) fn is_connector(draft: &Draft, instance: u32) -> bool {
+    draft.variables.iter().any(|v| v.flow && v.origin.instance == instance)
+}
