@@ -2,7 +2,6 @@
 
 use std::io::{self, Write};
 
-use super::number;
 use super::texts::Texts;
 use super::trajectory::{Kind, Signal};
 
@@ -15,7 +14,7 @@ pub struct CsvWriter<W: Write> {
     out: W,
     kinds: Vec<Kind>,
     texts: Texts,
-    line: String,
+    line: Vec<u8>,
     bytes: u64,
 }
 
@@ -31,6 +30,7 @@ impl<W: Write> CsvWriter<W> {
             push_name(&mut line, &signal.name);
         }
         line.push('\n');
+        let line = line.into_bytes();
         let kinds = signals.iter().map(|s| s.kind.clone()).collect();
         let mut writer = CsvWriter { out, kinds, texts: Texts::default(), line, bytes: 0 };
         writer.flush_line()?;
@@ -40,7 +40,7 @@ impl<W: Write> CsvWriter<W> {
     /// Goes on behind `bytes` that an earlier writer of the same signals has written.
     pub fn resume(out: W, signals: &[Signal], bytes: u64) -> Self {
         let kinds = signals.iter().map(|s| s.kind.clone()).collect();
-        CsvWriter { out, kinds, texts: Texts::default(), line: String::new(), bytes }
+        CsvWriter { out, kinds, texts: Texts::default(), line: Vec::new(), bytes }
     }
 
     /// Hands everything to the system and returns how many bytes were written so far.
@@ -58,12 +58,12 @@ impl<W: Write> CsvWriter<W> {
     /// What `out` reports.
     pub fn row(&mut self, time: f64, values: impl IntoIterator<Item = f64>) -> io::Result<()> {
         self.line.clear();
-        number::push(&mut self.line, time);
+        self.texts.push(&mut self.line, time);
         for (kind, value) in self.kinds.iter().zip(values) {
-            self.line.push(',');
+            self.line.push(b',');
             push_value(&mut self.line, &mut self.texts, kind, value);
         }
-        self.line.push('\n');
+        self.line.push(b'\n');
         self.flush_line()
     }
 
@@ -78,7 +78,7 @@ impl<W: Write> CsvWriter<W> {
 
     fn flush_line(&mut self) -> io::Result<()> {
         self.bytes += self.line.len() as u64;
-        self.out.write_all(self.line.as_bytes())
+        self.out.write_all(&self.line)
     }
 }
 
@@ -103,12 +103,12 @@ fn push_name(line: &mut String, name: &str) {
     }
 }
 
-fn push_value(line: &mut String, texts: &mut Texts, kind: &Kind, value: f64) {
+fn push_value(line: &mut Vec<u8>, texts: &mut Texts, kind: &Kind, value: f64) {
     match kind {
-        Kind::Boolean if !value.is_nan() => line.push_str(if value == 0.0 { "false" } else { "true" }),
+        Kind::Boolean if !value.is_nan() => line.extend_from_slice(if value == 0.0 { b"false" } else { b"true" }),
         Kind::Enumeration(literals) => match literal(literals, value) {
-            Some(name) => line.push_str(name),
-            None => number::push(line, value),
+            Some(name) => line.extend_from_slice(name.as_bytes()),
+            None => texts.push(line, value),
         },
         _ => texts.push(line, value),
     }
