@@ -102,3 +102,57 @@ fn a_smooth_map() {
     // the slope at the edge is that of a parabola through the last points
     assert!((at("5", "2", ", hold = false") - (4.0 + 16.0 + 8.0)).abs() < 1e-9);
 }
+
+/// The course of the next two tests.
+const JUMPING: &str = "0.1,0\n0.2,1\n0.3,1\n0.3,-1\n0.5,0\n";
+
+fn jumping(t: f64) -> f64 {
+    match t {
+        t if t < 0.1 => 0.0,
+        t if t < 0.2 => (t - 0.1) / 0.1,
+        t if t < 0.3 => 1.0,
+        t if t < 0.5 => -1.0 + (t - 0.3) / 0.2,
+        _ => 0.0,
+    }
+}
+
+/// Corners are met whatever rounding makes of their times.
+#[test]
+fn a_course_may_begin_at_any_time() {
+    for k in 0..40 {
+        let start = 0.493 + 0.0137 * f64::from(k);
+        let found = last(&format!("Signal.TimeTable t(startTime = {start}, fileName = \"t.csv\");"), JUMPING, "t.csv");
+        let wanted = jumping(1.0 - start);
+        assert!((found - wanted).abs() < 1e-9, "{found} instead of {wanted} with startTime {start}");
+    }
+    let all = "Signal.TimeTable t(startTime = 0.03, fileName = \"t.csv\");";
+    assert!(last(all, JUMPING, "t.csv").abs() < 1e-12);
+}
+
+/// A cycle of work, in whole rounds, begun at any place.
+#[test]
+fn a_course_may_be_repeated() {
+    for k in 0..40 {
+        let start = -0.7 + 0.0237 * f64::from(k);
+        let block = format!("Signal.TimeTable t(startTime = {start}, periodic = true, fileName = \"t.csv\");");
+        let (found, wanted) = (last(&block, JUMPING, "t.csv"), jumping((0.9 - start).rem_euclid(0.4) + 0.1));
+        assert!((found - wanted).abs() < 1e-9, "{found} instead of {wanted} with startTime {start}");
+    }
+}
+
+#[test]
+fn a_guarded_table_is_not_left() {
+    let map = "n\\p,0,1\n0,0,1\n2,4,5\n";
+    for (block, data) in [
+        ("Signal.Table1D t(u = 2.5*time, guarded = true, fileName = \"t.csv\");", "x,y\n0,0\n1,1\n2,4\n"),
+        ("Signal.AkimaTable t(u = 0.5 - time, guarded = true, fileName = \"t.csv\");", "x,y\n0,0\n1,1\n2,4\n"),
+        ("Signal.Table2D t(u1 = 0, u2 = 1.5*time, guarded = true, fileName = \"t.csv\");", map),
+        ("Signal.AkimaTable2D t(u1 = 3*time, u2 = 0, guarded = true, fileName = \"t.csv\");", map),
+    ] {
+        let mut world = MemoryWorld::single("M.mo", model(block));
+        world.add("t.csv", data);
+        let request = Request { source: "M.mo".into(), ..Request::default() };
+        let error = Simulation::compile(&world, &request).and_then(|s| s.run()).expect_err("the table is left");
+        assert!(error.to_string().contains("lies outside the table"), "{error}");
+    }
+}

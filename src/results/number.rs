@@ -1,7 +1,5 @@
 //! Numbers as text: the fewest digits that read back the same.
 
-use std::fmt::Write as _;
-
 /// Appends `value` with the fewest digits that read back the same; nothing for NaN, which is an empty cell.
 ///
 /// Exponents are used outside `1e-5 <= |value| < 1e16`.
@@ -9,16 +7,13 @@ pub fn push(out: &mut String, value: f64) {
     if value.is_nan() {
         return;
     }
-    let size = value.abs();
-    let written = if value == 0.0 {
-        out.push('0');
-        Ok(())
-    } else if size.is_infinite() || (1e-5..1e16).contains(&size) {
-        write!(out, "{value}")
-    } else {
-        write!(out, "{value:e}")
-    };
-    debug_assert!(written.is_ok(), "writing to a string cannot fail");
+    if value == 0.0 {
+        return out.push('0');
+    }
+    let mut digits = ryu::Buffer::new();
+    let text = digits.format(value);
+    // whole numbers have no decimals here
+    out.push_str(text.strip_suffix(".0").unwrap_or(text));
 }
 
 /// The same as a new text; `NaN` is spelled out.

@@ -7,7 +7,7 @@ use super::parameters::Known;
 use super::places;
 use super::regularity::Singularity;
 use super::{Alias, Unknown};
-use crate::diag::{Code, Diagnostic, Severity, Span};
+use crate::diag::{Code, Diagnostic, Severity};
 use crate::expr::{ExprId, VarId};
 use crate::flat::{Equation, Origin, OriginKind};
 
@@ -164,12 +164,13 @@ pub(super) fn closed_group(draft: &Draft, aliases: &[Alias], flows: &[VarId]) ->
     let (level, advice) = kind_of_level(draft, &levels);
     let message = format!("nothing fixes the {level} of {{{}}}", listed(&components));
     let mut made = Diagnostic::new(Code::NoReference, message);
-    let mut told: Vec<Span> = Vec::new();
+    let mut told: Vec<u32> = Vec::new();
     for v in &levels {
-        let place = places::own_place(draft, *v);
-        if !told.contains(&place) && told.len() < MOST_ITEMS {
-            made = made.at(place, format!("only differences of `{}` to others matter", variable(v).name));
-            told.push(place);
+        let owner = draft.instances[variable(v).origin.instance as usize].parent;
+        if !told.contains(&owner) && told.len() < MOST_ITEMS {
+            let text = format!("only differences of `{}` to others matter", variable(v).name);
+            made = made.at(places::own_place(draft, *v), text);
+            told.push(owner);
         }
     }
     made.note(
