@@ -299,9 +299,9 @@ def main():
         versions.append(f'rumoca {rumoca.version() if callable(rumoca.version) else rumoca.version}')
     except ImportError:
         skipped.append(('rumoca', 'python3 -m pip install rumoca'))
-    program = build_diffsol(os.path.join(os.path.dirname(os.path.abspath(a.bramah)), 'peers', 'diffsol'))
-    if program:
-        peers['diffsol'] = lambda m, tol, end: c_run(program, m, tol, end, NAMES[m])
+    on_diffsol = build_diffsol(os.path.join(os.path.dirname(os.path.abspath(a.bramah)), 'peers', 'diffsol'))
+    if on_diffsol:
+        peers['diffsol'] = lambda m, tol, end: c_run(on_diffsol, m, tol, end, NAMES[m])
         versions.append('diffsol 0.18.0, BDF, exact Jacobian')
     else:
         skipped.append(('diffsol', 'the network once, for `cargo build` in benches/peers/diffsol'))

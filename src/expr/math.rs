@@ -126,9 +126,11 @@ pub extern "C" fn tanh(x: f64) -> f64 {
     x.tanh()
 }
 
-/// The angle of the point `(x, y)`.
+/// The angle of the point `(x, y)`, above -pi and up to pi. Simplification does not keep the sign of a zero, so it has
+/// none here.
 pub extern "C" fn atan2(y: f64, x: f64) -> f64 {
-    y.atan2(x)
+    // -0 + 0 is 0
+    (y + 0.0).atan2(x + 0.0)
 }
 
 /// -1, 0 or 1; NaN stays NaN.
@@ -217,6 +219,15 @@ pub fn holds(rel: Rel, a: f64, b: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn angles_do_not_know_the_sign_of_a_zero() {
+        use std::f64::consts::PI;
+        for zero in [0.0, -0.0] {
+            assert_eq!((atan2(zero, -1.0), atan2(zero, 1.0), atan2(zero, -0.0)), (PI, 0.0, 0.0));
+            assert_eq!((atan2(2.0, zero), atan2(-2.0, zero)), (0.5 * PI, -0.5 * PI));
+        }
+    }
 
     #[test]
     fn whole_powers_are_products() {
