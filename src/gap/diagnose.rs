@@ -3,6 +3,7 @@
 mod conclusion;
 mod driven;
 mod lost;
+mod order;
 mod refine;
 
 use super::data::Recording;
@@ -246,6 +247,7 @@ impl Search {
         let (mut chosen, rest) = promising(problem, &self.last, screened.followed);
         hidden(&mut chosen, screened.driven);
         chosen.extend(self.unseen(problem, &chosen));
+        chosen.extend(self.reordering(problem));
         let mut refined = self.refined(problem, &chosen);
         if let Some(front) = refined.first() {
             let others = siblings(problem, &chosen, &rest, front);
@@ -431,8 +433,16 @@ impl Search {
 /// Whether the data cannot tell a candidate from the best one.
 fn near(r: &Refined, best: &Refined) -> bool {
     let behind = best.fit.evidence - r.fit.evidence;
-    let worse = vuong(&r.fit.blocks, &best.fit.blocks) < CERTAINLY_WORSE;
+    let worse = certainly_worse(&r.fit, &best.fit);
     behind < NEAR || behind < NEAR_IF_INCONSISTENT && !worse
+}
+
+/// Whether a model is worse than the best one in most blocks, its fewer parameters counted in.
+fn certainly_worse(fit: &Fit, best: &Fit) -> bool {
+    let price = (fit.likelihood - best.likelihood) - (fit.evidence - best.evidence) / best.share;
+    let each = price / best.blocks.len().max(1) as f64;
+    let best: Vec<f64> = best.blocks.iter().map(|b| b + each).collect();
+    vuong(&fit.blocks, &best) < CERTAINLY_WORSE
 }
 
 /// An effect that acts in few blocks gains much there and loses next to nothing elsewhere; the mean over all blocks
@@ -457,9 +467,7 @@ fn simplest(problem: &Problem<'_>, refined: &[Refined]) -> usize {
         (h.coefficients.len() + h.shapes.len() + states, h.attachments.len())
     };
     let front = &refined[0].fit;
-    let as_good = |r: &Refined| {
-        front.evidence - r.fit.evidence < AS_GOOD && vuong(&r.fit.blocks, &front.blocks) > CERTAINLY_WORSE
-    };
+    let as_good = |r: &Refined| front.evidence - r.fit.evidence < AS_GOOD && !certainly_worse(&r.fit, front);
     (0..refined.len()).filter(|&i| i == 0 || as_good(&refined[i])).min_by_key(|&i| (size(&refined[i]), i)).unwrap_or(0)
 }
 

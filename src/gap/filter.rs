@@ -36,6 +36,8 @@ const MOST_PARTS: usize = 8;
 /// Iterations of the first update at most, and the part of the states' sizes below which they have settled.
 const FIRST: usize = 10;
 const SETTLED: f64 = 1e-6;
+/// A variance may be below zero by rounding, by so much of the noise's.
+const ROUNDING: f64 = 1e-6;
 /// A corrected state counts as out of the model's reach when its rates differ by so many sizes of the states over a step
 /// from what was expected.
 const STRANGE: f64 = 10.0;
@@ -160,6 +162,9 @@ pub fn run(
     }
     Ok(filter.finish())
 }
+
+/// Signals that have a sample, what was not expected of them, and how they depend on the states.
+type Observed = (Vec<usize>, DVector<f64>, DMatrix<f64>);
 
 struct Filter<'a> {
     setting: &'a Setting,
@@ -304,7 +309,7 @@ impl<'a> Filter<'a> {
         let before = self.z.clone();
         self.safe.copy_from(&before);
         let point = if k == 0 { self.first_point(t) } else { before };
-        let (here, innovation, output) = self.update(k, &point);
+        let (here, innovation, output) = self.update(k, &point)?;
         let mut correction = &self.z - &point;
         if (k + 1) * BLOCKS / samples > k * BLOCKS / samples {
             self.close_block();
@@ -388,7 +393,7 @@ impl<'a> Filter<'a> {
 
     /// The measurement, one signal after the other (their noises are independent): innovations whitened, state,
     /// covariance and columns corrected. The model is linearised at `point`.
-    fn update(&mut self, k: usize, point: &DVector<f64>) -> (Vec<usize>, DVector<f64>, DMatrix<f64>) {
+    fn update(&mut self, k: usize, point: &DVector<f64>) -> Result<Observed, LocalError> {
         let (nz, width) = (self.z.len(), self.setting.columns.len());
         let signals = &self.recording.signals;
         let here: Vec<usize> = (0..signals.len()).filter(|&i| signals[i][k].is_finite()).collect();
@@ -401,7 +406,12 @@ impl<'a> Filter<'a> {
         for (row, &i) in here.iter().enumerate() {
             let direction = c.row(row).transpose();
             pc.gemv(1.0, &self.p, &direction, 0.0);
-            let variance = direction.dot(&pc) + self.setting.noise[i] * self.setting.noise[i];
+            let (spread, noise) = (direction.dot(&pc), self.setting.noise[i] * self.setting.noise[i]);
+            if spread < -ROUNDING * noise {
+                // an undamped mode far faster than the samples: nothing is known of it any more
+                return Err(LocalError::NonFinite);
+            }
+            let variance = spread + noise;
             let left = innovation[row] - direction.dot(&(&self.z - point));
             if !(variance > 0.0 && left.is_finite()) {
                 continue;
@@ -422,7 +432,7 @@ impl<'a> Filter<'a> {
             self.s.ger(-1.0 / variance, &e, &pc, 1.0);
             self.p.ger(-1.0 / variance, &pc, &pc, 1.0);
         }
-        (here, innovation, c)
+        Ok((here, innovation, c))
     }
 
     /// From the filtered state at sample `k` to the predicted one at the next: one step where the model is nearly linear

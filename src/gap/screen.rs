@@ -364,7 +364,7 @@ impl<'a> Joint<'a> {
 }
 
 /// The prior deviation that a coefficient has at most.
-fn largest(c: &Coefficient) -> f64 {
+pub fn largest(c: &Coefficient) -> f64 {
     c.nominal.abs().max(1e-300) * if c.relative { LARGEST_OF_RANGE } else { LARGEST }
 }
 

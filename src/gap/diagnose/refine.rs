@@ -34,6 +34,8 @@ const SHAPES: usize = 5;
 /// Iterations with which candidates are compared before the front is polished, and candidates polished.
 const RACE: usize = 2;
 const POLISHED: usize = 5;
+/// At the levels of the model before, those behind by this part of the front's gain and by so many nats
+const BEHIND: f64 = 0.4;
 /// Those behind by this part of the front's gain and by so many nats stay as they are.
 const FAR_BEHIND: f64 = 0.5;
 const CLOSE: f64 = 200.0;
@@ -62,9 +64,22 @@ impl Refined {
 }
 
 impl Search {
-    /// Fits candidates one by one; best first.
+    /// Fits candidates one by one; best first. At the levels of the model before, those that fall far behind stay as they
+    /// are; for the others the levels are found anew.
     pub(super) fn refined(&self, problem: &Problem<'_>, chosen: &[Candidate]) -> Vec<Refined> {
         let mut refined: Vec<Refined> = chosen.par_iter().filter_map(|c| self.refine(problem, c)).collect();
+        best_first(&mut refined);
+        let front = refined.first().map_or(0.0, |r| self.gain(&r.fit));
+        let far = (BEHIND * front).max(CLOSE);
+        let readjust = |r: Refined| {
+            if self.gain(&r.fit) < front - far {
+                return r;
+            }
+            let cost = screen::variants_cost(&problem.hypotheses[r.accepted.chosen.hypothesis]);
+            let fit = Fit { evidence: r.fit.evidence + cost, ..r.fit };
+            Refined::new(problem, r.accepted, r.assembled, readjusted(problem, &self.last, fit))
+        };
+        let mut refined: Vec<Refined> = refined.into_par_iter().map(readjust).collect();
         best_first(&mut refined);
         refined
     }
@@ -81,7 +96,7 @@ impl Search {
         let accepted = whole.accepted();
         let mut all = self.accepted.clone();
         all.push(accepted.clone());
-        let (fit, assembled) = fitted(problem, &self.last, &all)?;
+        let (fit, assembled) = at_levels(problem, &self.last, &all)?;
         Some(Refined::new(problem, accepted, assembled, fit))
     }
 
@@ -277,19 +292,26 @@ pub(super) fn ready(problem: &Problem<'_>, from: &Fit, accepted: &[Accepted]) ->
 
 /// Fits a set of effects, from the values of an earlier fit.
 pub(super) fn fitted(problem: &Problem<'_>, from: &Fit, accepted: &[Accepted]) -> Option<(Fit, Assembled)> {
+    let (first, assembled) = at_levels(problem, from, accepted)?;
+    Some((readjusted(problem, from, first), assembled))
+}
+
+/// The same at the levels of that fit.
+fn at_levels(problem: &Problem<'_>, from: &Fit, accepted: &[Accepted]) -> Option<(Fit, Assembled)> {
     let (assembled, priors) = ready(problem, from, accepted)?;
     let setting = assembled.setting(&from.setting.levels(), &from.setting.noise, Vec::new());
-    let fit = |s| fit::fit(s, &priors, &problem.train, Some(from.search_share()), RACE);
-    let first = fit(setting)?;
+    Some((fit::fit(setting, &priors, &problem.train, Some(from.search_share()), RACE)?, assembled))
+}
+
+/// The same with levels of its own: sources as strong as the model before needed them hide how right this one is.
+fn readjusted(problem: &Problem<'_>, from: &Fit, first: Fit) -> Fit {
     if first.evidence < from.evidence - HOPELESS {
-        return Some((first, assembled));
+        return first;
     }
-    // sources as strong as the model before needed them hide how right this one is
-    let mut adjusted = first.setting.clone();
-    let second = fit::adjust(&mut adjusted, &problem.train).and_then(|()| fit(adjusted));
-    let best = match second {
-        Some(s) if s.evidence > first.evidence => s,
+    let mut setting = first.setting.clone();
+    let fit = |s| fit::fit(s, &first.priors, &problem.train, Some(from.search_share()), RACE);
+    match fit::adjust(&mut setting, &problem.train).and_then(|()| fit(setting)) {
+        Some(second) if second.evidence > first.evidence => second,
         _ => first,
-    };
-    Some((best, assembled))
+    }
 }

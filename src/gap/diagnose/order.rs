@@ -1,0 +1,100 @@
+//! Effects that change the model's order (an elastic coupling between two inertias, the oil's inertia in a line): at
+//! their off value the model with them is singular, so they cannot be screened together with the others. Each is tried by
+//! itself at a part of its usual size, on the beginning of the first recording.
+
+use super::super::evidence;
+use super::super::fit::{self, Fit, Prior};
+use super::super::hypotheses::{Hypothesis, Sharing};
+use super::super::problem::{Chosen, Problem};
+use super::super::screen::{self, Accepted, Candidate};
+use super::Search;
+use super::refine::ready;
+use rayon::prelude::*;
+
+/// Part of the usual size at which an effect is tried where that size is so many nats worse than none: the linear model
+/// reaches some way beyond.
+const SMALL: f64 = 0.03;
+const FAR: f64 = 100.0;
+/// Samples of the first recording with which it is tried.
+const SAMPLES: usize = 1500;
+/// Effects at most that are refined, and the gain that each must promise on the whole recordings, nats.
+const MOST: usize = 3;
+const PROMISING: f64 = 10.0;
+/// Gains of one effect that differ by this part of them are the same.
+const SAME: f64 = 1e-6;
+/// Part of its usual size that an effect has at least: the model becomes too stiff on the way to its off value.
+const LEAST: f64 = 1e-3;
+
+impl Search {
+    /// The best effects that change the order, with what each promises.
+    pub(super) fn reordering(&self, problem: &Problem<'_>) -> Vec<Candidate> {
+        let Some(before) = self.beginning(problem, &[]) else { return Vec::new() };
+        let taken = |i: usize| self.accepted.iter().any(|a| a.chosen.hypothesis == i);
+        let open = |i: &usize| {
+            let h = &problem.hypotheses[*i];
+            h.changes_order && !h.is_shape() && h.sharing == Sharing::Single && !taken(*i)
+        };
+        let open: Vec<usize> = (0..problem.hypotheses.len()).filter(open).collect();
+        let used = problem.train.first().map_or(0, |r| r.len().min(SAMPLES));
+        let scale = problem.train.iter().map(|r| r.len()).sum::<usize>() as f64 / used.max(1) as f64;
+        let effect = |c: &Candidate| problem.hypotheses[c.chosen.hypothesis].effect.clone();
+        let tried = |i: usize| {
+            let h = &problem.hypotheses[i];
+            let off = screen::variants(h, i).into_iter().next()?;
+            let at = |part: f64| self.beginning(problem, &[(h, started(h, off.clone(), part))]);
+            let whole = at(1.0).filter(|c| c.gain > before.gain - FAR);
+            let mut candidate = whole.or_else(|| at(SMALL))?;
+            candidate.gain = (candidate.gain - before.gain) * scale;
+            (candidate.gain > PROMISING).then_some(candidate)
+        };
+        let mut found: Vec<Candidate> = open.into_par_iter().filter_map(tried).collect();
+        found.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        // both ends of a massless element are the same place
+        found.dedup_by(|a, b| b.gain - a.gain < SAME * b.gain && effect(a) == effect(b));
+        found.truncate(MOST);
+        found
+    }
+
+    /// What the accepted effects and perhaps one more promise on the beginning of the first recording after one iteration,
+    /// with the values of the last one.
+    fn beginning(&self, problem: &Problem<'_>, further: &[(&Hypothesis, Chosen)]) -> Option<Candidate> {
+        let mut all = self.accepted.clone();
+        for (h, chosen) in further {
+            let sigmas: Vec<f64> = h.coefficients.iter().map(|c| c.nominal.abs()).collect();
+            all.push(Accepted { priors: screen::priors(h, &chosen.values, &sigmas), chosen: chosen.clone() });
+        }
+        let (model, mut priors) = ready(problem, &self.last, &all)?;
+        let columns = priors.iter().map(|p| p.parameter).collect();
+        let setting = model.setting(&self.last.setting.levels(), &self.last.setting.noise, columns);
+        let pass = fit::passes(&setting, &problem.train[..1], SAMPLES, false)?.pop()?;
+        let share = self.last.search_share();
+        let gram = pass.gram * share;
+        let means = |p: &Prior| p.mean - setting.theta[p.parameter];
+        let own = further.first().map_or(0, |(h, _)| h.coefficients.len());
+        let count = priors.len() - further.first().map_or(0, |(_, c)| c.values.len());
+        let base: Vec<usize> = (0..count).collect();
+        let base_sigmas: Vec<f64> = priors[..count].iter().map(|p| p.sigma).collect();
+        for (column, prior) in priors.iter_mut().enumerate().skip(count).take(own) {
+            let info = evidence::new_information(&gram, column, &base, &base_sigmas);
+            let c = &further[0].0.coefficients[column - count];
+            prior.sigma = (problem.blocks() / info.max(1e-300)).sqrt().min(screen::largest(c));
+            prior.min = prior.min.max(LEAST * c.nominal.abs());
+        }
+        let set: Vec<usize> = (0..count + own).collect();
+        let sigmas: Vec<f64> = priors[..count + own].iter().map(|p| p.sigma).collect();
+        let means: Vec<f64> = priors[..count + own].iter().map(means).collect();
+        let found = evidence::explain(&gram, &set, &means, &sigmas)?;
+        let gain = share * pass.likelihood + found.evidence;
+        let priors = priors.split_off(count);
+        let chosen = further.first().map(|(_, c)| c.clone()).unwrap_or(Chosen { hypothesis: 0, values: Vec::new() });
+        gain.is_finite().then_some(Candidate { chosen, gain, priors, visible: 0.0 })
+    }
+}
+
+/// An effect at a part of its usual size.
+fn started(h: &Hypothesis, mut chosen: Chosen, part: f64) -> Chosen {
+    for (value, c) in chosen.values.iter_mut().zip(&h.coefficients) {
+        *value = part * c.nominal;
+    }
+    chosen
+}
