@@ -45,12 +45,12 @@ impl Recording {
         u.iter_mut().zip(&self.inputs).for_each(|(u, samples)| *u = samples[k]);
     }
 
-    /// Inputs that stand for the interval after sample `k`: held ones keep their value, linear ones take their mean,
-    /// which is right to second order in the interval.
-    pub fn input_between(&self, k: usize, u: &mut [f64]) {
-        for ((u, samples), &linear) in u.iter_mut().zip(&self.inputs).zip(&self.linear) {
-            let next = samples[(k + 1).min(samples.len() - 1)];
-            *u = if linear { 0.5 * (samples[k] + next) } else { samples[k] };
+    /// How fast inputs change in the interval after sample `k`, per second; held ones do not.
+    pub fn slope(&self, k: usize, slope: &mut [f64]) {
+        let next = (k + 1).min(self.len() - 1);
+        let h = self.times[next] - self.times[k];
+        for ((slope, samples), &linear) in slope.iter_mut().zip(&self.inputs).zip(&self.linear) {
+            *slope = if linear && h > 0.0 { (samples[next] - samples[k]) / h } else { 0.0 };
         }
     }
 }

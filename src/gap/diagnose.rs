@@ -33,6 +33,8 @@ const BROKEN: f64 = 100.0;
 const SETTLING: usize = 5;
 /// Factor by which they grow in one of them.
 const GROWTH: f64 = 30.0;
+/// Rounds at most in which the sources find their correlation times.
+const COLOURING: usize = 2;
 /// Gain that an effect must have to be accepted, nats.
 pub(super) const ACCEPTED: f64 = 8.0;
 /// Vuong statistic that it must have.
@@ -183,9 +185,9 @@ pub fn search(problem: &Problem<'_>, progress: &mut dyn FnMut(Stage)) -> Result<
 /// recordings by the inputs alone: strong sources may hold it where the first ones led.
 fn anchor(problem: &Problem<'_>, noise: &[f64]) -> Result<(Fit, Assembled), Trouble> {
     let model = problem.assemble(&[], &problem.node_sources()).map_err(Trouble::Model)?;
-    let levels = fit::first_levels(&model, noise, &problem.train).ok_or_else(|| why(problem, &model, noise))?;
+    let sources = fit::first_sources(&model, noise, &problem.train).ok_or_else(|| why(problem, &model, noise))?;
     let priors = fit::tolerance_priors(problem);
-    let nominal = model.setting(&levels, noise, Vec::new());
+    let nominal = model.setting(&sources, noise, Vec::new());
     let mut silent = model.setting(&[], &problem.full_scale, Vec::new());
     silent.sources.clear();
     let near = driven::fitted(problem, silent, &priors).map(|f| {
@@ -198,7 +200,25 @@ fn anchor(problem: &Problem<'_>, noise: &[f64]) -> Result<(Fit, Assembled), Trou
     let share = fits.iter().map(|f| f.share).fold(0.0, f64::max);
     let best = fits.into_iter().map(|f| f.at_share(share)).max_by(|a, b| a.evidence.total_cmp(&b.evidence));
     let diverges = || Trouble::Diverges(0.0, "the model has no values on the way".into());
-    Ok((fit::polish(best.ok_or_else(diverges)?, &problem.train, None), model))
+    let best = fit::polish(best.ok_or_else(diverges)?, &problem.train, None);
+    Ok((coloured(problem, best), model))
+}
+
+/// The same with sources as slow as the recordings say.
+fn coloured(problem: &Problem<'_>, mut best: Fit) -> Fit {
+    for _ in 0..COLOURING {
+        let mut setting = best.setting.clone();
+        if fit::colour(&mut setting, &problem.train) != Some(true) {
+            break;
+        }
+        let fit = fit::adjust(&mut setting, &problem.train)
+            .and_then(|()| fit::fit(setting, &best.priors, &problem.train, Some(best.share), fit::ITERATIONS));
+        match fit {
+            Some(fit) if fit.evidence > best.evidence => best = fit::polish(fit, &problem.train, None),
+            _ => break,
+        }
+    }
+    best
 }
 
 /// Levels and parameters from those in the setting.

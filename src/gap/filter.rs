@@ -6,11 +6,14 @@
 //! States, covariances and columns are in units of the states' sizes. States that nothing measured depends on
 //! (those of effects at their off value) are carried along without covariance.
 
+use super::begin;
 use super::data::Recording;
+use super::held;
 use super::passive::{Passive, passive_states};
 use super::step::{Exponential, multiply};
 use crate::analysis::local::{Local, LocalError, Plan};
 use nalgebra::{DMatrix, DVector};
+use std::ops::AddAssign;
 use std::sync::Arc;
 
 /// Stretches into which a recording is cut for statistics over blocks.
@@ -19,7 +22,7 @@ pub const BLOCKS: usize = 16;
 /// Parts into which a step is cut where the model bends within it.
 const PARTS: usize = 8;
 /// How far states may be from the model's start when a recording begins: measured ones by their size, the others by this
-/// part of it, absolute temperatures by so much.
+/// part of it or as far as they usually move, absolute temperatures by so much.
 const START_UNMEASURED: f64 = 0.2;
 const START_KELVIN: f64 = 10.0;
 /// A model counts as linear over a step when its curvature moves no state by more than this part of the state's
@@ -75,6 +78,8 @@ pub struct Setting {
     pub groups: Vec<std::ops::Range<usize>>,
     /// Per state its usual size, positive.
     pub sizes: Vec<f64>,
+    /// Per state how far it usually moves, SI; 0 where that is not known.
+    pub travel: Vec<f64>,
     /// Per recording, where steps are to be cut; found anew where nothing is said.
     pub cuts: Vec<Vec<bool>>,
 }
@@ -83,14 +88,9 @@ pub struct Setting {
 pub const SILENT: f64 = 1e-6;
 
 impl Setting {
-    /// The sources' levels.
-    pub fn levels(&self) -> Vec<f64> {
-        self.levels_times(1.0)
-    }
-
-    /// The sources' levels times a factor.
-    pub fn levels_times(&self, factor: f64) -> Vec<f64> {
-        self.sources.iter().map(|s| s.level * factor).collect()
+    /// The sources with their levels times a factor.
+    pub fn sources_times(&self, factor: f64) -> Vec<Source> {
+        self.sources.iter().map(|s| Source { level: s.level * factor, ..s.clone() }).collect()
     }
 }
 
@@ -154,6 +154,7 @@ pub fn run(
     // looked at by a model of its own: where there is no value, the search for one leaves traces
     let mut scout = Local::start(setting.plan.clone(), t0, &theta, &u).map_err(|e| (t0, e))?;
     let (hidden, reads) = passive_states(&mut scout, recording, &theta, &start, &setting.sizes);
+    let start = begin::state(setting, recording, &start, &hidden, &reads);
     let mut filter = Filter::new(setting, local, theta, start, recording, &hidden, &reads);
     filter.number = number;
     let samples = samples.min(recording.len());
@@ -166,7 +167,7 @@ pub fn run(
 /// Signals that have a sample, what was not expected of them, and how they depend on the states.
 type Observed = (Vec<usize>, DVector<f64>, DMatrix<f64>);
 
-struct Filter<'a> {
+pub(super) struct Filter<'a> {
     setting: &'a Setting,
     recording: &'a Recording,
     number: usize,
@@ -176,6 +177,8 @@ struct Filter<'a> {
     /// Parameters with the sources' present values.
     theta: Vec<f64>,
     u: Vec<f64>,
+    /// How fast the inputs change, and what they are within the step.
+    slope: Vec<f64>,
     between: Vec<f64>,
     /// States that are filtered, and states carried along.
     active: Vec<usize>,
@@ -210,7 +213,7 @@ struct Work {
 }
 
 impl<'a> Filter<'a> {
-    fn new(
+    pub(super) fn new(
         setting: &'a Setting,
         local: Local,
         theta: Vec<f64>,
@@ -234,7 +237,7 @@ impl<'a> Filter<'a> {
             let deviation = match local.plan().state_unit(x) {
                 Some("K") => START_KELVIN / scale[i],
                 _ if measured => 1.0,
-                _ => START_UNMEASURED,
+                _ => START_UNMEASURED.max(setting.travel[x] / scale[i]),
             };
             p[(i, i)] = deviation * deviation;
         }
@@ -257,6 +260,7 @@ impl<'a> Filter<'a> {
             local,
             theta,
             u: vec![0.0; recording.inputs.len()],
+            slope: vec![0.0; recording.inputs.len()],
             between: vec![0.0; recording.inputs.len()],
             active,
             passive,
@@ -294,8 +298,23 @@ impl<'a> Filter<'a> {
         }
     }
 
+    /// Takes the state before the first sample for the columns, and counts all samples; gives the variances of that state.
+    pub(super) fn follow_start(&mut self) -> Vec<f64> {
+        let (n, nz) = (self.active.len(), self.z.len());
+        self.settled = 0;
+        self.s = DMatrix::identity(n, nz);
+        (self.work.b, self.work.next_s) = (DMatrix::zeros(n, nz), DMatrix::zeros(n, nz));
+        self.pass.gram = DMatrix::zeros(n + 1, n + 1);
+        (0..n).map(|i| self.p[(i, i)]).collect()
+    }
+
+    /// States that are filtered, by their numbers in the model.
+    pub(super) fn states(&self) -> &[usize] {
+        &self.active
+    }
+
     /// Update with sample `k`, then prediction of the next.
-    fn sample(&mut self, k: usize, samples: usize, with_tape: bool) -> Result<(), LocalError> {
+    pub(super) fn sample(&mut self, k: usize, samples: usize, with_tape: bool) -> Result<(), LocalError> {
         let recording = self.recording;
         let t = recording.times[k];
         recording.input(k, &mut self.u);
@@ -318,7 +337,7 @@ impl<'a> Filter<'a> {
             return Ok(());
         }
         let h = recording.times[k + 1] - t;
-        recording.input_between(k, &mut self.between);
+        recording.slope(k, &mut self.slope);
         self.predict(k, &mut correction, h);
         if with_tape {
             let transition = self.work.total.clone();
@@ -394,7 +413,7 @@ impl<'a> Filter<'a> {
     /// The measurement, one signal after the other (their noises are independent): innovations whitened, state,
     /// covariance and columns corrected. The model is linearised at `point`.
     fn update(&mut self, k: usize, point: &DVector<f64>) -> Result<Observed, LocalError> {
-        let (nz, width) = (self.z.len(), self.setting.columns.len());
+        let (nz, width) = (self.z.len(), self.s.nrows());
         let signals = &self.recording.signals;
         let here: Vec<usize> = (0..signals.len()).filter(|&i| signals[i][k].is_finite()).collect();
         let q = here.len();
@@ -418,6 +437,7 @@ impl<'a> Filter<'a> {
             }
             let root = variance.sqrt();
             // how predicted outputs depend on the parameters; innovations do with the opposite sign
+            e.fill(0.0);
             e.iter_mut().zip(&self.setting.columns).for_each(|(e, &j)| *e = linear.d[(i, j)]);
             e.gemv(1.0, &self.s, &direction, 1.0);
             if k >= self.settled {
@@ -443,17 +463,20 @@ impl<'a> Filter<'a> {
         self.fill();
         // x' at the filtered state, to first order from the predicted one
         let mut rate = &self.work.a * &*correction;
-        let first_input = self.setting.plan.parameters();
-        let linear = &self.local.linear;
         for (i, &xi) in self.active.iter().enumerate() {
-            let inputs = self.u.iter().zip(&self.between).enumerate();
-            let moved: f64 = inputs.map(|(k, (u, m))| linear.b[(xi, first_input + k)] * (m - u)).sum();
-            rate[i] += (self.local.rates[xi] + moved) / self.scale[i];
+            rate[i] += self.local.rates[xi] / self.scale[i];
         }
         self.source_rates(correction, &mut rate);
-        self.work.exponential.compute(&self.work.a, h);
-        let change = &self.work.exponential.integral * &rate;
+        let n = self.active.len();
+        let all = held::ramp(&self.local.linear.b, &self.slope);
+        let ramp = DVector::from_fn(n, |i, _| all[self.active[i]] / self.scale[i]);
+        self.work.exponential.compute(&self.work.a, h, Some(&ramp));
+        let mut change = &self.work.exponential.integral * &rate;
+        change.rows_mut(0, n).add_assign(&self.work.exponential.ramped);
         self.z += &change;
+        // with the inputs in the middle of the step from here on
+        rate.rows_mut(0, n).axpy(0.5 * h, &ramp, 1.0);
+        self.inputs_at(0.5 * h);
         let finite = change.iter().all(|v| v.is_finite());
         let along = if finite { &change + 2.0 * &*correction } else { 2.0 * &*correction };
         let moved: Vec<f64> = (0..self.active.len()).map(|i| along[i] * self.scale[i]).collect();
@@ -473,7 +496,13 @@ impl<'a> Filter<'a> {
         self.temper(t, &rate, correction, h);
         self.work.total.fill_with_identity();
         let part = h / PARTS as f64;
-        (0..PARTS).for_each(|i| self.advance(t + i as f64 * part, part, 0));
+        (0..PARTS).for_each(|i| self.advance(t, i as f64 * part, part, 0));
+    }
+
+    /// Inputs so long after the sample.
+    fn inputs_at(&mut self, after: f64) {
+        let inputs = self.between.iter_mut().zip(&self.u).zip(&self.slope);
+        inputs.for_each(|((u, from), slope)| *u = from + slope * after);
     }
 
     /// Takes back part of a correction that leads to where the model is nothing like what it was linearised as (an
@@ -496,10 +525,11 @@ impl<'a> Filter<'a> {
         }
     }
 
-    /// A part of a cut step, linearised where it begins; halved where the model has no value at its end, or one far from
+    /// A part of a cut step that begins `after` the sample, linearised there; halved where the model has no value at its end, or one far from
     /// what the linear model says.
-    fn advance(&mut self, t: f64, h: f64, depth: u32) {
-        let start = self.z.clone();
+    fn advance(&mut self, sampled: f64, after: f64, h: f64, depth: u32) {
+        let (start, t) = (self.z.clone(), sampled + after);
+        self.inputs_at(after + 0.5 * h);
         if !self.possible(t) {
             // the state waits at the edge of where the model has values
             return;
@@ -510,7 +540,7 @@ impl<'a> Filter<'a> {
             rate[i] = self.local.rates[xi] / self.scale[i];
         }
         self.source_rates(&DVector::zeros(self.z.len()), &mut rate);
-        self.work.exponential.compute(&self.work.a, h);
+        self.work.exponential.compute(&self.work.a, h, None);
         let change = &self.work.exponential.integral * &rate;
         self.z += &change;
         let possible = self.possible(t + h);
@@ -518,8 +548,8 @@ impl<'a> Filter<'a> {
         let deepest = if self.parts > MOST_PARTS * self.recording.len() { 0 } else { DEEPEST };
         if depth < deepest && (!possible || depth < FINEST && !self.bend(t + h, &rate, &change, h, FAR)) {
             self.z = start;
-            self.advance(t, 0.5 * h, depth + 1);
-            self.advance(t + 0.5 * h, 0.5 * h, depth + 1);
+            self.advance(sampled, after, 0.5 * h, depth + 1);
+            self.advance(sampled, after + 0.5 * h, 0.5 * h, depth + 1);
             return;
         }
         if !possible {
@@ -604,7 +634,7 @@ impl<'a> Filter<'a> {
     }
 
     fn close_block(&mut self) {
-        let width = self.setting.columns.len() + 1;
+        let width = self.s.nrows() + 1;
         let rows = DMatrix::from_row_slice(self.chunk.len() / width, width, &self.chunk);
         self.chunk.clear();
         let common = self.setting.common;
@@ -635,7 +665,7 @@ impl<'a> Filter<'a> {
         self.block = 0.0;
     }
 
-    fn finish(mut self) -> Pass {
+    pub(super) fn finish(mut self) -> Pass {
         self.load();
         self.pass.last = self.x;
         self.pass

@@ -3,7 +3,7 @@
 
 use super::data::Recording;
 use super::evidence::{self, Explained};
-use super::filter::{self, Pass, Setting};
+use super::filter::{self, Pass, Setting, Source};
 use super::levels;
 use super::problem::{Assembled, Problem};
 use nalgebra::DMatrix;
@@ -88,16 +88,21 @@ pub fn tolerance_priors(problem: &Problem<'_>) -> Vec<Prior> {
     problem.tolerances.iter().enumerate().map(prior).collect()
 }
 
-/// Levels of the sources at which each is as strong as the sensors can see in one sample, roughly: where the search
-/// for the levels begins.
-pub fn first_levels(assembled: &Assembled, noise: &[f64], train: &[Recording]) -> Option<Vec<f64>> {
-    let mut setting = assembled.setting(&[], noise, assembled.sources.clone().collect());
-    setting.sources.clear();
+/// Sources of which each is as strong as the sensors can see in one sample, roughly: where the search
+/// for their levels begins.
+pub fn first_sources(assembled: &Assembled, noise: &[f64], train: &[Recording]) -> Option<Vec<Source>> {
+    let setting = assembled.setting(&[], noise, assembled.sources.clone().collect());
     let samples = 600;
     let (_, gram) = total(&passes(&setting, &train[..1], samples, false)?);
     let n = (samples.min(train[0].len()) as f64 - train[0].settled() as f64).max(1.0);
     let level = |i: usize| if gram[(i, i)] > 0.0 { 0.3 * (n / gram[(i, i)]).sqrt() } else { 1e-12 };
-    Some((0..assembled.sources.len()).map(level).collect())
+    let source = |(i, parameter)| Source { parameter, level: level(i), tau: assembled.tau };
+    Some(assembled.sources.clone().enumerate().map(source).collect())
+}
+
+fn level_samples(train: &[Recording]) -> usize {
+    let longest = train.iter().map(Recording::len).max().unwrap_or(0);
+    LEVEL_SAMPLES.max(longest / LEVEL_PART)
 }
 
 /// Adjusts levels and noise at the present values of the parameters.
@@ -110,8 +115,7 @@ pub fn adjust(setting: &mut Setting, train: &[Recording]) -> Option<()> {
 pub fn adjust_slowly(setting: &mut Setting, train: &[Recording], rounds: usize, growth: f64) -> Option<()> {
     let columns = std::mem::take(&mut setting.columns);
     for _ in 0..rounds {
-        let longest = train.iter().map(Recording::len).max().unwrap_or(0);
-        let found = passes(setting, train, LEVEL_SAMPLES.max(longest / LEVEL_PART), true)?;
+        let found = passes(setting, train, level_samples(train), true)?;
         let tapes: Vec<&[filter::Step]> = found.iter().map(|p| &p.tape[..]).collect();
         let (factors, _) = levels::fit(setting, &tapes, growth);
         let settled = factors.iter().all(|f| *f < growth / SETTLED);
@@ -123,6 +127,19 @@ pub fn adjust_slowly(setting: &mut Setting, train: &[Recording], rounds: usize, 
     }
     setting.columns = columns;
     Some(())
+}
+
+/// Gives the sources correlation times of their own: disturbances have colours that nobody knows. True where one is
+/// another now.
+pub fn colour(setting: &mut Setting, train: &[Recording]) -> Option<bool> {
+    let columns = std::mem::take(&mut setting.columns);
+    let found = passes(setting, train, level_samples(train), true)?;
+    let tapes: Vec<&[filter::Step]> = found.iter().map(|p| &p.tape[..]).collect();
+    let coloured = levels::coloured(setting, &tapes);
+    let other = setting.sources.iter().zip(&coloured).any(|(s, c)| s.tau != c.tau);
+    setting.sources = coloured;
+    setting.columns = columns;
+    Some(other)
 }
 
 /// What the sources can take is not noise.

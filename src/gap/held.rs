@@ -5,7 +5,7 @@ use super::filter::{self, Setting};
 use super::problem::Problem;
 use super::step::Exponential;
 use crate::analysis::local::Local;
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 /// Residuals of one recording behind the window: samples by signals; NaN where nothing was measured.
@@ -77,7 +77,8 @@ fn open_loop(setting: &Setting, recording: &Recording, from: usize, state: Vec<f
     let n = state.len();
     let scale = DVector::from_column_slice(&setting.sizes);
     let mut x = state;
-    let mut stepper = Stepper { scale, exponential: Exponential::new(n, 0), u: u.clone(), theta };
+    let inputs = Inputs { since: 0.0, from: u.clone(), slope: vec![0.0; u.len()] };
+    let mut stepper = Stepper { scale, exponential: Exponential::new(n, 0), inputs, u: u.clone(), theta };
     let mut simulated = vec![Vec::with_capacity(recording.len() - from); setting.noise.len()];
     for k in from..recording.len() {
         recording.input(k, &mut u);
@@ -87,7 +88,9 @@ fn open_loop(setting: &Setting, recording: &Recording, from: usize, state: Vec<f
         if k + 1 == recording.len() {
             break;
         }
-        recording.input_between(k, &mut stepper.u);
+        stepper.inputs.since = t;
+        stepper.inputs.from.copy_from_slice(&u);
+        recording.slope(k, &mut stepper.inputs.slope);
         stepper.advance(&mut local, t, recording.times[k + 1] - t, &mut x, 0)?;
         if x.iter().any(|v| !v.is_finite()) {
             return None;
@@ -101,10 +104,28 @@ const DEEPEST: u32 = 6;
 /// The curvature within a step that is let pass, in parts of the states' sizes.
 const CURVATURE: f64 = 1e-5;
 
-/// Exponential steps (Rosenbrock-Euler), halved until the model is nearly linear over each.
+/// Inputs of an interval: what they are at its beginning, and how fast they change.
+struct Inputs {
+    since: f64,
+    from: Vec<f64>,
+    slope: Vec<f64>,
+}
+
+impl Inputs {
+    fn at(&self, t: f64, u: &mut [f64]) {
+        u.iter_mut()
+            .zip(&self.from)
+            .zip(&self.slope)
+            .for_each(|((u, from), slope)| *u = from + slope * (t - self.since));
+    }
+}
+
+/// Exponential steps (Rosenbrock-Euler; Hochbruck, Ostermann, Acta Numerica 2010, 2.4), halved until the model is nearly
+/// linear over each.
 struct Stepper<'a> {
     scale: DVector<f64>,
     exponential: Exponential,
+    inputs: Inputs,
     u: Vec<f64>,
     theta: &'a [f64],
 }
@@ -112,6 +133,7 @@ struct Stepper<'a> {
 impl Stepper<'_> {
     fn advance(&mut self, local: &mut Local, t: f64, h: f64, x: &mut Vec<f64>, depth: u32) -> Option<()> {
         let n = x.len();
+        self.inputs.at(t, &mut self.u);
         local.linearize(t, x, self.theta, &self.u).ok()?;
         let mut a = local.linear.a.clone();
         for j in 0..n {
@@ -119,11 +141,13 @@ impl Stepper<'_> {
                 a[(i, j)] *= self.scale[j] / self.scale[i];
             }
         }
-        self.exponential.compute(&a, h);
+        let ramp = ramp(&local.linear.b, &self.inputs.slope).component_div(&self.scale);
+        self.exponential.compute(&a, h, Some(&ramp));
         let rate = local.rate_vector().component_div(&self.scale);
-        let change = &self.exponential.integral * &rate;
+        let change = &self.exponential.integral * &rate + &self.exponential.ramped;
         let next: Vec<f64> = (0..n).map(|i| x[i] + change[i] * self.scale[i]).collect();
-        let expected = rate + a * change;
+        let expected = rate + a * change + ramp * h;
+        self.inputs.at(t + h, &mut self.u);
         let found = local.evaluate(t + h, &next, self.theta, &self.u);
         let bend = (0..n).map(|i| 0.5 * h * (local.rates[i] / self.scale[i] - expected[i]).abs()).fold(0.0, f64::max);
         if depth < DEEPEST && (found.is_err() || bend > CURVATURE) {
@@ -133,6 +157,11 @@ impl Stepper<'_> {
         *x = next;
         Some(())
     }
+}
+
+/// How fast x' changes because inputs do; their columns are the last ones of d x' / d (theta, u).
+pub(super) fn ramp(b: &DMatrix<f64>, slope: &[f64]) -> DVector<f64> {
+    b.columns(b.ncols() - slope.len(), slope.len()) * DVector::from_column_slice(slope)
 }
 
 /// Simulates all recordings.

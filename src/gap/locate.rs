@@ -109,16 +109,13 @@ fn rank(found: &mut [Located], factors: &[f64], fast: usize, value: &impl Fn(&[f
 fn setting(problem: &Problem<'_>, base: &Fit, assembled: &Assembled, accepted: &[Accepted]) -> Option<Setting> {
     let mut scaled = assembled.clone();
     carry(base, accepted, &mut scaled);
-    let first = fit::first_levels(&scaled, &base.setting.noise, &problem.train)?;
+    let first = fit::first_sources(&scaled, &base.setting.noise, &problem.train)?;
     let nodes = problem.node_sources();
     let mut setting = scaled.setting(&[], &base.setting.noise, Vec::new());
-    setting.sources.clear();
     for (&node, source) in nodes.iter().zip(&base.setting.sources) {
         setting.sources.push(Source { parameter: scaled.sources.start + node, ..source.clone() });
     }
-    for (i, level) in first.into_iter().enumerate() {
-        setting.sources.push(Source { parameter: scaled.sources.start + i, level, tau: SLOWER * scaled.tau });
-    }
+    setting.sources.extend(first.into_iter().map(|s| Source { tau: SLOWER * s.tau, ..s }));
     Some(setting)
 }
 

@@ -8,6 +8,7 @@
 //! what an experiment would show.
 
 pub mod augment;
+mod begin;
 pub mod circuit;
 pub mod data;
 pub mod diagnose;

@@ -51,7 +51,7 @@ impl Group {
         let (n, full) = (self.states.len(), &local.linear.a);
         let fresh = DMatrix::from_fn(n, n, |i, j| full[(self.states[i], self.states[j])]);
         if (h - self.h).abs() > SAME_STEP * h || fresh != self.a {
-            self.exponential.compute(&fresh, h);
+            self.exponential.compute(&fresh, h, None);
             self.a = fresh;
             self.h = h;
         }

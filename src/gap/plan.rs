@@ -143,8 +143,8 @@ impl Products {
                 variants[i].push((t..t + 1, vec![screen::wrong_sheet(&problem.tolerances[t])]));
             }
         }
-        let levels = fit::first_levels(&assembled, &problem.noise_floor, &problem.train)?;
-        let setting = assembled.setting(&levels, &problem.noise_floor, columns);
+        let sources = fit::first_sources(&assembled, &problem.noise_floor, &problem.train)?;
+        let setting = assembled.setting(&sources, &problem.noise_floor, columns);
         let all: usize = problem.train.iter().map(Recording::len).sum();
         let each = (SAMPLES / problem.train.len().max(1)).max(2);
         let used: usize = problem.train.iter().map(|r| r.len().min(each)).sum();

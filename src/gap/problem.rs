@@ -94,6 +94,8 @@ pub struct Assembled {
     pub attached: Vec<Vec<usize>>,
     /// Usual size of each state.
     pub sizes: Vec<f64>,
+    /// How far each state moves in the nominal model, SI; 0 where that is not known.
+    pub travel: Vec<f64>,
     /// Per signal the largest noise that its samples allow.
     pub most_noise: Vec<f64>,
     /// Correlation time of sources, s.
@@ -190,13 +192,12 @@ impl Problem<'_> {
     }
 
     /// Takes down how far the states of the nominal model move from its own start: what its author gave as their sizes
-    /// may be a default. Angles are left out, because laws repeat over a turn.
+    /// may be a default.
     pub fn explore(&mut self) {
         let Ok(model) = self.assemble(&[], &[]) else { return };
         let variables = &model.plan.system.dae.variables;
         let states = model.plan.state_variables().enumerate();
         let signals: Vec<Signal> = states
-            .filter(|(i, _)| model.plan.state_unit(*i) != Some("rad"))
             .filter_map(|(_, v)| of_plant(&variables[v.index()].name))
             .enumerate()
             .map(|(i, name)| Signal { name: format!("state_{i}"), variable: name.to_string(), scale: 1.0 })
@@ -263,33 +264,38 @@ impl Problem<'_> {
             None => Local::start(plan.clone(), 0.0, &theta, &u),
         };
         let mut sizes = sizes.map_or_else(|_| vec![1.0; plan.states()], |l| l.nominals());
-        for (size, v) in sizes.iter_mut().zip(plan.state_variables()) {
+        let travel = |v: VarId| {
             let name = of_plant(&plan.system.dae.variables[v.index()].name);
-            let travel = name.and_then(|n| self.travel.get(n)).copied();
-            if let Some(t) = travel.filter(|t| t.is_finite() && *t > DEFAULT * *size) {
-                *size = t;
+            name.and_then(|n| self.travel.get(n)).copied().filter(|t| t.is_finite()).unwrap_or(0.0)
+        };
+        let travel: Vec<f64> = plan.state_variables().map(travel).collect();
+        for (i, (size, &travel)) in sizes.iter_mut().zip(&travel).enumerate() {
+            // laws repeat over a turn
+            if travel > DEFAULT * *size && plan.state_unit(i) != Some("rad") {
+                *size = travel;
             }
         }
         let most_noise = self.noise_floor.iter().map(|n| MOST_NOISE * n).collect();
         let tau = TAU.max(TAU_STEPS * self.step());
-        Ok(Assembled { plan, theta, free, sources, attached, sizes, most_noise, tau, augmented })
+        Ok(Assembled { plan, theta, free, sources, attached, sizes, travel, most_noise, tau, augmented })
     }
 }
 
 impl Assembled {
-    /// A setting for the filter with these levels of the sources.
-    pub fn setting(&self, levels: &[f64], noise: &[f64], columns: Vec<usize>) -> Setting {
-        let source = |(parameter, &level): (usize, &f64)| Source { parameter, level, tau: self.tau };
+    /// A setting for the filter with sources as strong and as slow as these, in the order of its own.
+    pub fn setting(&self, like: &[Source], noise: &[f64], columns: Vec<usize>) -> Setting {
+        let source = |(parameter, like): (usize, &Source)| Source { parameter, ..like.clone() };
         Setting {
             plan: self.plan.clone(),
             theta: self.theta.clone(),
-            sources: self.sources.clone().zip(levels).map(source).collect(),
+            sources: self.sources.clone().zip(like).map(source).collect(),
             noise: noise.to_vec(),
             most_noise: self.most_noise.clone(),
             common: columns.len(),
             groups: Vec::new(),
             columns,
             sizes: self.sizes.clone(),
+            travel: self.travel.clone(),
             cuts: Vec::new(),
         }
     }

@@ -3,7 +3,7 @@
 
 use super::effects::{Coefficient, Shape};
 use super::evidence;
-use super::filter::{self, SILENT};
+use super::filter::{self, SILENT, Source};
 use super::fit::{self, Fit, Prior};
 use super::held;
 use super::hypotheses::Hypothesis;
@@ -110,7 +110,7 @@ pub fn screen(problem: &Problem<'_>, base: &Fit, accepted: &[Accepted]) -> Scree
 
 /// Levels of the sources and of the noise under which hypotheses are weighed, and the share of samples that count.
 struct Background {
-    levels: Vec<f64>,
+    sources: Vec<Source>,
     noise: Vec<f64>,
     share: f64,
 }
@@ -119,7 +119,7 @@ impl Background {
     /// The sources as fitted, times a factor.
     fn of(base: &Fit, factor: f64) -> Self {
         Background {
-            levels: base.setting.levels_times(factor),
+            sources: base.setting.sources_times(factor),
             noise: base.setting.noise.clone(),
             share: base.search_share(),
         }
@@ -144,7 +144,7 @@ impl Background {
         let open = rms.iter().zip(&base.setting.noise).any(|(left, noise)| *left > OPEN * noise);
         let noise = rms.iter().zip(&base.setting.noise).map(|(left, noise)| left.max(*noise)).collect();
         let share = evidence::independent_share(&left.iter().collect::<Vec<_>>());
-        open.then_some(Background { levels: base.setting.levels_times(SILENT), noise, share })
+        open.then_some(Background { sources: base.setting.sources_times(SILENT), noise, share })
     }
 }
 
@@ -232,7 +232,7 @@ impl<'a> Joint<'a> {
             columns.extend(&places[..count.min(places.len())]);
             entries.push(Entry { hypothesis: c.hypothesis, values: c.values.clone(), columns: first..columns.len() });
         }
-        let mut setting = assembled.setting(&background.levels, &background.noise, columns);
+        let mut setting = assembled.setting(&background.sources, &background.noise, columns);
         setting.common = common.len();
         setting.cuts.clone_from(&base.cuts);
         setting.groups = entries.iter().map(|e| e.columns.clone()).collect();

@@ -1,6 +1,6 @@
 //! One step of a linear system: the matrix exponential and its integral.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 /// Products with up to so many terms a sum are done by plain loops.
 const LARGE: usize = 64;
@@ -75,10 +75,13 @@ pub struct Exponential {
     high: DMatrix<f64>,
     power: DMatrix<f64>,
     area: DMatrix<f64>,
+    moved: DVector<f64>,
     /// exp(h A).
     pub transition: DMatrix<f64>,
     /// The integral of exp(s A) over s from 0 to h.
     pub integral: DMatrix<f64>,
+    /// What a rate that grows steadily adds over the step, of the coupled states.
+    pub ramped: DVector<f64>,
 }
 
 impl Exponential {
@@ -93,16 +96,18 @@ impl Exponential {
             high: zeros(),
             power: zeros(),
             area: zeros(),
+            moved: DVector::zeros(coupled),
+            ramped: DVector::zeros(coupled),
             transition: whole(),
             integral: whole(),
         }
     }
 
-    /// Computes both from A. A source counts with its mean over the step, an error of the order of (h/tau)(h A)/12 of
+    /// Computes transition and integral from A, and what a rate that grows by `ramp` in a second adds. A source counts with its mean over the step, an error of the order of (h/tau)(h A)/12 of
     /// what it does to the states.
-    pub fn compute(&mut self, a: &DMatrix<f64>, h: f64) {
+    pub fn compute(&mut self, a: &DMatrix<f64>, h: f64, ramp: Option<&DVector<f64>>) {
         let n = self.small.nrows();
-        self.coupled(a, h);
+        self.coupled(a, h, ramp);
         self.transition.view_mut((0, 0), (n, n)).copy_from(&self.power);
         self.integral.view_mut((0, 0), (n, n)).copy_from(&self.area);
         for j in n..a.nrows() {
@@ -121,8 +126,8 @@ impl Exponential {
 
     /// Scaling and squaring (Higham, Functions of Matrices, 2008, ch. 10): the integral is h phi(h A) with
     /// phi(z) = (e^z - 1)/z, and phi(2 z) = (e^z + 1) phi(z)/2.
-    fn coupled(&mut self, a: &DMatrix<f64>, h: f64) {
-        let Exponential { small, next, high, power, area, .. } = self;
+    fn coupled(&mut self, a: &DMatrix<f64>, h: f64, ramp: Option<&DVector<f64>>) {
+        let Exponential { small, next, high, power, area, moved, ramped, .. } = self;
         let n = small.nrows();
         let a = a.view((0, 0), (n, n));
         let norm = h * (0..n).map(|j| a.column(j).iter().map(|v| v.abs()).sum::<f64>()).fold(0.0, f64::max);
@@ -148,7 +153,26 @@ impl Exponential {
         power.fill_with_identity();
         multiply(power, small, area, 1.0);
         *area *= scale;
+        ramped.fill(0.0);
+        if let Some(ramp) = ramp {
+            // h^2 (1/2 + X/6 + X^2/24 + ...) ramp, by Horner's rule
+            for c in COEFFICIENTS[1..].iter().rev() {
+                moved.copy_from(ramp);
+                moved.gemv(1.0, small, ramped, *c);
+                std::mem::swap(moved, ramped);
+            }
+            *ramped *= scale * scale;
+        }
+        let mut length = scale;
         for _ in 0..halvings {
+            if let Some(ramp) = ramp {
+                // the double integral over 2 s = (exp(s A) + 1) that over s + s times the integral over s
+                moved.copy_from(ramped);
+                moved.gemv(1.0, power, ramped, 1.0);
+                moved.gemv(length, area, ramp, 1.0);
+                std::mem::swap(moved, ramped);
+                length *= 2.0;
+            }
             // integral over 2 s = (exp(s A) + 1) integral over s
             next.copy_from(area);
             multiply(next, power, area, 1.0);
@@ -168,7 +192,7 @@ mod tests {
         let a = DMatrix::from_row_slice(2, 2, &[0.0, 1.0, -100.0, -2.0]);
         let mut e = Exponential::new(2, 0);
         let h = 3.0_f64;
-        e.compute(&a, h);
+        e.compute(&a, h, None);
         let w = (100.0_f64 - 1.0).sqrt();
         let decay = (-h).exp();
         let exact = decay * ((w * h).cos() + (w * h).sin() / w);
@@ -183,7 +207,7 @@ mod tests {
     fn a_very_stiff_matrix_stays_finite() {
         let a = DMatrix::from_row_slice(2, 2, &[-1e9, 1.0, 0.0, -1.0]);
         let mut e = Exponential::new(2, 0);
-        e.compute(&a, 1e-3);
+        e.compute(&a, 1e-3, None);
         assert!(e.transition.iter().all(|v| v.is_finite()));
         assert!((e.integral[(0, 0)] - 1e-9).abs() < 1e-15);
     }
@@ -194,12 +218,24 @@ mod tests {
         let (lag, tau, g, h) = (0.002, 0.025, 3.0, 1e-3);
         let a = DMatrix::from_row_slice(2, 2, &[-1.0 / lag, g, 0.0, -1.0 / tau]);
         let (mut whole, mut parts) = (Exponential::new(2, 0), Exponential::new(1, 1));
-        whole.compute(&a, h);
-        parts.compute(&a, h);
+        whole.compute(&a, h, None);
+        parts.compute(&a, h, None);
         let size = whole.transition[(0, 1)].abs();
         assert!((&whole.transition - &parts.transition).amax() < 2e-3 * size);
         let size = whole.integral[(0, 1)].abs();
         assert!((&whole.integral - &parts.integral).amax() < 0.1 * size);
+    }
+
+    #[test]
+    fn a_ramp_drives_slow_and_fast_lags() {
+        // x' = -x/T + r t has x = r T (t - T (1 - exp(-t/T)))
+        let h = 0.5_f64;
+        for lag in [1e-4, 0.01, 0.5, 30.0] {
+            let mut e = Exponential::new(1, 0);
+            e.compute(&DMatrix::from_element(1, 1, -1.0 / lag), h, Some(&DVector::from_element(1, 2.0)));
+            let exact = 2.0 * lag * (h + lag * (-h / lag).exp_m1());
+            assert!((e.ramped[0] - exact).abs() < 1e-6 * exact, "{lag}: {} {exact}", e.ramped[0]);
+        }
     }
 
     #[test]

@@ -110,7 +110,8 @@ impl Conclusion<'_> {
     /// The model as the study gives it.
     pub fn nominal(&self) -> Setting {
         let model = &self.search.base_model;
-        let mut setting = model.setting(&vec![0.0; model.sources.len()], &self.search.last.setting.noise, Vec::new());
+        let mut setting =
+            model.setting(&self.search.base.setting.sources_times(0.0), &self.search.last.setting.noise, Vec::new());
         for (i, t) in self.problem.tolerances.iter().enumerate() {
             setting.theta[i] = t.nominal;
         }

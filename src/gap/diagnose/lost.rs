@@ -129,10 +129,10 @@ fn at_nominal(problem: &Problem<'_>, from: &Fit, accepted: &[Accepted]) -> Optio
 /// A model fitted by what it says from the inputs alone, from the nominal parameters.
 fn output_error(problem: &Problem<'_>, from: &Fit, accepted: &[Accepted]) -> Option<(Fit, Assembled)> {
     let (assembled, priors) = at_nominal(problem, from, accepted)?;
-    let levels = from.setting.levels_times(SILENT);
+    let sources = from.setting.sources_times(SILENT);
     // where the errors are not known yet, they are as large as the signals
     let noise: Vec<f64> = problem.full_scale.iter().zip(&from.setting.noise).map(|(f, n)| f.max(*n)).collect();
-    let setting = assembled.setting(&levels, &noise, Vec::new());
+    let setting = assembled.setting(&sources, &noise, Vec::new());
     Some((driven::fitted(problem, setting, &priors)?, assembled))
 }
 

@@ -65,7 +65,7 @@ impl Search {
         }
         let (model, mut priors) = ready(problem, &self.last, &all)?;
         let columns = priors.iter().map(|p| p.parameter).collect();
-        let setting = model.setting(&self.last.setting.levels(), &self.last.setting.noise, columns);
+        let setting = model.setting(&self.last.setting.sources, &self.last.setting.noise, columns);
         let pass = fit::passes(&setting, &problem.train[..1], SAMPLES, false)?.pop()?;
         let share = self.last.search_share();
         let gram = pass.gram * share;

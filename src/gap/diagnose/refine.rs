@@ -1,7 +1,7 @@
 //! Candidates of a screen one by one: each fitted together with everything accepted before, the front to its optimum.
 
 use super::super::effects::Coefficient;
-use super::super::filter::Setting;
+use super::super::filter::{Setting, Source};
 use super::super::fit::{self, Fit, Prior};
 use super::super::hypotheses::Hypothesis;
 use super::super::locate;
@@ -114,7 +114,7 @@ impl Search {
             let mut all = self.accepted.clone();
             all.push(Accepted { chosen: Chosen { values, ..whole.chosen }, priors: whole.priors.clone() });
             let (model, _) = ready(problem, &self.last, &all)?;
-            let setting = model.setting(&self.last.setting.levels(), &self.last.setting.noise, Vec::new());
+            let setting = model.setting(&self.last.setting.sources, &self.last.setting.noise, Vec::new());
             Some(fit::passes(&setting, first, TRIED, false)?[0].likelihood)
         };
         let best = variants
@@ -153,7 +153,8 @@ impl Search {
     /// gain is no gain of the effect.
     pub(super) fn relevel(&mut self, problem: &Problem<'_>, front: &Fit) {
         let mut setting = self.last.setting.clone();
-        setting.sources.iter_mut().zip(&front.setting.sources).for_each(|(own, s)| own.level = s.level);
+        let like = |(own, s): (&mut Source, &Source)| (own.level, own.tau) = (s.level, s.tau);
+        setting.sources.iter_mut().zip(&front.setting.sources).for_each(like);
         setting.noise.clone_from(&front.setting.noise);
         let share = self.last.share;
         let fit = fit::fit(setting, &self.last.priors, &problem.train, Some(share), fit::ITERATIONS);
@@ -299,7 +300,7 @@ pub(super) fn fitted(problem: &Problem<'_>, from: &Fit, accepted: &[Accepted]) -
 /// The same at the levels of that fit.
 fn at_levels(problem: &Problem<'_>, from: &Fit, accepted: &[Accepted]) -> Option<(Fit, Assembled)> {
     let (assembled, priors) = ready(problem, from, accepted)?;
-    let setting = assembled.setting(&from.setting.levels(), &from.setting.noise, Vec::new());
+    let setting = assembled.setting(&from.setting.sources, &from.setting.noise, Vec::new());
     Some((fit::fit(setting, &priors, &problem.train, Some(from.search_share()), RACE)?, assembled))
 }
 

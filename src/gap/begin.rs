@@ -1,0 +1,83 @@
+//! Where a recording begins: the state that its first samples lead to. The model's own start may be far from it, and what
+//! is linearised there (a limiter at its end, a spring wound up) may make the filter sure of a state that is none. So the
+//! first samples are gone through again from where they lead (Gauss-Newton on the state before the first sample).
+
+use super::data::Recording;
+use super::filter::{Filter, Setting};
+use crate::analysis::local::Local;
+use nalgebra::{DMatrix, DVector};
+
+/// Times at most that the first samples are gone through.
+const ROUNDS: usize = 4;
+/// A change of the state that is none, in its sizes.
+const SMALL: f64 = 1e-3;
+/// Log likelihood that another start must gain, nats.
+const BETTER: f64 = 0.1;
+
+/// The start of the `number`-th recording from `start`, which is left where nothing better is found.
+pub(super) fn state(
+    setting: &Setting,
+    recording: &Recording,
+    start: &[f64],
+    hidden: &[usize],
+    reads: &DMatrix<bool>,
+) -> Vec<f64> {
+    let mut quiet = setting.clone();
+    quiet.columns.clear();
+    quiet.groups.clear();
+    quiet.cuts.clear();
+    let (mut best, mut likelihood) = (start.to_vec(), f64::NEG_INFINITY);
+    let mut tried = best.clone();
+    for _ in 0..ROUNDS {
+        let Some(found) = gone_through(&mut quiet, recording, &tried, hidden, reads) else { break };
+        if found.likelihood < likelihood + BETTER {
+            break;
+        }
+        (best, likelihood) = (tried.clone(), found.likelihood);
+        if found.change.amax() < SMALL {
+            break;
+        }
+        let moved = found.change.iter().zip(&found.states).map(|(change, &x)| (x, change * setting.sizes[x]));
+        moved.for_each(|(x, dx)| tried[x] += dx);
+    }
+    best
+}
+
+struct Beginning {
+    likelihood: f64,
+    /// States that are filtered, and by how many sizes each should have begun elsewhere.
+    states: Vec<usize>,
+    change: DVector<f64>,
+}
+
+/// Runs the filter over the samples that only estimate the state.
+fn gone_through(
+    setting: &mut Setting,
+    recording: &Recording,
+    start: &[f64],
+    hidden: &[usize],
+    reads: &DMatrix<bool>,
+) -> Option<Beginning> {
+    let samples = recording.settled();
+    let mut u = vec![0.0; recording.inputs.len()];
+    recording.input(0, &mut u);
+    let t0 = recording.times[0];
+    let mut theta = setting.theta.clone();
+    setting.sources.iter().for_each(|s| theta[s.parameter] = 0.0);
+    let mut local = Local::start(setting.plan.clone(), t0, &theta, &u).ok()?;
+    local.linearize(t0, start, &theta, &u).ok()?;
+    setting.common = start.len();
+    let mut filter = Filter::new(setting, local, theta, start.to_vec(), recording, hidden, reads);
+    let prior = filter.follow_start();
+    for k in 0..samples {
+        filter.sample(k, samples, false).ok()?;
+    }
+    let states = filter.states().to_vec();
+    let pass = filter.finish();
+    let n = states.len();
+    let mut information = pass.gram.view((0, 0), (n, n)).into_owned();
+    (0..n).for_each(|i| information[(i, i)] += 1.0 / prior[i]);
+    let change = information.cholesky()?.solve(&pass.gram.view((0, n), (n, 1)).column(0).into_owned());
+    let finite = pass.likelihood.is_finite() && change.iter().all(|v| v.is_finite());
+    finite.then_some(Beginning { likelihood: pass.likelihood, states, change })
+}
