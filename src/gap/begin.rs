@@ -26,6 +26,7 @@ pub(super) fn state(
     quiet.columns.clear();
     quiet.groups.clear();
     quiet.cuts.clear();
+    quiet.starts.clear();
     let (mut best, mut likelihood) = (start.to_vec(), f64::NEG_INFINITY);
     let mut tried = best.clone();
     for _ in 0..ROUNDS {

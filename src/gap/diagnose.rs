@@ -129,6 +129,8 @@ pub struct Search {
     left: Vec<Located>,
     /// All refined candidates.
     trials: Vec<Trial>,
+    /// Hypotheses that change the model's order and were far from fitting.
+    unfit: Vec<usize>,
     /// Gross errors of the recordings.
     gross: Vec<Gross>,
     /// Share of hypotheses that would have been seen at typical size.
@@ -167,6 +169,7 @@ pub fn search(problem: &Problem<'_>, progress: &mut dyn FnMut(Stage)) -> Result<
         left: Vec::new(),
         visible: 0.0,
         trials: Vec::new(),
+        unfit: Vec::new(),
         gross,
     };
     while search.gross.is_empty() && search.accepted.len() < MOST_EFFECTS && search.step(problem, progress) {}

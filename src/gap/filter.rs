@@ -82,6 +82,8 @@ pub struct Setting {
     pub travel: Vec<f64>,
     /// Per recording, where steps are to be cut; found anew where nothing is said.
     pub cuts: Vec<Vec<bool>>,
+    /// Per recording, the state it begins at; found anew where nothing is said.
+    pub starts: Vec<Vec<f64>>,
 }
 
 /// Part of their levels at which sources do nothing.
@@ -109,6 +111,8 @@ pub struct Pass {
     pub tape: Vec<Step>,
     /// Samples after which the step was cut because the model bends.
     pub cut: Vec<bool>,
+    /// State that the recording began at, SI.
+    pub start: Vec<f64>,
     /// Filtered state at the last sample, SI.
     pub last: Vec<f64>,
 }
@@ -154,7 +158,10 @@ pub fn run(
     // looked at by a model of its own: where there is no value, the search for one leaves traces
     let mut scout = Local::start(setting.plan.clone(), t0, &theta, &u).map_err(|e| (t0, e))?;
     let (hidden, reads) = passive_states(&mut scout, recording, &theta, &start, &setting.sizes);
-    let start = begin::state(setting, recording, &start, &hidden, &reads);
+    let start = match setting.starts.get(number) {
+        Some(known) => known.clone(),
+        None => begin::state(setting, recording, &start, &hidden, &reads),
+    };
     let mut filter = Filter::new(setting, local, theta, start, recording, &hidden, &reads);
     filter.number = number;
     let samples = samples.min(recording.len());
@@ -250,6 +257,7 @@ impl<'a> Filter<'a> {
             white: DMatrix::zeros(samples, signals),
             tape: Vec::new(),
             cut: vec![false; samples],
+            start: start.clone(),
             last: Vec::new(),
         };
         Filter {

@@ -116,6 +116,7 @@ pub fn adjust_slowly(setting: &mut Setting, train: &[Recording], rounds: usize, 
     let columns = std::mem::take(&mut setting.columns);
     for _ in 0..rounds {
         let found = passes(setting, train, level_samples(train), true)?;
+        setting.starts = found.iter().map(|p| p.start.clone()).collect();
         let tapes: Vec<&[filter::Step]> = found.iter().map(|p| &p.tape[..]).collect();
         let (factors, _) = levels::fit(setting, &tapes, growth);
         let settled = factors.iter().all(|f| *f < growth / SETTLED);
@@ -167,6 +168,7 @@ pub fn fit(
     let set: Vec<usize> = (0..priors.len()).collect();
     let sigmas: Vec<f64> = priors.iter().map(|p| p.sigma).collect();
     let mut found = passes(&setting, train, usize::MAX, false)?;
+    setting.starts = found.iter().map(|p| p.start.clone()).collect();
     let share =
         share.unwrap_or_else(|| evidence::independent_share(&found.iter().map(|p| &p.white).collect::<Vec<_>>()));
     for _ in 0..iterations {

@@ -55,6 +55,7 @@ pub fn simulate(setting: &Setting, recording: &Recording) -> Option<Residuals> {
     quiet.common = 0;
     quiet.groups.clear();
     quiet.cuts.clear();
+    quiet.starts.clear();
     let pass = filter::run(&quiet, recording, 0, from + 1, false).ok()?;
     let simulated = open_loop(&quiet, recording, from, pass.last)?;
     Some(Residuals { from, simulated })

@@ -109,6 +109,7 @@ fn rank(found: &mut [Located], factors: &[f64], fast: usize, value: &impl Fn(&[f
 fn setting(problem: &Problem<'_>, base: &Fit, assembled: &Assembled, accepted: &[Accepted]) -> Option<Setting> {
     let mut scaled = assembled.clone();
     carry(base, accepted, &mut scaled);
+    scaled.begin_like(&base.setting, &problem.train);
     let first = fit::first_sources(&scaled, &base.setting.noise, &problem.train)?;
     let nodes = problem.node_sources();
     let mut setting = scaled.setting(&[], &base.setting.noise, Vec::new());

@@ -96,6 +96,8 @@ pub struct Assembled {
     pub sizes: Vec<f64>,
     /// How far each state moves in the nominal model, SI; 0 where that is not known.
     pub travel: Vec<f64>,
+    /// Per train recording the state it begins at, as far as it is known from another model.
+    pub starts: Vec<Vec<f64>>,
     /// Per signal the largest noise that its samples allow.
     pub most_noise: Vec<f64>,
     /// Correlation time of sources, s.
@@ -277,7 +279,19 @@ impl Problem<'_> {
         }
         let most_noise = self.noise_floor.iter().map(|n| MOST_NOISE * n).collect();
         let tau = TAU.max(TAU_STEPS * self.step());
-        Ok(Assembled { plan, theta, free, sources, attached, sizes, travel, most_noise, tau, augmented })
+        Ok(Assembled {
+            plan,
+            theta,
+            free,
+            sources,
+            attached,
+            sizes,
+            travel,
+            starts: Vec::new(),
+            most_noise,
+            tau,
+            augmented,
+        })
     }
 }
 
@@ -297,7 +311,27 @@ impl Assembled {
             sizes: self.sizes.clone(),
             travel: self.travel.clone(),
             cuts: Vec::new(),
+            starts: self.starts.clone(),
         }
+    }
+}
+
+impl Assembled {
+    /// Lets the recordings begin where they did in another model; states that it did not have begin at their own start.
+    pub fn begin_like(&mut self, other: &Setting, train: &[Recording]) {
+        fn names(plan: &Plan) -> impl Iterator<Item = &str> {
+            plan.state_variables().map(|v| plan.system.dae.variables[v.index()].name.as_str())
+        }
+        let start = |(r, known): (&Recording, &Vec<f64>)| {
+            let u: Vec<f64> = r.inputs.iter().map(|i| i[0]).collect();
+            let mut start = Local::start(self.plan.clone(), r.times[0], &self.theta, &u).ok()?.state();
+            let known: BTreeMap<&str, f64> = names(&other.plan).zip(known.iter().copied()).collect();
+            let own = start.iter_mut().zip(names(&self.plan));
+            own.for_each(|(x, name)| *x = known.get(name).copied().unwrap_or(*x));
+            Some(start)
+        };
+        let starts: Option<Vec<Vec<f64>>> = train.iter().zip(&other.starts).map(start).collect();
+        self.starts = starts.filter(|s| s.len() == train.len()).unwrap_or_default();
     }
 }
 

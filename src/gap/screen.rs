@@ -224,6 +224,7 @@ impl<'a> Joint<'a> {
                 common.push(Prior { parameter: place, ..prior.clone() });
             }
         }
+        assembled.begin_like(&base.setting, &problem.train);
         let mut columns: Vec<usize> = common.iter().map(|p| p.parameter).collect();
         let mut entries = Vec::new();
         for (places, c) in assembled.attached[accepted.len()..].iter().zip(chosen) {

@@ -3,7 +3,7 @@
 use super::super::data::Recording;
 use super::super::filter::Setting;
 use super::super::held::{self, Gap};
-use super::super::hypotheses::{Hypothesis, Place};
+use super::super::hypotheses::{Hypothesis, Place, Site};
 use super::super::locate::Located;
 use super::super::problem::{Chosen, Problem, Tolerance};
 use super::super::recording::Gross;
@@ -38,7 +38,11 @@ impl Conclusion<'_> {
         let closed = measurable.then(|| 1.0 - e.total / n.total);
         let by_effects = (measurable && t.total > 0.0).then(|| 1.0 - e.total / t.total);
         let share = measurable.then(|| e.total / n.total);
-        let place = s.left.first().filter(|l| l.evidence > LOCATED && share.is_none_or(|s| s > 0.1));
+        // a slow error of one sensor is a disturbance whose colour is another: what has a name would have been named
+        let physical =
+            |l: &&Located| !matches!(problem.disturbances[l.disturbance].attachments[0].site, Site::Sensor(_));
+        let located = s.left.iter().find(physical);
+        let place = located.filter(|l| l.evidence > LOCATED && share.is_none_or(|s| s > 0.1));
         // what several times the noise leaves open is something, even where no place stands out
         let noise = relative(&s.last.setting.noise, &problem.full_scale);
         let plain = share.is_some_and(|share| share > 0.1) && e.total > PLAIN * noise;

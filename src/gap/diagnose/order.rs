@@ -16,20 +16,25 @@ use rayon::prelude::*;
 const SMALL: f64 = 0.03;
 const FAR: f64 = 100.0;
 /// Samples of the first recording with which it is tried.
-const SAMPLES: usize = 1500;
+const SAMPLES: usize = 1000;
+/// Samples after which so many more are looked at: where most steps have to be cut, the model is too stiff.
+const LOOK: usize = 12;
 /// Effects at most that are refined, and the gain that each must promise on the whole recordings, nats.
 const MOST: usize = 3;
 const PROMISING: f64 = 10.0;
 /// Gains of one effect that differ by this part of them are the same.
 const SAME: f64 = 1e-6;
+/// Factor by which the linear model may lead away from where it was tried.
+const REACH: f64 = 10.0;
 /// Part of its usual size that an effect has at least: the model becomes too stiff on the way to its off value.
 const LEAST: f64 = 1e-3;
 
 impl Search {
-    /// The best effects that change the order, with what each promises.
-    pub(super) fn reordering(&self, problem: &Problem<'_>) -> Vec<Candidate> {
+    /// The best effects that change the order, with what each promises. Those that the filter cannot follow, or that are far
+    /// worse than none, are not tried again.
+    pub(super) fn reordering(&mut self, problem: &Problem<'_>) -> Vec<Candidate> {
         let Some(before) = self.beginning(problem, &[]) else { return Vec::new() };
-        let taken = |i: usize| self.accepted.iter().any(|a| a.chosen.hypothesis == i);
+        let taken = |i: usize| self.accepted.iter().any(|a| a.chosen.hypothesis == i) || self.unfit.contains(&i);
         let open = |i: &usize| {
             let h = &problem.hypotheses[*i];
             h.changes_order && !h.is_shape() && h.sharing == Sharing::Single && !taken(*i)
@@ -42,12 +47,16 @@ impl Search {
             let h = &problem.hypotheses[i];
             let off = screen::variants(h, i).into_iter().next()?;
             let at = |part: f64| self.beginning(problem, &[(h, started(h, off.clone(), part))]);
-            let whole = at(1.0).filter(|c| c.gain > before.gain - FAR);
-            let mut candidate = whole.or_else(|| at(SMALL))?;
+            let mut candidate = at(1.0)?;
+            if candidate.gain < before.gain - FAR {
+                candidate = at(SMALL)?;
+            }
             candidate.gain = (candidate.gain - before.gain) * scale;
-            (candidate.gain > PROMISING).then_some(candidate)
+            (candidate.gain > -FAR * scale).then_some(candidate)
         };
-        let mut found: Vec<Candidate> = open.into_par_iter().filter_map(tried).collect();
+        let tried: Vec<(usize, Option<Candidate>)> = open.into_par_iter().map(|i| (i, tried(i))).collect();
+        self.unfit.extend(tried.iter().filter(|t| t.1.is_none()).map(|t| t.0));
+        let mut found: Vec<Candidate> = tried.into_iter().filter_map(|t| t.1).filter(|c| c.gain > PROMISING).collect();
         found.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         // both ends of a massless element are the same place
         found.dedup_by(|a, b| b.gain - a.gain < SAME * b.gain && effect(a) == effect(b));
@@ -56,7 +65,7 @@ impl Search {
     }
 
     /// What the accepted effects and perhaps one more promise on the beginning of the first recording after one iteration,
-    /// with the values of the last one.
+    /// with the values of the last one. `None` where the filter cannot follow.
     fn beginning(&self, problem: &Problem<'_>, further: &[(&Hypothesis, Chosen)]) -> Option<Candidate> {
         let mut all = self.accepted.clone();
         for (h, chosen) in further {
@@ -66,7 +75,12 @@ impl Search {
         let (model, mut priors) = ready(problem, &self.last, &all)?;
         let columns = priors.iter().map(|p| p.parameter).collect();
         let setting = model.setting(&self.last.setting.sources, &self.last.setting.noise, columns);
-        let pass = fit::passes(&setting, &problem.train[..1], SAMPLES, false)?.pop()?;
+        let samples = |samples| fit::passes(&setting, &problem.train[..1], samples, false)?.pop();
+        let stiff = samples(2 * LOOK)?.cut[LOOK..].iter().filter(|cut| **cut).count();
+        if stiff > LOOK / 2 {
+            return None;
+        }
+        let pass = samples(SAMPLES)?;
         let share = self.last.search_share();
         let gram = pass.gram * share;
         let means = |p: &Prior| p.mean - setting.theta[p.parameter];
@@ -84,9 +98,16 @@ impl Search {
         let sigmas: Vec<f64> = priors[..count + own].iter().map(|p| p.sigma).collect();
         let means: Vec<f64> = priors[..count + own].iter().map(means).collect();
         let found = evidence::explain(&gram, &set, &means, &sigmas)?;
-        let gain = share * pass.likelihood + found.evidence;
+        let mut gain = share * pass.likelihood + found.evidence;
         let priors = priors.split_off(count);
-        let chosen = further.first().map(|(_, c)| c.clone()).unwrap_or(Chosen { hypothesis: 0, values: Vec::new() });
+        let mut chosen = further.first().map_or(Chosen { hypothesis: 0, values: Vec::new() }, |(_, c)| c.clone());
+        for ((value, change), prior) in chosen.values.iter_mut().zip(found.estimate.iter().skip(count)).zip(&priors) {
+            if *value + change < prior.min {
+                // less than nothing would be better
+                gain = f64::MIN;
+            }
+            *value = (*value + change).clamp(*value / REACH, *value * REACH);
+        }
         gain.is_finite().then_some(Candidate { chosen, gain, priors, visible: 0.0 })
     }
 }

@@ -278,6 +278,7 @@ pub(super) fn ready(problem: &Problem<'_>, from: &Fit, accepted: &[Accepted]) ->
     let chosen: Vec<Chosen> = accepted.iter().map(|a| a.chosen.clone()).collect();
     let mut assembled = problem.assemble(&chosen, &problem.node_sources()).ok()?;
     locate::carry(from, accepted, &mut assembled);
+    assembled.begin_like(&from.setting, &problem.train);
     let mut priors = fit::tolerance_priors(problem);
     for (places, a) in assembled.attached.iter().zip(accepted) {
         for (&parameter, prior) in places.iter().zip(&a.priors) {
