@@ -198,9 +198,9 @@ impl Problem<'_> {
     pub fn explore(&mut self) {
         let Ok(model) = self.assemble(&[], &[]) else { return };
         let variables = &model.plan.system.dae.variables;
-        let states = model.plan.state_variables().enumerate();
+        let states = model.plan.state_variables();
         let signals: Vec<Signal> = states
-            .filter_map(|(_, v)| of_plant(&variables[v.index()].name))
+            .filter_map(|v| of_plant(&variables[v.index()].name))
             .enumerate()
             .map(|(i, name)| Signal { name: format!("state_{i}"), variable: name.to_string(), scale: 1.0 })
             .collect();

@@ -3,7 +3,7 @@
 //! itself at a part of its usual size, on the beginning of the first recording.
 
 use super::super::evidence;
-use super::super::fit::{self, Fit, Prior};
+use super::super::fit::{self, Prior};
 use super::super::hypotheses::{Hypothesis, Sharing};
 use super::super::problem::{Chosen, Problem};
 use super::super::screen::{self, Accepted, Candidate};
