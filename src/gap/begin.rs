@@ -14,7 +14,7 @@ const SMALL: f64 = 1e-3;
 /// Log likelihood that another start must gain, nats.
 const BETTER: f64 = 0.1;
 
-/// The start of the `number`-th recording from `start`, which is left where nothing better is found.
+/// The start of a recording from `start`, which is left where nothing better is found.
 pub(super) fn state(
     setting: &Setting,
     recording: &Recording,

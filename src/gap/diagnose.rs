@@ -33,8 +33,6 @@ const BROKEN: f64 = 100.0;
 const SETTLING: usize = 5;
 /// Factor by which they grow in one of them.
 const GROWTH: f64 = 30.0;
-/// Rounds at most in which the sources find their correlation times.
-const COLOURING: usize = 2;
 /// Gain that an effect must have to be accepted, nats.
 pub(super) const ACCEPTED: f64 = 8.0;
 /// Vuong statistic that it must have.
@@ -203,25 +201,7 @@ fn anchor(problem: &Problem<'_>, noise: &[f64]) -> Result<(Fit, Assembled), Trou
     let share = fits.iter().map(|f| f.share).fold(0.0, f64::max);
     let best = fits.into_iter().map(|f| f.at_share(share)).max_by(|a, b| a.evidence.total_cmp(&b.evidence));
     let diverges = || Trouble::Diverges(0.0, "the model has no values on the way".into());
-    let best = fit::polish(best.ok_or_else(diverges)?, &problem.train, None);
-    Ok((coloured(problem, best), model))
-}
-
-/// The same with sources as slow as the recordings say.
-fn coloured(problem: &Problem<'_>, mut best: Fit) -> Fit {
-    for _ in 0..COLOURING {
-        let mut setting = best.setting.clone();
-        if fit::colour(&mut setting, &problem.train) != Some(true) {
-            break;
-        }
-        let fit = fit::adjust(&mut setting, &problem.train)
-            .and_then(|()| fit::fit(setting, &best.priors, &problem.train, Some(best.share), fit::ITERATIONS));
-        match fit {
-            Some(fit) if fit.evidence > best.evidence => best = fit::polish(fit, &problem.train, None),
-            _ => break,
-        }
-    }
-    best
+    Ok((fit::polish(best.ok_or_else(diverges)?, &problem.train, None), model))
 }
 
 /// Levels and parameters from those in the setting.

@@ -21,9 +21,10 @@ pub const BLOCKS: usize = 16;
 
 /// Parts into which a step is cut where the model bends within it.
 const PARTS: usize = 8;
-/// How far states may be from the model's start when a recording begins: measured ones by their size, the others by this
-/// part of it or as far as they usually move, absolute temperatures by so much.
+/// How far states may be from the model's start when a recording begins: measured ones by their size, the others by these
+/// parts of it or of how far they usually move, absolute temperatures by so much.
 const START_UNMEASURED: f64 = 0.2;
+const START_TRAVEL: f64 = 0.5;
 const START_KELVIN: f64 = 10.0;
 /// A model counts as linear over a step when its curvature moves no state by more than this part of the state's
 /// standard deviation, or by [`LEAST_BEND`] of its size.
@@ -244,7 +245,7 @@ impl<'a> Filter<'a> {
             let deviation = match local.plan().state_unit(x) {
                 Some("K") => START_KELVIN / scale[i],
                 _ if measured => 1.0,
-                _ => START_UNMEASURED.max(setting.travel[x] / scale[i]),
+                _ => START_UNMEASURED.max(START_TRAVEL * setting.travel[x] / scale[i]),
             };
             p[(i, i)] = deviation * deviation;
         }

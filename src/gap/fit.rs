@@ -130,19 +130,6 @@ pub fn adjust_slowly(setting: &mut Setting, train: &[Recording], rounds: usize, 
     Some(())
 }
 
-/// Gives the sources correlation times of their own: disturbances have colours that nobody knows. True where one is
-/// another now.
-pub fn colour(setting: &mut Setting, train: &[Recording]) -> Option<bool> {
-    let columns = std::mem::take(&mut setting.columns);
-    let found = passes(setting, train, level_samples(train), true)?;
-    let tapes: Vec<&[filter::Step]> = found.iter().map(|p| &p.tape[..]).collect();
-    let coloured = levels::coloured(setting, &tapes);
-    let other = setting.sources.iter().zip(&coloured).any(|(s, c)| s.tau != c.tau);
-    setting.sources = coloured;
-    setting.columns = columns;
-    Some(other)
-}
-
 /// What the sources can take is not noise.
 fn adjust_noise(setting: &mut Setting, tapes: &[&[filter::Step]], factors: &[f64]) {
     for (i, noise) in levels::noise(setting, tapes, factors).into_iter().enumerate() {
