@@ -142,7 +142,8 @@ impl Simulation {
     }
 
     /// The value that a parameter or constant will have in the next run, in its unit; those that follow others follow
-    /// values given by [`Simulation::set`], those found at the start stand at their guess. Booleans are 0 or 1, enumerations the number of their literal.
+    /// values given by [`Simulation::set`], those found at the start stand at their guess. Booleans are 0 or 1,
+    /// enumerations the number of their literal.
     ///
     /// # Errors
     /// `E023` when there is no such parameter.

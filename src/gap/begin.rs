@@ -3,8 +3,7 @@
 //! first samples are gone through again from where they lead (Gauss-Newton on the state before the first sample).
 
 use super::data::Recording;
-use super::filter::{Filter, Setting};
-use crate::analysis::local::Local;
+use super::filter::{self, Filter, Setting};
 use nalgebra::{DMatrix, DVector};
 
 /// Times at most that the first samples are gone through.
@@ -22,15 +21,11 @@ pub(super) fn state(
     hidden: &[usize],
     reads: &DMatrix<bool>,
 ) -> Vec<f64> {
-    let mut quiet = setting.clone();
-    quiet.columns.clear();
-    quiet.groups.clear();
-    quiet.cuts.clear();
-    quiet.starts.clear();
+    let setting = &Setting { common: start.len(), ..setting.alone() };
     let (mut best, mut likelihood) = (start.to_vec(), f64::NEG_INFINITY);
     let mut tried = best.clone();
     for _ in 0..ROUNDS {
-        let Some(found) = gone_through(&mut quiet, recording, &tried, hidden, reads) else { break };
+        let Some(found) = gone_through(setting, recording, &tried, hidden, reads) else { break };
         if found.likelihood < likelihood + BETTER {
             break;
         }
@@ -53,21 +48,14 @@ struct Beginning {
 
 /// Runs the filter over the samples that only estimate the state.
 fn gone_through(
-    setting: &mut Setting,
+    setting: &Setting,
     recording: &Recording,
     start: &[f64],
     hidden: &[usize],
     reads: &DMatrix<bool>,
 ) -> Option<Beginning> {
     let samples = recording.settled();
-    let mut u = vec![0.0; recording.inputs.len()];
-    recording.input(0, &mut u);
-    let t0 = recording.times[0];
-    let mut theta = setting.theta.clone();
-    setting.sources.iter().for_each(|s| theta[s.parameter] = 0.0);
-    let mut local = Local::start(setting.plan.clone(), t0, &theta, &u).ok()?;
-    local.linearize(t0, start, &theta, &u).ok()?;
-    setting.common = start.len();
+    let (local, theta) = filter::at_first(setting, recording, Some(start)).ok()?;
     let mut filter = Filter::new(setting, local, theta, start.to_vec(), recording, hidden, reads);
     let prior = filter.follow_start();
     for k in 0..samples {

@@ -44,13 +44,38 @@ impl Recording {
     pub fn input(&self, k: usize, u: &mut [f64]) {
         u.iter_mut().zip(&self.inputs).for_each(|(u, samples)| *u = samples[k]);
     }
+}
 
-    /// How fast inputs change in the interval after sample `k`, per second; held ones do not.
-    pub fn slope(&self, k: usize, slope: &mut [f64]) {
-        let next = (k + 1).min(self.len() - 1);
-        let h = self.times[next] - self.times[k];
-        for ((slope, samples), &linear) in slope.iter_mut().zip(&self.inputs).zip(&self.linear) {
+/// Inputs of the interval after a sample.
+#[derive(Clone, Debug)]
+pub struct Inputs {
+    /// At the sample.
+    pub from: Vec<f64>,
+    /// How fast they change, per second; held ones do not.
+    pub slope: Vec<f64>,
+}
+
+impl Inputs {
+    /// Those of the first interval.
+    pub fn new(recording: &Recording) -> Self {
+        let count = recording.inputs.len();
+        let mut inputs = Inputs { from: vec![0.0; count], slope: vec![0.0; count] };
+        inputs.enter(recording, 0);
+        inputs
+    }
+
+    /// Goes to the interval after sample `k`.
+    pub fn enter(&mut self, recording: &Recording, k: usize) {
+        recording.input(k, &mut self.from);
+        let next = (k + 1).min(recording.len() - 1);
+        let h = recording.times[next] - recording.times[k];
+        for ((slope, samples), &linear) in self.slope.iter_mut().zip(&recording.inputs).zip(&recording.linear) {
             *slope = if linear && h > 0.0 { (samples[next] - samples[k]) / h } else { 0.0 };
         }
+    }
+
+    /// Inputs so long after the sample, s.
+    pub fn at(&self, after: f64, u: &mut [f64]) {
+        u.iter_mut().zip(&self.from).zip(&self.slope).for_each(|((u, from), slope)| *u = from + slope * after);
     }
 }

@@ -6,46 +6,29 @@
 //! States, covariances and columns are in units of the states' sizes. States that nothing measured depends on
 //! (those of effects at their off value) are carried along without covariance.
 
+pub mod predict;
+
 use super::begin;
-use super::data::Recording;
-use super::held;
+use super::data::{Inputs, Recording};
 use super::passive::{Passive, passive_states};
-use super::step::{Exponential, multiply};
+use super::step::Exponential;
 use crate::analysis::local::{Local, LocalError, Plan};
 use nalgebra::{DMatrix, DVector};
-use std::ops::AddAssign;
 use std::sync::Arc;
 
 /// Stretches into which a recording is cut for statistics over blocks.
 pub const BLOCKS: usize = 16;
 
-/// Parts into which a step is cut where the model bends within it.
-const PARTS: usize = 8;
 /// How far states may be from the model's start when a recording begins: measured ones by their size, the others by these
 /// parts of it or of how far they usually move, absolute temperatures by so much.
 const START_UNMEASURED: f64 = 0.2;
 const START_TRAVEL: f64 = 0.5;
 const START_KELVIN: f64 = 10.0;
-/// A model counts as linear over a step when its curvature moves no state by more than this part of the state's
-/// standard deviation, or by [`LEAST_BEND`] of its size.
-const BEND: f64 = 0.2;
-const LEAST_BEND: f64 = 1e-4;
-/// A part is halved when the model bends so many times more than that within it, and so often at most; more often only
-/// where the model has no values at its end.
-const FAR: f64 = 5.0;
-const FINEST: u32 = 2;
-const DEEPEST: u32 = 5;
-/// Parts for each sample on the average, beyond which no part is halved any more.
-const MOST_PARTS: usize = 8;
 /// Iterations of the first update at most, and the part of the states' sizes below which they have settled.
 const FIRST: usize = 10;
 const SETTLED: f64 = 1e-6;
 /// A variance may be below zero by rounding, by so much of the noise's.
 const ROUNDING: f64 = 1e-6;
-/// A corrected state counts as out of the model's reach when its rates differ by so many sizes of the states over a step
-/// from what was expected.
-const STRANGE: f64 = 10.0;
-
 /// What drives the model beside its inputs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Source {
@@ -91,6 +74,12 @@ pub struct Setting {
 pub const SILENT: f64 = 1e-6;
 
 impl Setting {
+    /// The same without columns and without what is known of single recordings.
+    pub fn alone(&self) -> Setting {
+        let (columns, groups, cuts, starts) = Default::default();
+        Setting { columns, common: 0, groups, cuts, starts, ..self.clone() }
+    }
+
     /// The sources with their levels times a factor.
     pub fn sources_times(&self, factor: f64) -> Vec<Source> {
         self.sources.iter().map(|s| Source { level: s.level * factor, ..s.clone() }).collect()
@@ -148,16 +137,10 @@ pub fn run(
     samples: usize,
     with_tape: bool,
 ) -> Result<Pass, (f64, LocalError)> {
-    let mut u = vec![0.0; recording.inputs.len()];
-    recording.input(0, &mut u);
-    let t0 = recording.times[0];
-    let mut theta = setting.theta.clone();
-    setting.sources.iter().for_each(|s| theta[s.parameter] = 0.0);
-    let mut local = Local::start(setting.plan.clone(), t0, &theta, &u).map_err(|e| (t0, e))?;
+    let (local, theta) = at_first(setting, recording, None).map_err(|e| (recording.times[0], e))?;
     let start = local.state();
-    local.linearize(t0, &start, &theta, &u).map_err(|e| (t0, e))?;
     // looked at by a model of its own: where there is no value, the search for one leaves traces
-    let mut scout = Local::start(setting.plan.clone(), t0, &theta, &u).map_err(|e| (t0, e))?;
+    let (mut scout, _) = at_first(setting, recording, None).map_err(|e| (recording.times[0], e))?;
     let (hidden, reads) = passive_states(&mut scout, recording, &theta, &start, &setting.sizes);
     let start = match setting.starts.get(number) {
         Some(known) => known.clone(),
@@ -172,6 +155,23 @@ pub fn run(
     Ok(filter.finish())
 }
 
+/// The model at the first sample of a recording, linearised at its own start or at another state, and the values of all
+/// parameters, with silent sources.
+pub(super) fn at_first(
+    setting: &Setting,
+    recording: &Recording,
+    state: Option<&[f64]>,
+) -> Result<(Local, Vec<f64>), LocalError> {
+    let u = Inputs::new(recording).from;
+    let t0 = recording.times[0];
+    let mut theta = setting.theta.clone();
+    setting.sources.iter().for_each(|s| theta[s.parameter] = 0.0);
+    let mut local = Local::start(setting.plan.clone(), t0, &theta, &u)?;
+    let own = local.state();
+    local.linearize(t0, state.unwrap_or(&own), &theta, &u)?;
+    Ok((local, theta))
+}
+
 /// Signals that have a sample, what was not expected of them, and how they depend on the states.
 type Observed = (Vec<usize>, DVector<f64>, DMatrix<f64>);
 
@@ -184,9 +184,8 @@ pub(super) struct Filter<'a> {
     local: Local,
     /// Parameters with the sources' present values.
     theta: Vec<f64>,
-    u: Vec<f64>,
-    /// How fast the inputs change, and what they are within the step.
-    slope: Vec<f64>,
+    /// Inputs of the interval, and what they are within it.
+    inputs: Inputs,
     between: Vec<f64>,
     /// States that are filtered, and states carried along.
     active: Vec<usize>,
@@ -268,8 +267,7 @@ impl<'a> Filter<'a> {
             settled: recording.settled(),
             local,
             theta,
-            u: vec![0.0; recording.inputs.len()],
-            slope: vec![0.0; recording.inputs.len()],
+            inputs: Inputs::new(recording),
             between: vec![0.0; recording.inputs.len()],
             active,
             passive,
@@ -326,13 +324,13 @@ impl<'a> Filter<'a> {
     pub(super) fn sample(&mut self, k: usize, samples: usize, with_tape: bool) -> Result<(), LocalError> {
         let recording = self.recording;
         let t = recording.times[k];
-        recording.input(k, &mut self.u);
+        self.inputs.enter(recording, k);
         self.load();
-        if self.local.linearize(t, &self.x, &self.theta, &self.u).is_err() {
+        if self.local.linearize(t, &self.x, &self.theta, &self.inputs.from).is_err() {
             // with other inputs there may be no values there
             self.z.copy_from(&self.safe);
             self.load();
-            self.local.linearize(t, &self.x, &self.theta, &self.u)?;
+            self.local.linearize(t, &self.x, &self.theta, &self.inputs.from)?;
         }
         let before = self.z.clone();
         self.safe.copy_from(&before);
@@ -346,7 +344,6 @@ impl<'a> Filter<'a> {
             return Ok(());
         }
         let h = recording.times[k + 1] - t;
-        recording.slope(k, &mut self.slope);
         self.predict(k, &mut correction, h);
         if with_tape {
             let transition = self.work.total.clone();
@@ -373,11 +370,11 @@ impl<'a> Filter<'a> {
             let Some(next) = self.estimate(&prior, &point) else { break };
             self.z.copy_from(&next);
             self.load();
-            if self.local.linearize(t, &self.x, &self.theta, &self.u).is_err() {
+            if self.local.linearize(t, &self.x, &self.theta, &self.inputs.from).is_err() {
                 self.z.copy_from(&point);
                 self.load();
                 // it had values there before
-                let _ = self.local.linearize(t, &self.x, &self.theta, &self.u);
+                let _ = self.local.linearize(t, &self.x, &self.theta, &self.inputs.from);
                 break;
             }
             let moved = (&next - &point).amax();
@@ -464,184 +461,6 @@ impl<'a> Filter<'a> {
         Ok((here, innovation, c))
     }
 
-    /// From the filtered state at sample `k` to the predicted one at the next: one step where the model is nearly linear
-    /// over it, else several. The transition over the whole interval is kept in `work.total`.
-    fn predict(&mut self, k: usize, correction: &mut DVector<f64>, h: f64) {
-        let t = self.recording.times[k];
-        let start = self.z.clone();
-        self.fill();
-        // x' at the filtered state, to first order from the predicted one
-        let mut rate = &self.work.a * &*correction;
-        for (i, &xi) in self.active.iter().enumerate() {
-            rate[i] += self.local.rates[xi] / self.scale[i];
-        }
-        self.source_rates(correction, &mut rate);
-        let n = self.active.len();
-        let all = held::ramp(&self.local.linear.b, &self.slope);
-        let ramp = DVector::from_fn(n, |i, _| all[self.active[i]] / self.scale[i]);
-        self.work.exponential.compute(&self.work.a, h, Some(&ramp));
-        let mut change = &self.work.exponential.integral * &rate;
-        change.rows_mut(0, n).add_assign(&self.work.exponential.ramped);
-        self.z += &change;
-        // with the inputs in the middle of the step from here on
-        rate.rows_mut(0, n).axpy(0.5 * h, &ramp, 1.0);
-        self.inputs_at(0.5 * h);
-        let finite = change.iter().all(|v| v.is_finite());
-        let along = if finite { &change + 2.0 * &*correction } else { 2.0 * &*correction };
-        let moved: Vec<f64> = (0..self.active.len()).map(|i| along[i] * self.scale[i]).collect();
-        self.passive.step(&self.local, &self.active, &moved, &mut self.x, h);
-        let nearly_linear = match self.setting.cuts.get(self.number) {
-            Some(cut) => !cut.get(k).copied().unwrap_or(false),
-            None => self.bend(t + h, &rate, &change, h, 1.0),
-        };
-        let nearly_linear = nearly_linear && finite;
-        self.pass.cut[k] = !nearly_linear;
-        if nearly_linear {
-            self.propagate(h);
-            self.work.total.copy_from(&self.work.exponential.transition);
-            return;
-        }
-        self.z = start;
-        self.temper(t, &rate, correction, h);
-        self.work.total.fill_with_identity();
-        let part = h / PARTS as f64;
-        (0..PARTS).for_each(|i| self.advance(t, i as f64 * part, part, 0));
-    }
-
-    /// Inputs so long after the sample.
-    fn inputs_at(&mut self, after: f64) {
-        let inputs = self.between.iter_mut().zip(&self.u).zip(&self.slope);
-        inputs.for_each(|((u, from), slope)| *u = from + slope * after);
-    }
-
-    /// Takes back part of a correction that leads to where the model is nothing like what it was linearised as (an
-    /// unmeasured pressure below zero, say).
-    fn temper(&mut self, t: f64, expected: &DVector<f64>, correction: &mut DVector<f64>, h: f64) {
-        let predicted = &self.z - &*correction;
-        for halving in 0..=DEEPEST {
-            self.load();
-            let known = self.local.linearize(t, &self.x, &self.theta, &self.between).is_ok();
-            let strange = |(i, &xi): (usize, &usize)| {
-                let rate = self.local.rates[xi] / self.scale[i];
-                let beyond = h * (rate - expected[i]).abs() > STRANGE * (1.0 + h * expected[i].abs());
-                beyond || !rate.is_finite()
-            };
-            if known && !self.active.iter().enumerate().any(strange) {
-                return;
-            }
-            *correction *= if halving + 1 < DEEPEST { 0.5 } else { 0.0 };
-            self.z = &predicted + &*correction;
-        }
-    }
-
-    /// A part of a cut step that begins `after` the sample, linearised there; halved where the model has no value at its end, or one far from
-    /// what the linear model says.
-    fn advance(&mut self, sampled: f64, after: f64, h: f64, depth: u32) {
-        let (start, t) = (self.z.clone(), sampled + after);
-        self.inputs_at(after + 0.5 * h);
-        if !self.possible(t) {
-            // the state waits at the edge of where the model has values
-            return;
-        }
-        self.fill();
-        let mut rate = DVector::zeros(self.z.len());
-        for (i, &xi) in self.active.iter().enumerate() {
-            rate[i] = self.local.rates[xi] / self.scale[i];
-        }
-        self.source_rates(&DVector::zeros(self.z.len()), &mut rate);
-        self.work.exponential.compute(&self.work.a, h, None);
-        let change = &self.work.exponential.integral * &rate;
-        self.z += &change;
-        let possible = self.possible(t + h);
-        self.parts += 1;
-        let deepest = if self.parts > MOST_PARTS * self.recording.len() { 0 } else { DEEPEST };
-        if depth < deepest && (!possible || depth < FINEST && !self.bend(t + h, &rate, &change, h, FAR)) {
-            self.z = start;
-            self.advance(sampled, after, 0.5 * h, depth + 1);
-            self.advance(sampled, after + 0.5 * h, 0.5 * h, depth + 1);
-            return;
-        }
-        if !possible {
-            self.z = start;
-            return;
-        }
-        self.propagate(h);
-        self.work.total = &self.work.exponential.transition * &self.work.total;
-    }
-
-    /// Whether the model has values and derivatives at the present state.
-    fn possible(&mut self, t: f64) -> bool {
-        self.load();
-        self.local.linearize(t, &self.x, &self.theta, &self.between).is_ok()
-    }
-
-    /// Whether x' at the end of a step is what the linear model says, within so many times the uncertainty of the state.
-    fn bend(&mut self, t: f64, rate: &DVector<f64>, change: &DVector<f64>, h: f64, times: f64) -> bool {
-        let expected = rate + &self.work.a * change;
-        self.load();
-        if self.local.evaluate(t, &self.x, &self.theta, &self.between).is_err() {
-            return false;
-        }
-        self.active.iter().enumerate().all(|(i, &xi)| {
-            let found = self.local.rates[xi] / self.scale[i];
-            let allowed = (BEND * self.p[(i, i)].max(0.0).sqrt()).max(LEAST_BEND);
-            0.5 * h * (found - expected[i]).abs() <= times * allowed
-        })
-    }
-
-    fn source_rates(&self, correction: &DVector<f64>, rate: &mut DVector<f64>) {
-        let n = self.active.len();
-        for (j, source) in self.setting.sources.iter().enumerate() {
-            rate[n + j] -= (self.z[n + j] - correction[n + j]) / source.tau;
-        }
-    }
-
-    /// The scaled matrices of the last linearisation.
-    fn fill(&mut self) {
-        let n = self.active.len();
-        let linear = &self.local.linear;
-        let Work { a, b, .. } = &mut self.work;
-        a.fill(0.0);
-        for (j, &xj) in self.active.iter().enumerate() {
-            for (i, &xi) in self.active.iter().enumerate() {
-                a[(i, j)] = linear.a[(xi, xj)] * self.scale[j] / self.scale[i];
-            }
-        }
-        for (j, source) in self.setting.sources.iter().enumerate() {
-            for (i, &xi) in self.active.iter().enumerate() {
-                a[(i, n + j)] = linear.b[(xi, source.parameter)] * self.scale[n + j] / self.scale[i];
-            }
-            a[(n + j, n + j)] = -1.0 / source.tau;
-        }
-        for (j, &parameter) in self.setting.columns.iter().enumerate() {
-            for (i, &xi) in self.active.iter().enumerate() {
-                b[(j, i)] = linear.b[(xi, parameter)] / self.scale[i];
-            }
-        }
-    }
-
-    /// Covariance and columns over the step that the exponential holds.
-    fn propagate(&mut self, h: f64) {
-        let n = self.active.len();
-        let Work { b, exponential, next_p, next_s, transposed, .. } = &mut self.work;
-        let m = &exponential.transition;
-        exponential.integral.transpose_to(transposed);
-        multiply(next_s, b, transposed, 0.0);
-        m.transpose_to(transposed);
-        multiply(next_s, &self.s, transposed, 1.0);
-        std::mem::swap(&mut self.s, next_s);
-        multiply(next_p, m, &self.p, 0.0);
-        multiply(&mut self.p, next_p, transposed, 0.0);
-        // noise of the sources by the trapezoidal rule over the step
-        for (j, source) in self.setting.sources.iter().enumerate() {
-            let q = source_noise(source.tau, h);
-            let column = m.column(n + j);
-            self.p.ger(0.5 * q, &column, &column, 1.0);
-            self.p[(n + j, n + j)] += 0.5 * q;
-        }
-        symmetrize(&mut self.p);
-    }
-
     fn close_block(&mut self) {
         let width = self.s.nrows() + 1;
         let rows = DMatrix::from_row_slice(self.chunk.len() / width, width, &self.chunk);
@@ -678,21 +497,5 @@ impl<'a> Filter<'a> {
         self.load();
         self.pass.last = self.x;
         self.pass
-    }
-}
-
-/// Variance that a source of unit level gains over a step.
-pub fn source_noise(tau: f64, h: f64) -> f64 {
-    1.0 - (-2.0 * h / tau).exp()
-}
-
-/// Replaces a matrix by its symmetric part.
-pub fn symmetrize(p: &mut DMatrix<f64>) {
-    for j in 0..p.ncols() {
-        for i in 0..j {
-            let mean = 0.5 * (p[(i, j)] + p[(j, i)]);
-            p[(i, j)] = mean;
-            p[(j, i)] = mean;
-        }
     }
 }

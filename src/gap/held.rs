@@ -1,11 +1,11 @@
 //! How large the gap is: simulation from the inputs alone, signal by signal, in parts of the full scale.
 
-use super::data::Recording;
+use super::data::{Inputs, Recording};
 use super::filter::{self, Setting};
 use super::problem::Problem;
-use super::step::Exponential;
+use super::step::{self, Exponential};
 use crate::analysis::local::Local;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 use rayon::prelude::*;
 
 /// Residuals of one recording behind the window: samples by signals; NaN where nothing was measured.
@@ -49,13 +49,8 @@ impl Gap {
 /// `None` when the simulation does not reach the end.
 pub fn simulate(setting: &Setting, recording: &Recording) -> Option<Residuals> {
     let from = recording.settled();
-    let mut quiet = setting.clone();
+    let mut quiet = setting.alone();
     quiet.sources.clear();
-    quiet.columns.clear();
-    quiet.common = 0;
-    quiet.groups.clear();
-    quiet.cuts.clear();
-    quiet.starts.clear();
     let pass = filter::run(&quiet, recording, 0, from + 1, false).ok()?;
     let simulated = open_loop(&quiet, recording, from, pass.last)?;
     Some(Residuals { from, simulated })
@@ -78,8 +73,8 @@ fn open_loop(setting: &Setting, recording: &Recording, from: usize, state: Vec<f
     let n = state.len();
     let scale = DVector::from_column_slice(&setting.sizes);
     let mut x = state;
-    let inputs = Inputs { since: 0.0, from: u.clone(), slope: vec![0.0; u.len()] };
-    let mut stepper = Stepper { scale, exponential: Exponential::new(n, 0), inputs, u: u.clone(), theta };
+    let exponential = Exponential::new(n, 0);
+    let mut stepper = Stepper { scale, exponential, since: 0.0, inputs: Inputs::new(recording), u: u.clone(), theta };
     let mut simulated = vec![Vec::with_capacity(recording.len() - from); setting.noise.len()];
     for k in from..recording.len() {
         recording.input(k, &mut u);
@@ -89,9 +84,8 @@ fn open_loop(setting: &Setting, recording: &Recording, from: usize, state: Vec<f
         if k + 1 == recording.len() {
             break;
         }
-        stepper.inputs.since = t;
-        stepper.inputs.from.copy_from_slice(&u);
-        recording.slope(k, &mut stepper.inputs.slope);
+        stepper.since = t;
+        stepper.inputs.enter(recording, k);
         stepper.advance(&mut local, t, recording.times[k + 1] - t, &mut x, 0)?;
         if x.iter().any(|v| !v.is_finite()) {
             return None;
@@ -105,27 +99,13 @@ const DEEPEST: u32 = 6;
 /// The curvature within a step that is let pass, in parts of the states' sizes.
 const CURVATURE: f64 = 1e-5;
 
-/// Inputs of an interval: what they are at its beginning, and how fast they change.
-struct Inputs {
-    since: f64,
-    from: Vec<f64>,
-    slope: Vec<f64>,
-}
-
-impl Inputs {
-    fn at(&self, t: f64, u: &mut [f64]) {
-        u.iter_mut()
-            .zip(&self.from)
-            .zip(&self.slope)
-            .for_each(|((u, from), slope)| *u = from + slope * (t - self.since));
-    }
-}
-
 /// Exponential steps (Rosenbrock-Euler; Hochbruck, Ostermann, Acta Numerica 2010, 2.4), halved until the model is nearly
 /// linear over each.
 struct Stepper<'a> {
     scale: DVector<f64>,
     exponential: Exponential,
+    /// When the last sample was, and the inputs after it.
+    since: f64,
     inputs: Inputs,
     u: Vec<f64>,
     theta: &'a [f64],
@@ -134,7 +114,7 @@ struct Stepper<'a> {
 impl Stepper<'_> {
     fn advance(&mut self, local: &mut Local, t: f64, h: f64, x: &mut Vec<f64>, depth: u32) -> Option<()> {
         let n = x.len();
-        self.inputs.at(t, &mut self.u);
+        self.inputs.at(t - self.since, &mut self.u);
         local.linearize(t, x, self.theta, &self.u).ok()?;
         let mut a = local.linear.a.clone();
         for j in 0..n {
@@ -142,13 +122,13 @@ impl Stepper<'_> {
                 a[(i, j)] *= self.scale[j] / self.scale[i];
             }
         }
-        let ramp = ramp(&local.linear.b, &self.inputs.slope).component_div(&self.scale);
+        let ramp = step::ramp(&local.linear.b, &self.inputs.slope).component_div(&self.scale);
         self.exponential.compute(&a, h, Some(&ramp));
         let rate = local.rate_vector().component_div(&self.scale);
         let change = &self.exponential.integral * &rate + &self.exponential.ramped;
         let next: Vec<f64> = (0..n).map(|i| x[i] + change[i] * self.scale[i]).collect();
         let expected = rate + a * change + ramp * h;
-        self.inputs.at(t + h, &mut self.u);
+        self.inputs.at(t + h - self.since, &mut self.u);
         let found = local.evaluate(t + h, &next, self.theta, &self.u);
         let bend = (0..n).map(|i| 0.5 * h * (local.rates[i] / self.scale[i] - expected[i]).abs()).fold(0.0, f64::max);
         if depth < DEEPEST && (found.is_err() || bend > CURVATURE) {
@@ -158,11 +138,6 @@ impl Stepper<'_> {
         *x = next;
         Some(())
     }
-}
-
-/// How fast x' changes because inputs do; their columns are the last ones of d x' / d (theta, u).
-pub(super) fn ramp(b: &DMatrix<f64>, slope: &[f64]) -> DVector<f64> {
-    b.columns(b.ncols() - slope.len(), slope.len()) * DVector::from_column_slice(slope)
 }
 
 /// Simulates all recordings.

@@ -1,6 +1,7 @@
 //! How strong the sources and the sensors' noise are: type-II likelihood on linearised steps, without the model.
 
-use super::filter::{Setting, Step, source_noise, symmetrize};
+use super::filter::predict::{source_noise, symmetrize};
+use super::filter::{Setting, Step};
 use super::step::multiply;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;

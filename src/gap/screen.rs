@@ -299,7 +299,7 @@ impl<'a> Joint<'a> {
         let mut visible = 0.0;
         for (column, c) in entry.columns.clone().zip(&h.coefficients) {
             let info = evidence::new_information(gram, column, base, sigmas);
-            prior_sigmas.push((blocks / info.max(1e-300)).sqrt().min(largest(c)));
+            prior_sigmas.push(deviation(c, info, blocks));
             visible += 0.5 * c.nominal * c.nominal * info;
         }
         let mut active: Vec<usize> = (0..prior_sigmas.len()).collect();
@@ -364,9 +364,10 @@ impl<'a> Joint<'a> {
     }
 }
 
-/// The prior deviation that a coefficient has at most.
-pub fn largest(c: &Coefficient) -> f64 {
-    c.nominal.abs().max(1e-300) * if c.relative { LARGEST_OF_RANGE } else { LARGEST }
+/// Deviation of a coefficient's prior when nothing else is known of it: what one block of samples would tell.
+pub fn deviation(c: &Coefficient, information: f64, blocks: f64) -> f64 {
+    let largest = c.nominal.abs().max(1e-300) * if c.relative { LARGEST_OF_RANGE } else { LARGEST };
+    (blocks / information.max(1e-300)).sqrt().min(largest)
 }
 
 /// Priors of an effect: of its coefficients with these deviations about their off values, then of its shapes.

@@ -66,6 +66,11 @@ fn add_band<const N: usize>(to: &mut [f64], a: &[f64], factors: &[f64], rows: us
     to[row..row + N].iter_mut().zip(sums).for_each(|(v, sum)| *v += sum);
 }
 
+/// How fast x' changes because inputs do; their columns are the last ones of d x' / d (theta, u).
+pub fn ramp(b: &DMatrix<f64>, slope: &[f64]) -> DVector<f64> {
+    b.columns(b.ncols() - slope.len(), slope.len()) * DVector::from_column_slice(slope)
+}
+
 /// Work space for systems of one size: the first states are coupled as they like, the last ones (sources) only decay,
 /// each by itself, and drive the first.
 #[derive(Clone, Debug)]
@@ -103,8 +108,8 @@ impl Exponential {
         }
     }
 
-    /// Computes transition and integral from A, and what a rate that grows by `ramp` in a second adds. A source counts with its mean over the step, an error of the order of (h/tau)(h A)/12 of
-    /// what it does to the states.
+    /// Computes transition and integral from A, and what a rate that grows by `ramp` in a second adds. A source counts
+    /// with its mean over the step, an error of the order of (h/tau)(h A)/12 of what it does to the states.
     pub fn compute(&mut self, a: &DMatrix<f64>, h: f64, ramp: Option<&DVector<f64>>) {
         let n = self.small.nrows();
         self.coupled(a, h, ramp);

@@ -10,10 +10,13 @@ pub fn push(out: &mut String, value: f64) {
     if value == 0.0 {
         return out.push('0');
     }
-    let mut digits = ryu::Buffer::new();
-    let text = digits.format(value);
-    // whole numbers have no decimals here
-    out.push_str(text.strip_suffix(".0").unwrap_or(text));
+    out.push_str(digits(&mut ryu::Buffer::new(), value));
+}
+
+/// The fewest digits that read back the same; whole numbers have no decimals.
+pub(super) fn digits(buffer: &mut ryu::Buffer, value: f64) -> &str {
+    let text = buffer.format(value);
+    text.strip_suffix(".0").unwrap_or(text)
 }
 
 /// The same as a new text; `NaN` is spelled out.

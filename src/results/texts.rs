@@ -1,6 +1,8 @@
 //! Texts of numbers, remembered: rows repeat values, for most variables are equal to others up to the sign, and many
 //! stand still. Making the fewest digits costs several times a look into this table.
 
+use super::number;
+
 /// Entries; a power of two.
 const ENTRIES: usize = 1024;
 /// The longest text of a number without its sign.
@@ -49,9 +51,7 @@ impl Texts {
         let place = (bits.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 54) as usize % ENTRIES;
         let entry = &mut self.entries[place];
         if entry.bits != bits {
-            let made = self.digits.format(value.abs());
-            // whole numbers have no decimals here
-            let made = made.strip_suffix(".0").unwrap_or(made).as_bytes();
+            let made = number::digits(&mut self.digits, value.abs()).as_bytes();
             if made.len() > LONGEST {
                 return out.extend_from_slice(made);
             }
@@ -66,7 +66,6 @@ impl Texts {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::number;
     use proptest::prelude::*;
 
     proptest! {

@@ -17,8 +17,9 @@ use crate::flat::{Equation, FlatModel, Origin, OriginKind, StateSelect};
 
 /// Sorts a flat model into a [`Dae`].
 ///
-/// Errors: circles of parameters (E214), their ranges (E215) and what is asserted of them (E503), singular structure (E301, E302, E303), constraints that cannot be
-/// differentiated (E304), start values that contradict each other (E401). A note lists start values that were chosen.
+/// Errors: circles of parameters (E214), their ranges (E215) and what is asserted of them (E503), singular structure
+/// (E301, E302, E303), constraints that cannot be differentiated (E304), start values that contradict each other (E401).
+/// A note lists start values that were chosen.
 pub fn analyze(flat: &FlatModel, choice: &StateChoice) -> Checked<Dae> {
     let mut diagnostics = Vec::new();
     match run(flat, choice, &mut diagnostics) {

@@ -33,7 +33,8 @@ pub struct Report {
     /// Where searches from several places ended, if there were several.
     #[serde(skip_serializing_if = "Map::is_empty")]
     pub starts: Map<String, serde_json::Value>,
-    /// How the pieces of cut recordings join: how many `count`, the largest `jump` left as a part of the range of its `state`.
+    /// How the pieces of cut recordings join: how many `count`, the largest `jump` left as a part of the range of its
+    /// `state`.
     #[serde(skip_serializing_if = "Map::is_empty")]
     pub joints: Map<String, serde_json::Value>,
     /// Whether a least value was reached.

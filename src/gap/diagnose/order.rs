@@ -9,6 +9,7 @@ use super::super::problem::{Chosen, Problem};
 use super::super::screen::{self, Accepted, Candidate};
 use super::Search;
 use super::refine::ready;
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 /// Part of the usual size at which an effect is tried where that size is so many nats worse than none: the linear model
@@ -33,7 +34,8 @@ impl Search {
     /// The best effects that change the order, with what each promises. Those that the filter cannot follow, or that are far
     /// worse than none, are not tried again.
     pub(super) fn reordering(&mut self, problem: &Problem<'_>) -> Vec<Candidate> {
-        let Some(before) = self.beginning(problem, &[]) else { return Vec::new() };
+        let before = self.beginning(problem, None).and_then(|b| b.explained(b.priors.len()));
+        let Some((before, _)) = before else { return Vec::new() };
         let taken = |i: usize| self.accepted.iter().any(|a| a.chosen.hypothesis == i) || self.unfit.contains(&i);
         let open = |i: &usize| {
             let h = &problem.hypotheses[*i];
@@ -46,12 +48,12 @@ impl Search {
         let tried = |i: usize| {
             let h = &problem.hypotheses[i];
             let off = screen::variants(h, i).into_iter().next()?;
-            let at = |part: f64| self.beginning(problem, &[(h, started(h, off.clone(), part))]);
+            let at = |part: f64| self.beginning_with(problem, h, started(h, off.clone(), part));
             let mut candidate = at(1.0)?;
-            if candidate.gain < before.gain - FAR {
+            if candidate.gain < before - FAR {
                 candidate = at(SMALL)?;
             }
-            candidate.gain = (candidate.gain - before.gain) * scale;
+            candidate.gain = (candidate.gain - before) * scale;
             (candidate.gain > -FAR * scale).then_some(candidate)
         };
         let tried: Vec<(usize, Option<Candidate>)> = open.into_par_iter().map(|i| (i, tried(i))).collect();
@@ -64,15 +66,38 @@ impl Search {
         found
     }
 
-    /// What the accepted effects and perhaps one more promise on the beginning of the first recording after one iteration,
-    /// with the values of the last one. `None` where the filter cannot follow.
-    fn beginning(&self, problem: &Problem<'_>, further: &[(&Hypothesis, Chosen)]) -> Option<Candidate> {
-        let mut all = self.accepted.clone();
-        for (h, chosen) in further {
-            let sigmas: Vec<f64> = h.coefficients.iter().map(|c| c.nominal.abs()).collect();
-            all.push(Accepted { priors: screen::priors(h, &chosen.values, &sigmas), chosen: chosen.clone() });
+    /// What the accepted effects and one more promise there after one iteration, with the values of the last one. `None`
+    /// where the filter cannot follow.
+    fn beginning_with(&self, problem: &Problem<'_>, h: &Hypothesis, mut chosen: Chosen) -> Option<Candidate> {
+        let sigmas: Vec<f64> = h.coefficients.iter().map(|c| c.nominal.abs()).collect();
+        let further = Accepted { priors: screen::priors(h, &chosen.values, &sigmas), chosen: chosen.clone() };
+        let mut beginning = self.beginning(problem, Some(further))?;
+        let count = beginning.priors.len() - chosen.values.len();
+        let base: Vec<usize> = (0..count).collect();
+        let base_sigmas: Vec<f64> = beginning.priors[..count].iter().map(|p| p.sigma).collect();
+        for (column, c) in (count..).zip(&h.coefficients) {
+            let info = evidence::new_information(&beginning.gram, column, &base, &base_sigmas);
+            let prior = &mut beginning.priors[column];
+            prior.sigma = screen::deviation(c, info, problem.blocks());
+            prior.min = prior.min.max(LEAST * c.nominal.abs());
         }
-        let (model, mut priors) = ready(problem, &self.last, &all)?;
+        let (mut gain, estimate) = beginning.explained(count + h.coefficients.len())?;
+        let priors = beginning.priors.split_off(count);
+        for ((value, change), prior) in chosen.values.iter_mut().zip(estimate.iter().skip(count)).zip(&priors) {
+            if *value + change < prior.min {
+                // less than nothing would be better
+                gain = f64::MIN;
+            }
+            *value = (*value + change).clamp(*value / REACH, *value * REACH);
+        }
+        gain.is_finite().then_some(Candidate { chosen, gain, priors, visible: 0.0 })
+    }
+
+    /// The filter over the beginning of the first recording, with the accepted effects and perhaps one more. `None` where it
+    /// cannot follow, or only in steps far shorter than the samples.
+    fn beginning(&self, problem: &Problem<'_>, further: Option<Accepted>) -> Option<Beginning> {
+        let all: Vec<Accepted> = self.accepted.iter().cloned().chain(further).collect();
+        let (model, priors) = ready(problem, &self.last, &all)?;
         let columns = priors.iter().map(|p| p.parameter).collect();
         let setting = model.setting(&self.last.setting.sources, &self.last.setting.noise, columns);
         let samples = |samples| fit::passes(&setting, &problem.train[..1], samples, false)?.pop();
@@ -82,33 +107,29 @@ impl Search {
         }
         let pass = samples(SAMPLES)?;
         let share = self.last.search_share();
-        let gram = pass.gram * share;
-        let means = |p: &Prior| p.mean - setting.theta[p.parameter];
-        let own = further.first().map_or(0, |(h, _)| h.coefficients.len());
-        let count = priors.len() - further.first().map_or(0, |(_, c)| c.values.len());
-        let base: Vec<usize> = (0..count).collect();
-        let base_sigmas: Vec<f64> = priors[..count].iter().map(|p| p.sigma).collect();
-        for (column, prior) in priors.iter_mut().enumerate().skip(count).take(own) {
-            let info = evidence::new_information(&gram, column, &base, &base_sigmas);
-            let c = &further[0].0.coefficients[column - count];
-            prior.sigma = (problem.blocks() / info.max(1e-300)).sqrt().min(screen::largest(c));
-            prior.min = prior.min.max(LEAST * c.nominal.abs());
-        }
-        let set: Vec<usize> = (0..count + own).collect();
-        let sigmas: Vec<f64> = priors[..count + own].iter().map(|p| p.sigma).collect();
-        let means: Vec<f64> = priors[..count + own].iter().map(means).collect();
-        let found = evidence::explain(&gram, &set, &means, &sigmas)?;
-        let mut gain = share * pass.likelihood + found.evidence;
-        let priors = priors.split_off(count);
-        let mut chosen = further.first().map_or(Chosen { hypothesis: 0, values: Vec::new() }, |(_, c)| c.clone());
-        for ((value, change), prior) in chosen.values.iter_mut().zip(found.estimate.iter().skip(count)).zip(&priors) {
-            if *value + change < prior.min {
-                // less than nothing would be better
-                gain = f64::MIN;
-            }
-            *value = (*value + change).clamp(*value / REACH, *value * REACH);
-        }
-        gain.is_finite().then_some(Candidate { chosen, gain, priors, visible: 0.0 })
+        let likelihood = share * pass.likelihood;
+        let values = priors.iter().map(|p| setting.theta[p.parameter]).collect();
+        Some(Beginning { priors, values, likelihood, gram: pass.gram * share })
+    }
+}
+
+/// A model on the beginning of the first recording: what is free with its present values, and what the filter found.
+struct Beginning {
+    priors: Vec<Prior>,
+    values: Vec<f64>,
+    likelihood: f64,
+    gram: DMatrix<f64>,
+}
+
+impl Beginning {
+    /// Likelihood with evidence when the first `count` parameters are fitted, nats, and their changes.
+    fn explained(&self, count: usize) -> Option<(f64, DVector<f64>)> {
+        let priors = &self.priors[..count];
+        let set: Vec<usize> = (0..count).collect();
+        let means: Vec<f64> = priors.iter().zip(&self.values).map(|(p, value)| p.mean - value).collect();
+        let sigmas: Vec<f64> = priors.iter().map(|p| p.sigma).collect();
+        let found = evidence::explain(&self.gram, &set, &means, &sigmas)?;
+        Some((self.likelihood + found.evidence, found.estimate))
     }
 }
 

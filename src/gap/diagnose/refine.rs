@@ -1,7 +1,7 @@
 //! Candidates of a screen one by one: each fitted together with everything accepted before, the front to its optimum.
 
 use super::super::effects::Coefficient;
-use super::super::filter::{Setting, Source};
+use super::super::filter::Setting;
 use super::super::fit::{self, Fit, Prior};
 use super::super::hypotheses::Hypothesis;
 use super::super::locate;
@@ -34,9 +34,9 @@ const SHAPES: usize = 5;
 /// Iterations with which candidates are compared before the front is polished, and candidates polished.
 const RACE: usize = 2;
 const POLISHED: usize = 5;
-/// At the levels of the model before, those behind by this part of the front's gain and by so many nats
+/// Those behind by this part of the front's gain and by so many nats stay as they are: first at the levels of the model
+/// before, then at their own.
 const BEHIND: f64 = 0.4;
-/// Those behind by this part of the front's gain and by so many nats stay as they are.
 const FAR_BEHIND: f64 = 0.5;
 const CLOSE: f64 = 200.0;
 /// A candidate that is so much worse than the model without it is not tried further, nats.
@@ -58,6 +58,13 @@ impl Refined {
         Refined { accepted: Accepted { chosen, ..accepted }, assembled, fit }
     }
 
+    /// The same with another fit of its model.
+    fn refitted(self, problem: &Problem<'_>, another: impl FnOnce(Fit) -> Fit) -> Self {
+        let cost = screen::variants_cost(&problem.hypotheses[self.accepted.chosen.hypothesis]);
+        let fit = Fit { evidence: self.fit.evidence + cost, ..self.fit };
+        Refined::new(problem, self.accepted, self.assembled, another(fit))
+    }
+
     pub(super) fn is_shape(&self, problem: &Problem<'_>) -> bool {
         problem.hypotheses[self.accepted.chosen.hypothesis].is_shape()
     }
@@ -75,9 +82,7 @@ impl Search {
             if self.gain(&r.fit) < front - far {
                 return r;
             }
-            let cost = screen::variants_cost(&problem.hypotheses[r.accepted.chosen.hypothesis]);
-            let fit = Fit { evidence: r.fit.evidence + cost, ..r.fit };
-            Refined::new(problem, r.accepted, r.assembled, readjusted(problem, &self.last, fit))
+            r.refitted(problem, |fit| readjusted(problem, &self.last, fit))
         };
         let mut refined: Vec<Refined> = refined.into_par_iter().map(readjust).collect();
         best_first(&mut refined);
@@ -137,10 +142,7 @@ impl Search {
             if i >= POLISHED || r.fit.evidence < front - far {
                 return r;
             }
-            let mut fit = r.fit;
-            fit.evidence += screen::variants_cost(&problem.hypotheses[r.accepted.chosen.hypothesis]);
-            let fit = fit::polish(fit, &problem.train, Some(self.last.search_share()));
-            Refined::new(problem, r.accepted, r.assembled, fit)
+            r.refitted(problem, |fit| fit::polish(fit, &problem.train, Some(self.last.search_share())))
         };
         let taken = std::mem::take(refined);
         let polished: Vec<Refined> = taken.into_par_iter().enumerate().map(sharper).collect();
@@ -153,8 +155,7 @@ impl Search {
     /// gain is no gain of the effect.
     pub(super) fn relevel(&mut self, problem: &Problem<'_>, front: &Fit) {
         let mut setting = self.last.setting.clone();
-        let like = |(own, s): (&mut Source, &Source)| (own.level, own.tau) = (s.level, s.tau);
-        setting.sources.iter_mut().zip(&front.setting.sources).for_each(like);
+        setting.sources.iter_mut().zip(&front.setting.sources).for_each(|(own, s)| own.level = s.level);
         setting.noise.clone_from(&front.setting.noise);
         let share = self.last.share;
         let fit = fit::fit(setting, &self.last.priors, &problem.train, Some(share), fit::ITERATIONS);

@@ -1,0 +1,214 @@
+//! The prediction of the filter: state, covariance and columns from one sample to the next, in one linear step, or in
+//! several where the model bends within it.
+
+use super::super::step::{self, multiply};
+use super::{Filter, Work};
+use nalgebra::{DMatrix, DVector};
+use std::ops::AddAssign;
+
+/// Parts into which a step is cut where the model bends within it.
+const PARTS: usize = 8;
+/// A model counts as linear over a step when its curvature moves no state by more than this part of the state's
+/// standard deviation, or by [`LEAST_BEND`] of its size.
+const BEND: f64 = 0.2;
+const LEAST_BEND: f64 = 1e-4;
+/// A part is halved when the model bends so many times more than that within it, and so often at most; more often only
+/// where the model has no values at its end.
+const FAR: f64 = 5.0;
+const FINEST: u32 = 2;
+const DEEPEST: u32 = 5;
+/// Parts for each sample on the average, beyond which no part is halved any more.
+const MOST_PARTS: usize = 8;
+/// A corrected state counts as out of the model's reach when its rates differ by so many sizes of the states over a step
+/// from what was expected.
+const STRANGE: f64 = 10.0;
+
+impl Filter<'_> {
+    /// From the filtered state at sample `k` to the predicted one at the next: one step where the model is nearly linear
+    /// over it, else several. The transition over the whole interval is kept in `work.total`.
+    pub(super) fn predict(&mut self, k: usize, correction: &mut DVector<f64>, h: f64) {
+        let t = self.recording.times[k];
+        let start = self.z.clone();
+        self.fill();
+        // x' at the filtered state, to first order from the predicted one
+        let mut rate = &self.work.a * &*correction;
+        for (i, &xi) in self.active.iter().enumerate() {
+            rate[i] += self.local.rates[xi] / self.scale[i];
+        }
+        self.source_rates(correction, &mut rate);
+        let n = self.active.len();
+        let all = step::ramp(&self.local.linear.b, &self.inputs.slope);
+        let ramp = DVector::from_fn(n, |i, _| all[self.active[i]] / self.scale[i]);
+        self.work.exponential.compute(&self.work.a, h, Some(&ramp));
+        let mut change = &self.work.exponential.integral * &rate;
+        change.rows_mut(0, n).add_assign(&self.work.exponential.ramped);
+        self.z += &change;
+        // with the inputs in the middle of the step from here on
+        rate.rows_mut(0, n).axpy(0.5 * h, &ramp, 1.0);
+        self.inputs.at(0.5 * h, &mut self.between);
+        let finite = change.iter().all(|v| v.is_finite());
+        let along = if finite { &change + 2.0 * &*correction } else { 2.0 * &*correction };
+        let moved: Vec<f64> = (0..self.active.len()).map(|i| along[i] * self.scale[i]).collect();
+        self.passive.step(&self.local, &self.active, &moved, &mut self.x, h);
+        let nearly_linear = match self.setting.cuts.get(self.number) {
+            Some(cut) => !cut.get(k).copied().unwrap_or(false),
+            None => self.bend(t + h, &rate, &change, h, 1.0),
+        };
+        let nearly_linear = nearly_linear && finite;
+        self.pass.cut[k] = !nearly_linear;
+        if nearly_linear {
+            self.propagate(h);
+            self.work.total.copy_from(&self.work.exponential.transition);
+            return;
+        }
+        self.z = start;
+        self.temper(t, &rate, correction, h);
+        self.work.total.fill_with_identity();
+        let part = h / PARTS as f64;
+        (0..PARTS).for_each(|i| self.advance(t, i as f64 * part, part, 0));
+    }
+
+    /// Takes back part of a correction that leads to where the model is nothing like what it was linearised as (an
+    /// unmeasured pressure below zero, say).
+    fn temper(&mut self, t: f64, expected: &DVector<f64>, correction: &mut DVector<f64>, h: f64) {
+        let predicted = &self.z - &*correction;
+        for halving in 0..=DEEPEST {
+            self.load();
+            let known = self.local.linearize(t, &self.x, &self.theta, &self.between).is_ok();
+            let strange = |(i, &xi): (usize, &usize)| {
+                let rate = self.local.rates[xi] / self.scale[i];
+                let beyond = h * (rate - expected[i]).abs() > STRANGE * (1.0 + h * expected[i].abs());
+                beyond || !rate.is_finite()
+            };
+            if known && !self.active.iter().enumerate().any(strange) {
+                return;
+            }
+            *correction *= if halving + 1 < DEEPEST { 0.5 } else { 0.0 };
+            self.z = &predicted + &*correction;
+        }
+    }
+
+    /// A part of a cut step that begins `after` the sample, linearised there; halved where the model has no value at its
+    /// end, or one far from what the linear model says.
+    fn advance(&mut self, sampled: f64, after: f64, h: f64, depth: u32) {
+        let (start, t) = (self.z.clone(), sampled + after);
+        self.inputs.at(after + 0.5 * h, &mut self.between);
+        if !self.possible(t) {
+            // the state waits at the edge of where the model has values
+            return;
+        }
+        self.fill();
+        let mut rate = DVector::zeros(self.z.len());
+        for (i, &xi) in self.active.iter().enumerate() {
+            rate[i] = self.local.rates[xi] / self.scale[i];
+        }
+        self.source_rates(&DVector::zeros(self.z.len()), &mut rate);
+        self.work.exponential.compute(&self.work.a, h, None);
+        let change = &self.work.exponential.integral * &rate;
+        self.z += &change;
+        let possible = self.possible(t + h);
+        self.parts += 1;
+        let deepest = if self.parts > MOST_PARTS * self.recording.len() { 0 } else { DEEPEST };
+        if depth < deepest && (!possible || depth < FINEST && !self.bend(t + h, &rate, &change, h, FAR)) {
+            self.z = start;
+            self.advance(sampled, after, 0.5 * h, depth + 1);
+            self.advance(sampled, after + 0.5 * h, 0.5 * h, depth + 1);
+            return;
+        }
+        if !possible {
+            self.z = start;
+            return;
+        }
+        self.propagate(h);
+        self.work.total = &self.work.exponential.transition * &self.work.total;
+    }
+
+    /// Whether the model has values and derivatives at the present state.
+    fn possible(&mut self, t: f64) -> bool {
+        self.load();
+        self.local.linearize(t, &self.x, &self.theta, &self.between).is_ok()
+    }
+
+    /// Whether x' at the end of a step is what the linear model says, within so many times the uncertainty of the state.
+    fn bend(&mut self, t: f64, rate: &DVector<f64>, change: &DVector<f64>, h: f64, times: f64) -> bool {
+        let expected = rate + &self.work.a * change;
+        self.load();
+        if self.local.evaluate(t, &self.x, &self.theta, &self.between).is_err() {
+            return false;
+        }
+        self.active.iter().enumerate().all(|(i, &xi)| {
+            let found = self.local.rates[xi] / self.scale[i];
+            let allowed = (BEND * self.p[(i, i)].max(0.0).sqrt()).max(LEAST_BEND);
+            0.5 * h * (found - expected[i]).abs() <= times * allowed
+        })
+    }
+
+    fn source_rates(&self, correction: &DVector<f64>, rate: &mut DVector<f64>) {
+        let n = self.active.len();
+        for (j, source) in self.setting.sources.iter().enumerate() {
+            rate[n + j] -= (self.z[n + j] - correction[n + j]) / source.tau;
+        }
+    }
+
+    /// The scaled matrices of the last linearisation.
+    fn fill(&mut self) {
+        let n = self.active.len();
+        let linear = &self.local.linear;
+        let Work { a, b, .. } = &mut self.work;
+        a.fill(0.0);
+        for (j, &xj) in self.active.iter().enumerate() {
+            for (i, &xi) in self.active.iter().enumerate() {
+                a[(i, j)] = linear.a[(xi, xj)] * self.scale[j] / self.scale[i];
+            }
+        }
+        for (j, source) in self.setting.sources.iter().enumerate() {
+            for (i, &xi) in self.active.iter().enumerate() {
+                a[(i, n + j)] = linear.b[(xi, source.parameter)] * self.scale[n + j] / self.scale[i];
+            }
+            a[(n + j, n + j)] = -1.0 / source.tau;
+        }
+        for (j, &parameter) in self.setting.columns.iter().enumerate() {
+            for (i, &xi) in self.active.iter().enumerate() {
+                b[(j, i)] = linear.b[(xi, parameter)] / self.scale[i];
+            }
+        }
+    }
+
+    /// Covariance and columns over the step that the exponential holds.
+    fn propagate(&mut self, h: f64) {
+        let n = self.active.len();
+        let Work { b, exponential, next_p, next_s, transposed, .. } = &mut self.work;
+        let m = &exponential.transition;
+        exponential.integral.transpose_to(transposed);
+        multiply(next_s, b, transposed, 0.0);
+        m.transpose_to(transposed);
+        multiply(next_s, &self.s, transposed, 1.0);
+        std::mem::swap(&mut self.s, next_s);
+        multiply(next_p, m, &self.p, 0.0);
+        multiply(&mut self.p, next_p, transposed, 0.0);
+        // noise of the sources by the trapezoidal rule over the step
+        for (j, source) in self.setting.sources.iter().enumerate() {
+            let q = source_noise(source.tau, h);
+            let column = m.column(n + j);
+            self.p.ger(0.5 * q, &column, &column, 1.0);
+            self.p[(n + j, n + j)] += 0.5 * q;
+        }
+        symmetrize(&mut self.p);
+    }
+}
+
+/// Variance that a source of unit level gains over a step.
+pub fn source_noise(tau: f64, h: f64) -> f64 {
+    1.0 - (-2.0 * h / tau).exp()
+}
+
+/// Replaces a matrix by its symmetric part.
+pub fn symmetrize(p: &mut DMatrix<f64>) {
+    for j in 0..p.ncols() {
+        for i in 0..j {
+            let mean = 0.5 * (p[(i, j)] + p[(j, i)]);
+            p[(i, j)] = mean;
+            p[(j, i)] = mean;
+        }
+    }
+}
