@@ -6,5 +6,5 @@ model LoadRipple "Torque periodic in the angle that grows with the pressure diff
   parameter Real n(unit = "1") = 1 "Periods a turn";
 equation
   tau = dp*(a_s*sin(n*phi) + a_k*cos(n*phi));
-  annotation(__bramah(family = "torque_ripple", id = "E05", coefficients = {"a_s", "a_k"}, shapes(n = {1, 2, 9, 18})));
+  annotation(__bramah(family = "torque_ripple", id = "E05", coefficients = {"a_s", "a_k"}, shapes(n = {1, 2, 9, 18}), order = {"n"}));
 end LoadRipple;

@@ -6,5 +6,5 @@ model TorqueRipple "Torque periodic in the angle of the shaft"
   parameter Real n(unit = "1") = 1 "Periods a turn";
 equation
   tau = tau_s*sin(n*phi) + tau_k*cos(n*phi);
-  annotation(__bramah(family = "torque_ripple", id = "E04", coefficients = {"tau_s", "tau_k"}, shapes(n = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 18, 24})));
+  annotation(__bramah(family = "torque_ripple", id = "E04", coefficients = {"tau_s", "tau_k"}, shapes(n = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 18, 24}), order = {"n"}));
 end TorqueRipple;

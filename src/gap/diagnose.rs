@@ -42,6 +42,9 @@ const CERTAIN: f64 = 5.0;
 /// Gain from which an effect may be one that acts rarely, nats; and how much more it must win than lose.
 const RARE: f64 = 30.0;
 const RARE_RATIO: f64 = 3.5;
+/// Part of the gain of an accepted effect that a further one of its family must reach: less is a form other than the
+/// library's, not another cause.
+const FORM: f64 = 0.25;
 /// Part of the simulated gap that opens again without it, of what all effects together close.
 const CLOSES: f64 = 0.07;
 /// Candidates this near are equally good: the simpler one stands first, nats.
@@ -256,6 +259,9 @@ impl Search {
             let others = siblings(problem, &chosen, &rest, front);
             refined.extend(self.refined(problem, &others));
             best_first(&mut refined);
+            let kin = self.kin(problem, &refined);
+            refined.extend(self.refined(problem, &kin));
+            best_first(&mut refined);
         }
         self.sharpen(problem, &mut refined);
         best_first(&mut refined);
@@ -292,7 +298,7 @@ impl Search {
             return false;
         }
         let best = refined.remove(simplest(problem, &refined));
-        if !self.convinces(problem, &best) {
+        if !self.convinces(problem, &best) || self.mends_form(problem, &best) {
             return false;
         }
         let alternatives = refined
@@ -323,6 +329,14 @@ impl Search {
         // blocks are long against most colours: where they agree so well it does not matter how few samples count
         gain >= ACCEPTED && (t > CONSISTENT || seldom)
             || gain > 0.0 && t > CERTAIN && won_and_lost(&best.fit, &self.last).0 > RARE
+    }
+
+    /// Whether an effect is a small remainder of an accepted one of its family, of whose form the machine's may differ.
+    fn mends_form(&self, problem: &Problem<'_>, best: &Refined) -> bool {
+        let h = &problem.hypotheses[best.accepted.chosen.hypothesis];
+        let kin = |a: &Accepted| problem.hypotheses[a.chosen.hypothesis].family == h.family && h.family != "parameter";
+        let gains = self.accepted.iter().zip(&self.found).filter(|(a, _)| kin(a)).map(|(_, f)| f.gain);
+        !h.shapes.iter().any(|s| s.order) && gains.fold(0.0, f64::max) * FORM > self.gain(&best.fit)
     }
 
     fn accept(&mut self, best: Refined, found: Found) {
@@ -462,15 +476,20 @@ fn won_and_lost(with: &Fit, without: &Fit) -> (f64, f64) {
 }
 
 /// Among the candidates that are practically as good as the first, the one with the fewest parameters and states, at the
-/// fewest places.
+/// fewest places. An effect that cuts a connection is named only where the data tell it from all that leave the network as
+/// it is: slip of a pump's shaft is a leak across the pump, but for the inertia in between.
 fn simplest(problem: &Problem<'_>, refined: &[Refined]) -> usize {
+    let h = |r: &Refined| &problem.hypotheses[r.accepted.chosen.hypothesis];
     let size = |r: &Refined| {
-        let h = &problem.hypotheses[r.accepted.chosen.hypothesis];
-        let states = h.attachments[0].effect.as_ref().map_or(0, |e| e.states);
-        (h.coefficients.len() + h.shapes.len() + states, h.attachments.len())
+        let states = h(r).attachments[0].effect.as_ref().map_or(0, |e| e.states);
+        (h(r).changes_order, h(r).coefficients.len() + h(r).shapes.len() + states, h(r).attachments.len())
     };
-    let front = &refined[0].fit;
-    let as_good = |r: &Refined| front.evidence - r.fit.evidence < AS_GOOD && !certainly_worse(&r.fit, front);
+    let front = &refined[0];
+    let as_good = |r: &Refined| {
+        let behind = front.fit.evidence - r.fit.evidence;
+        let whole = h(front).changes_order && !h(r).changes_order && near(r, front);
+        whole || behind < AS_GOOD && !certainly_worse(&r.fit, &front.fit)
+    };
     (0..refined.len()).filter(|&i| i == 0 || as_good(&refined[i])).min_by_key(|&i| (size(&refined[i]), i)).unwrap_or(0)
 }
 

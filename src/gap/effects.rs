@@ -94,6 +94,8 @@ pub struct Shape {
     pub limit: bool,
     /// A frequency, Hz, of which the recordings have a line that the nominal model has not.
     pub line: bool,
+    /// Periods a turn or a stroke: the same effect may come again with another one.
+    pub order: bool,
 }
 
 /// Parameters that take the range of a potential.
@@ -501,9 +503,9 @@ fn shapes(
         let unit = variable.unit.clone().unwrap_or_default();
         let listed = |key: &str| texts(own, key).contains(&name);
         let (threshold, level, limit) = (listed("threshold"), listed("level"), listed("limit"));
-        let line = listed("line");
+        let (line, order) = (listed("line"), listed("order"));
         let relative = relative.contains(&name);
-        Ok(Shape { unit: unit.to_string(), grid, min, max, relative, threshold, level, limit, line, name })
+        Ok(Shape { unit: unit.to_string(), grid, min, max, relative, threshold, level, limit, line, order, name })
     };
     list.arguments.iter().map(one).collect()
 }

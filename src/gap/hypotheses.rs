@@ -7,6 +7,9 @@ use crate::study::EffectChoice;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
+/// Orders nearer than this are the same.
+const SAME_ORDER: f64 = 0.5;
+
 /// A signal of the study: what a sensor recorded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Signal {
@@ -153,6 +156,12 @@ impl Hypothesis {
     /// Whether it only says what shape a gap has that no effect explains.
     pub fn is_shape(&self) -> bool {
         self.attachments[0].effect.as_ref().is_some_and(|e| e.is_shape())
+    }
+
+    /// Whether it is the same with these values as with others: an effect of an order may come again with another one.
+    pub fn same(&self, values: &[f64], by: &[f64]) -> bool {
+        let order = self.shapes.iter().position(|s| s.order).map(|k| self.coefficients.len() + k);
+        order.is_none_or(|k| (values[k] - by[k]).abs() < SAME_ORDER)
     }
 
     /// Combinations of the grids of all shapes, the first shape varying slowest; one empty one without shapes.

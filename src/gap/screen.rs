@@ -78,15 +78,20 @@ pub struct Screened {
 
 /// Weighs every hypothesis beside those accepted.
 pub fn screen(problem: &Problem<'_>, base: &Fit, accepted: &[Accepted]) -> Screened {
-    let taken = |h: usize| accepted.iter().any(|a| a.chosen.hypothesis == h);
-    let open: Vec<usize> = (0..problem.hypotheses.len()).filter(|&h| !taken(h)).collect();
     let (drifts, effects): (Vec<usize>, Vec<usize>) =
-        open.into_iter().partition(|&h| problem.hypotheses[h].family == "parameter");
+        (0..problem.hypotheses.len()).partition(|&h| problem.hypotheses[h].family == "parameter");
+    let taken = |c: &Chosen| {
+        let same = |a: &Chosen| problem.hypotheses[c.hypothesis].same(&c.values, &a.values);
+        accepted.iter().any(|a| a.chosen.hypothesis == c.hypothesis && same(&a.chosen))
+    };
     let chosen: Vec<Chosen> = effects
         .into_iter()
         .filter(|&h| !problem.hypotheses[h].changes_order)
         .flat_map(|h| variants(&problem.hypotheses[h], h))
+        .filter(|c| !taken(c))
         .collect();
+    let open = |h: &usize| !accepted.iter().any(|a| a.chosen.hypothesis == *h);
+    let drifts: Vec<usize> = drifts.into_iter().filter(open).collect();
     let before: Vec<Chosen> = accepted.iter().map(|a| a.chosen.clone()).collect();
     let Some((chosen, assembled)) = attachable(problem, &before, chosen) else { return Screened::default() };
     let joint = |b: Background| Joint::new(problem, base, accepted, &assembled, &chosen, &b);

@@ -96,7 +96,9 @@ impl Search {
         let mut whole = candidate.clone();
         if bounded(h) {
             make_whole(h, &mut whole);
-            self.shape_of_whole(problem, h, &mut whole);
+            if h.variants().len() > 1 {
+                self.shape_of_whole(problem, h, &mut whole);
+            }
         }
         let accepted = whole.accepted();
         let mut all = self.accepted.clone();
@@ -105,32 +107,59 @@ impl Search {
         Some(Refined::new(problem, accepted, assembled, fit))
     }
 
+    /// Effects that are there or not, at the places of such that come near the front: from where they are not they all look
+    /// alike (a lag, a dead time), and one shorter than the samples may seem to act the other way. Those that are better
+    /// than nothing as a whole.
+    pub(super) fn kin(&self, problem: &Problem<'_>, refined: &[Refined]) -> Vec<Candidate> {
+        let site = |index: usize| &problem.hypotheses[index].attachments[0].site;
+        let of = |r: &Refined| r.accepted.chosen.hypothesis;
+        let front = refined.first().map_or(0.0, |r| self.gain(&r.fit));
+        let near =
+            |r: &&Refined| bounded(&problem.hypotheses[of(r)]) && self.gain(&r.fit) > PROMISING.max(BEHIND * front);
+        let sites: Vec<_> = refined.iter().filter(near).map(|r| site(of(r))).collect();
+        let known =
+            |i: usize| refined.iter().any(|r| of(r) == i) || self.accepted.iter().any(|a| a.chosen.hypothesis == i);
+        let open = |i: &usize| bounded(&problem.hypotheses[*i]) && sites.contains(&site(*i)) && !known(*i);
+        let open: Vec<usize> = (0..problem.hypotheses.len()).filter(open).collect();
+        let Some(without) = self.tried(problem, None) else { return Vec::new() };
+        let whole = |i: usize| {
+            let h = &problem.hypotheses[i];
+            let chosen = screen::variants(h, i).into_iter().next()?;
+            let sigmas: Vec<f64> = h.coefficients.iter().map(|c| c.nominal.abs()).collect();
+            let priors = screen::priors(h, &chosen.values, &sigmas);
+            let mut whole = Candidate { chosen, gain: 0.0, priors, visible: 0.0 };
+            make_whole(h, &mut whole);
+            (self.shape_of_whole(problem, h, &mut whole)? > without).then_some(whole)
+        };
+        open.into_par_iter().filter_map(whole).collect()
+    }
+
     /// Gives a whole effect the shape that fits it: that of a small share of it may be nothing like (a twentieth of twenty
-    /// samples' delay is one sample's).
-    fn shape_of_whole(&self, problem: &Problem<'_>, h: &Hypothesis, whole: &mut Candidate) {
-        let variants = screen::variants(h, whole.chosen.hypothesis);
-        let (count, first) = (h.coefficients.len(), &problem.train[..1]);
-        if variants.len() < 2 {
-            return;
-        }
-        let likelihood = |shapes: &[f64]| {
+    /// samples' delay is one sample's). Gives its likelihood on the beginning of the first recording.
+    fn shape_of_whole(&self, problem: &Problem<'_>, h: &Hypothesis, whole: &mut Candidate) -> Option<f64> {
+        let count = h.coefficients.len();
+        let with = |shapes: &[f64]| {
             let mut values = whole.chosen.values.clone();
             values[count..].copy_from_slice(shapes);
-            let mut all = self.accepted.clone();
-            all.push(Accepted { chosen: Chosen { values, ..whole.chosen }, priors: whole.priors.clone() });
-            let (model, _) = ready(problem, &self.last, &all)?;
-            let setting = model.setting(&self.last.setting.sources, &self.last.setting.noise, Vec::new());
-            Some(fit::passes(&setting, first, TRIED, false)?[0].likelihood)
+            let chosen = Chosen { values, ..whole.chosen };
+            self.tried(problem, Some(Accepted { chosen, priors: whole.priors.clone() }))
         };
-        let best = variants
+        let (likelihood, shapes) = screen::variants(h, whole.chosen.hypothesis)
             .iter()
-            .filter_map(|v| Some((likelihood(&v.values[count..])?, &v.values[count..])))
-            .max_by(|a, b| a.0.total_cmp(&b.0));
-        if let Some((_, shapes)) = best {
-            whole.chosen.values[count..].copy_from_slice(shapes);
-            let priors = h.shapes.iter().zip(shapes).map(|(s, &x)| screen::shape_prior(s, x));
-            whole.priors.splice(count.., priors);
-        }
+            .filter_map(|v| Some((with(&v.values[count..])?, v.values[count..].to_vec())))
+            .max_by(|a, b| a.0.total_cmp(&b.0))?;
+        whole.chosen.values[count..].copy_from_slice(&shapes);
+        let priors = h.shapes.iter().zip(&shapes).map(|(s, &x)| screen::shape_prior(s, x));
+        whole.priors.splice(count.., priors);
+        Some(likelihood)
+    }
+
+    /// Likelihood of the accepted effects and perhaps a further one on the beginning of the first recording, as they stand.
+    fn tried(&self, problem: &Problem<'_>, further: Option<Accepted>) -> Option<f64> {
+        let all: Vec<Accepted> = self.accepted.iter().cloned().chain(further).collect();
+        let (model, _) = ready(problem, &self.last, &all)?;
+        let setting = model.setting(&self.last.setting.sources, &self.last.setting.noise, Vec::new());
+        Some(fit::passes(&setting, &problem.train[..1], TRIED, false)?[0].likelihood)
     }
 
     /// Those at the front are fitted to the end: comparisons are between optima only. The share of independent samples is
@@ -220,9 +249,8 @@ fn held_back(problem: &Problem<'_>, last: &Fit, h: &Hypothesis) -> bool {
     })
 }
 
-/// Others that may be the same as the best one: effects that are there or not at its place, which all look alike from
-/// where they are not (a lag, a dead time), and those of its family there, or elsewhere where the screen could not tell
-/// them from it.
+/// Others that may be the same as the best one: those of its family at its place, or elsewhere where the screen could not
+/// tell them from it.
 pub(super) fn siblings(
     problem: &Problem<'_>,
     chosen: &[Candidate],
@@ -236,10 +264,9 @@ pub(super) fn siblings(
     let alike = |c: &&Candidate| {
         let other = h(&c.chosen);
         let here = other.attachments[0].site == own.attachments[0].site;
-        let of_kind = !own.is_shape() && other.family == own.family && (here || c.gain > gain - LEVEL);
-        c.gain > PROMISING && (of_kind || here && bounded(own) && bounded(other))
+        c.gain > PROMISING && other.family == own.family && (here || c.gain > gain - LEVEL)
     };
-    rest.iter().filter(alike).take(SIBLINGS).cloned().collect()
+    rest.iter().filter(|c| !own.is_shape() && alike(c)).take(SIBLINGS).cloned().collect()
 }
 
 /// The value at which a coefficient stands for the whole effect, if it is a share of one.
