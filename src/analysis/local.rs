@@ -2,7 +2,7 @@
 //! Jacobian. Algebraic unknowns are eliminated by the implicit function theorem.
 
 use super::lift::{Lifted, Raised};
-use crate::diag::Diagnostic;
+use crate::diag::{Code, Diagnostic};
 use crate::expr::VarId;
 use crate::lower::{Options, RowKind, System, lower_explicit};
 use crate::solve::Point;
@@ -86,12 +86,14 @@ impl Plan {
         let checked = structure::analyze(&lifted.flat, &StateChoice::default());
         let Some(dae) = checked.value else { return Err(checked.diagnostics) };
         let system = Arc::new(lower_explicit(Arc::new(dae), &Options::default()));
-        Ok(Plan::of(system, lifted))
+        let place = |r: &Raised| place(&system, r).ok_or_else(|| vec![bound(&system, r.start)]);
+        let raised = lifted.parameters.iter().chain(&lifted.inputs).map(place).collect::<Result<_, _>>()?;
+        let output = |v: &VarId| column(&system, *v).ok_or_else(|| vec![bound(&system, *v)]);
+        let outputs = lifted.outputs.iter().map(|v| Ok(output(v)?.0)).collect::<Result<_, Vec<Diagnostic>>>()?;
+        Ok(Plan::of(system.clone(), lifted, raised, outputs))
     }
 
-    fn of(system: Arc<System>, lifted: &Lifted) -> Plan {
-        let raised: Vec<Place> = lifted.parameters.iter().chain(&lifted.inputs).map(|r| place(&system, r)).collect();
-        let outputs: Vec<usize> = lifted.outputs.iter().map(|&v| column(&system, v).0).collect();
+    fn of(system: Arc<System>, lifted: &Lifted, raised: Vec<Place>, outputs: Vec<usize>) -> Plan {
         let mut roles = vec![Role::Nothing; system.columns.len()];
         raised.iter().enumerate().for_each(|(i, p)| roles[p.column] = Role::Raised(i));
         let mut states = Vec::new();
@@ -214,17 +216,24 @@ impl Plan {
     }
 }
 
-fn place(system: &System, raised: &Raised) -> Place {
-    let (column, negated) = column(system, raised.state);
-    Place { column, negated, start: raised.start }
+fn place(system: &System, raised: &Raised) -> Option<Place> {
+    let (column, negated) = column(system, raised.state)?;
+    Some(Place { column, negated, start: raised.start })
 }
 
-/// The column of a state that may be an alias of another.
-fn column(system: &System, v: VarId) -> (usize, bool) {
+/// A constraint lets states vary by themselves only together with a parameter.
+fn bound(system: &System, v: VarId) -> Diagnostic {
+    let name = &system.dae.variables[v.index()].name;
+    Diagnostic::new(Code::IndexReduction, format!("`{name}` cannot vary by itself: a constraint binds it to states"))
+        .help("keep it as it is, or join the parts by something elastic")
+}
+
+/// The column of a state that may be an alias of another; `None` where a constraint took it from the states.
+fn column(system: &System, v: VarId) -> Option<(usize, bool)> {
     let alias = system.dae.aliases.iter().find(|a| a.variable == v);
     let (target, negated) = alias.map_or((v, false), |a| (a.target, a.negated));
     let found = system.columns.iter().position(|c| c.state && c.variable == target);
-    (found.expect("a variable with stateSelect = always and an explicit derivative is a state"), negated)
+    Some((found?, negated))
 }
 
 /// Derivatives at a point. Columns of `b` and `d`: parameters, then inputs.

@@ -59,7 +59,7 @@ fn gone_through(
     let mut filter = Filter::new(setting, local, theta, start.to_vec(), recording, hidden, reads);
     let prior = filter.follow_start();
     for k in 0..samples {
-        filter.sample(k, samples, false).ok()?;
+        filter.sample(k, samples).ok()?;
     }
     let states = filter.states().to_vec();
     let pass = filter.finish();

@@ -7,7 +7,8 @@ mod order;
 mod refine;
 
 use super::data::Recording;
-use super::filter::Setting;
+use super::effects::Coefficient;
+use super::filter::{Setting, Tape};
 use super::fit::{self, Fit, Prior, vuong};
 use super::held;
 use super::locate::{self, Located};
@@ -17,7 +18,7 @@ use super::screen::{self, Accepted, Screened};
 use super::verdict::Verdict;
 use conclusion::Conclusion;
 use rayon::prelude::*;
-use refine::{Refined, best_first, fitted, hidden, promising, siblings, values};
+use refine::{AT_BOUND, Refined, best_first, fitted, hidden, promising, siblings, values};
 
 /// Effects that are looked for one after another, at most.
 const MOST_EFFECTS: usize = 4;
@@ -42,8 +43,8 @@ const CERTAIN: f64 = 5.0;
 /// Gain from which an effect may be one that acts rarely, nats; and how much more it must win than lose.
 const RARE: f64 = 30.0;
 const RARE_RATIO: f64 = 3.5;
-/// Part of the gain of an accepted effect that a further one of its family must reach: less is a form other than the
-/// library's, not another cause.
+/// Part of the gain of an accepted effect that a further one of its family or at its place must reach: less is a form
+/// other than the library's, not another cause.
 const FORM: f64 = 0.25;
 /// Part of the simulated gap that opens again without it, of what all effects together close.
 const CLOSES: f64 = 0.07;
@@ -224,7 +225,7 @@ fn settled(problem: &Problem<'_>, from: Setting, priors: &[Prior]) -> Option<Fit
 fn why(problem: &Problem<'_>, model: &Assembled, noise: &[f64]) -> Trouble {
     let setting = model.setting(&[], noise, Vec::new());
     for r in &problem.train {
-        if let Err((time, e)) = super::filter::run(&setting, r, 0, usize::MAX, false) {
+        if let Err((time, e)) = super::filter::run(&setting, r, 0, usize::MAX, Tape::Nothing) {
             return Trouble::Diverges(time, e.to_string());
         }
     }
@@ -297,6 +298,10 @@ impl Search {
             self.accept(best, found);
             return false;
         }
+        refined.retain(|r| !self.halved(problem, r));
+        if refined.is_empty() {
+            return false;
+        }
         let best = refined.remove(simplest(problem, &refined));
         if !self.convinces(problem, &best) || self.mends_form(problem, &best) {
             return false;
@@ -331,10 +336,23 @@ impl Search {
             || gain > 0.0 && t > CERTAIN && won_and_lost(&best.fit, &self.last).0 > RARE
     }
 
-    /// Whether an effect is a small remainder of an accepted one of its family, of whose form the machine's may differ.
+    /// Whether an effect that is there or not would rather be there by less than half: it is something else.
+    fn halved(&self, problem: &Problem<'_>, r: &Refined) -> bool {
+        let h = &problem.hypotheses[r.accepted.chosen.hypothesis];
+        let at_bound = |(i, c): (usize, &Coefficient)| {
+            refine::share(c).is_some() && r.accepted.chosen.values[i] <= r.accepted.priors[i].min * (1.0 + AT_BOUND)
+        };
+        refine::bounded(h) && h.coefficients.iter().enumerate().any(at_bound)
+    }
+
+    /// Whether an effect is a small remainder of an accepted one of its family or at its place, from whose form the
+    /// machine's may differ.
     fn mends_form(&self, problem: &Problem<'_>, best: &Refined) -> bool {
         let h = &problem.hypotheses[best.accepted.chosen.hypothesis];
-        let kin = |a: &Accepted| problem.hypotheses[a.chosen.hypothesis].family == h.family && h.family != "parameter";
+        let kin = |a: &Accepted| {
+            let other = &problem.hypotheses[a.chosen.hypothesis];
+            h.family != "parameter" && (other.family == h.family || other.attachments[0].site == h.attachments[0].site)
+        };
         let gains = self.accepted.iter().zip(&self.found).filter(|(a, _)| kin(a)).map(|(_, f)| f.gain);
         !h.shapes.iter().any(|s| s.order) && gains.fold(0.0, f64::max) * FORM > self.gain(&best.fit)
     }

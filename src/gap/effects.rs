@@ -67,6 +67,8 @@ pub struct Coefficient {
     pub nominal: f64,
     /// Counts in the unit of the signal, `nominal` in its full scales.
     pub relative: bool,
+    /// At most what its nodes have of it already.
+    pub part: bool,
 }
 
 /// A parameter that enters nonlinearly.
@@ -472,6 +474,7 @@ fn coefficients(
             max: read.number(v.max),
             nominal,
             relative: relative.contains(&name),
+            part: texts(own, "part").contains(&name),
             name,
         })
     };

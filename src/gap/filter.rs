@@ -14,6 +14,7 @@ use super::passive::{Passive, passive_states};
 use super::step::Exponential;
 use crate::analysis::local::{Local, LocalError, Plan};
 use nalgebra::{DMatrix, DVector};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Stretches into which a recording is cut for statistics over blocks.
@@ -59,7 +60,7 @@ pub struct Setting {
     /// own group only.
     pub common: usize,
     /// Stretches of columns behind the common ones that are wanted against each other.
-    pub groups: Vec<std::ops::Range<usize>>,
+    pub groups: Vec<Range<usize>>,
     /// Per state its usual size, positive.
     pub sizes: Vec<f64>,
     /// Per state how far it usually moves, SI; 0 where that is not known.
@@ -97,8 +98,8 @@ pub struct Pass {
     pub blocks: Vec<f64>,
     /// Whitened innovations, samples by signals; 0 where there is no sample.
     pub white: DMatrix<f64>,
-    /// Linearised steps, if asked for.
-    pub tape: Vec<Step>,
+    /// Linearised steps of the stretches asked for.
+    pub tapes: Vec<Vec<Step>>,
     /// Samples after which the step was cut because the model bends.
     pub cut: Vec<bool>,
     /// State that the recording began at, SI.
@@ -126,6 +127,37 @@ pub struct Step {
     pub h: f64,
 }
 
+/// Which linearised steps a pass keeps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tape {
+    /// None.
+    Nothing,
+    /// All.
+    Whole,
+    /// A few stretches spread over the recording, together a third of it: speeds and loads differ along it.
+    Stretches,
+}
+
+/// Samples that stretches hold together at least, the part of the recording that they are, and how many there are.
+const STRETCHED: usize = 1200;
+const STRETCHED_PART: usize = 3;
+const STRETCHES: usize = 4;
+
+impl Tape {
+    fn of(self, samples: usize) -> Vec<Range<usize>> {
+        let kept = STRETCHED.max(samples / STRETCHED_PART);
+        match self {
+            Tape::Nothing => Vec::new(),
+            Tape::Stretches if kept < samples => {
+                let length = kept / STRETCHES;
+                let start = |i: usize| i * (samples - length) / (STRETCHES - 1);
+                (0..STRETCHES).map(|i| start(i)..start(i) + length).collect()
+            }
+            Tape::Whole | Tape::Stretches => std::iter::once(0..samples).collect(),
+        }
+    }
+}
+
 /// Runs the filter over the first `samples` of a recording, the `number`-th of those that `Setting::cuts` counts.
 ///
 /// # Errors
@@ -135,7 +167,7 @@ pub fn run(
     recording: &Recording,
     number: usize,
     samples: usize,
-    with_tape: bool,
+    tape: Tape,
 ) -> Result<Pass, (f64, LocalError)> {
     let (local, theta) = at_first(setting, recording, None).map_err(|e| (recording.times[0], e))?;
     let start = local.state();
@@ -149,8 +181,9 @@ pub fn run(
     let mut filter = Filter::new(setting, local, theta, start, recording, &hidden, &reads);
     filter.number = number;
     let samples = samples.min(recording.len());
+    filter.stretches = tape.of(samples);
     for k in 0..samples {
-        filter.sample(k, samples, with_tape).map_err(|e| (recording.times[k], e))?;
+        filter.sample(k, samples).map_err(|e| (recording.times[k], e))?;
     }
     Ok(filter.finish())
 }
@@ -179,6 +212,8 @@ pub(super) struct Filter<'a> {
     setting: &'a Setting,
     recording: &'a Recording,
     number: usize,
+    /// Samples whose steps are kept.
+    stretches: Vec<Range<usize>>,
     /// Samples before it estimate the state and count for nothing else.
     settled: usize,
     local: Local,
@@ -255,7 +290,7 @@ impl<'a> Filter<'a> {
             gram: DMatrix::zeros(columns + 1, columns + 1),
             blocks: Vec::new(),
             white: DMatrix::zeros(samples, signals),
-            tape: Vec::new(),
+            tapes: Vec::new(),
             cut: vec![false; samples],
             start: start.clone(),
             last: Vec::new(),
@@ -264,6 +299,7 @@ impl<'a> Filter<'a> {
             setting,
             recording,
             number: 0,
+            stretches: Vec::new(),
             settled: recording.settled(),
             local,
             theta,
@@ -321,7 +357,7 @@ impl<'a> Filter<'a> {
     }
 
     /// Update with sample `k`, then prediction of the next.
-    pub(super) fn sample(&mut self, k: usize, samples: usize, with_tape: bool) -> Result<(), LocalError> {
+    pub(super) fn sample(&mut self, k: usize, samples: usize) -> Result<(), LocalError> {
         let recording = self.recording;
         let t = recording.times[k];
         self.inputs.enter(recording, k);
@@ -345,9 +381,12 @@ impl<'a> Filter<'a> {
         }
         let h = recording.times[k + 1] - t;
         self.predict(k, &mut correction, h);
-        if with_tape {
+        if let Some(stretch) = self.stretches.iter().find(|s| s.contains(&k)) {
             let transition = self.work.total.clone();
-            self.pass.tape.push(Step {
+            if k == stretch.start {
+                self.pass.tapes.push(Vec::with_capacity(stretch.len()));
+            }
+            self.pass.tapes.last_mut().expect("begun at its start").push(Step {
                 counted: k >= self.settled,
                 here,
                 innovation,

@@ -3,7 +3,7 @@
 
 use super::data::Recording;
 use super::evidence::{self, Explained};
-use super::filter::{self, Pass, Setting, Source};
+use super::filter::{self, Pass, Setting, Source, Tape};
 use super::levels;
 use super::problem::{Assembled, Problem};
 use nalgebra::DMatrix;
@@ -19,9 +19,6 @@ const TURNS: usize = 4;
 const WORTHWHILE: f64 = 0.3;
 /// Levels that stay so far below the greatest growth of a round are settled.
 const SETTLED: f64 = 3.0;
-/// Samples of each recording on which levels are fitted, at least, and part of the recording.
-const LEVEL_SAMPLES: usize = 1200;
-const LEVEL_PART: usize = 3;
 
 /// Prior of a parameter of the plan.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,7 +59,7 @@ pub struct Fit {
 }
 
 /// Runs the filter over all recordings, in parallel.
-pub fn passes(setting: &Setting, train: &[Recording], samples: usize, tape: bool) -> Option<Vec<Pass>> {
+pub fn passes(setting: &Setting, train: &[Recording], samples: usize, tape: Tape) -> Option<Vec<Pass>> {
     train.par_iter().enumerate().map(|(i, r)| filter::run(setting, r, i, samples, tape).ok()).collect()
 }
 
@@ -93,16 +90,11 @@ pub fn tolerance_priors(problem: &Problem<'_>) -> Vec<Prior> {
 pub fn first_sources(assembled: &Assembled, noise: &[f64], train: &[Recording]) -> Option<Vec<Source>> {
     let setting = assembled.setting(&[], noise, assembled.sources.clone().collect());
     let samples = 600;
-    let (_, gram) = total(&passes(&setting, &train[..1], samples, false)?);
+    let (_, gram) = total(&passes(&setting, &train[..1], samples, Tape::Nothing)?);
     let n = (samples.min(train[0].len()) as f64 - train[0].settled() as f64).max(1.0);
     let level = |i: usize| if gram[(i, i)] > 0.0 { 0.3 * (n / gram[(i, i)]).sqrt() } else { 1e-12 };
     let source = |(i, parameter)| Source { parameter, level: level(i), tau: assembled.tau };
     Some(assembled.sources.clone().enumerate().map(source).collect())
-}
-
-fn level_samples(train: &[Recording]) -> usize {
-    let longest = train.iter().map(Recording::len).max().unwrap_or(0);
-    LEVEL_SAMPLES.max(longest / LEVEL_PART)
 }
 
 /// Adjusts levels and noise at the present values of the parameters.
@@ -115,9 +107,9 @@ pub fn adjust(setting: &mut Setting, train: &[Recording]) -> Option<()> {
 pub fn adjust_slowly(setting: &mut Setting, train: &[Recording], rounds: usize, growth: f64) -> Option<()> {
     let columns = std::mem::take(&mut setting.columns);
     for _ in 0..rounds {
-        let found = passes(setting, train, level_samples(train), true)?;
+        let found = passes(setting, train, usize::MAX, Tape::Stretches)?;
         setting.starts = found.iter().map(|p| p.start.clone()).collect();
-        let tapes: Vec<&[filter::Step]> = found.iter().map(|p| &p.tape[..]).collect();
+        let tapes: Vec<&[filter::Step]> = found.iter().flat_map(|p| &p.tapes).map(Vec::as_slice).collect();
         let (factors, _) = levels::fit(setting, &tapes, growth);
         let settled = factors.iter().all(|f| *f < growth / SETTLED);
         adjust_noise(setting, &tapes, &factors);
@@ -154,7 +146,7 @@ pub fn fit(
     setting.common = setting.columns.len();
     let set: Vec<usize> = (0..priors.len()).collect();
     let sigmas: Vec<f64> = priors.iter().map(|p| p.sigma).collect();
-    let mut found = passes(&setting, train, usize::MAX, false)?;
+    let mut found = passes(&setting, train, usize::MAX, Tape::Nothing)?;
     setting.starts = found.iter().map(|p| p.start.clone()).collect();
     let share =
         share.unwrap_or_else(|| evidence::independent_share(&found.iter().map(|p| &p.white).collect::<Vec<_>>()));
@@ -175,7 +167,7 @@ pub fn fit(
                 let value = start[prior.parameter] + length * d;
                 setting.theta[prior.parameter] = value.clamp(prior.min, prior.max);
             }
-            if let Some(next) = passes(&setting, train, usize::MAX, false) {
+            if let Some(next) = passes(&setting, train, usize::MAX, Tape::Nothing) {
                 let (likelihood, _) = total(&next);
                 if objective(&setting, priors, likelihood * share) >= before - 0.01 {
                     found = next;

@@ -1,7 +1,7 @@
 //! How large the gap is: simulation from the inputs alone, signal by signal, in parts of the full scale.
 
 use super::data::{Inputs, Recording};
-use super::filter::{self, Setting};
+use super::filter::{self, Setting, Tape};
 use super::problem::Problem;
 use super::step::{self, Exponential};
 use crate::analysis::local::Local;
@@ -51,7 +51,7 @@ pub fn simulate(setting: &Setting, recording: &Recording) -> Option<Residuals> {
     let from = recording.settled();
     let mut quiet = setting.alone();
     quiet.sources.clear();
-    let pass = filter::run(&quiet, recording, 0, from + 1, false).ok()?;
+    let pass = filter::run(&quiet, recording, 0, from + 1, Tape::Nothing).ok()?;
     let simulated = open_loop(&quiet, recording, from, pass.last)?;
     Some(Residuals { from, simulated })
 }

@@ -553,6 +553,7 @@ fn drift(free: &Free) -> Hypothesis {
         max: None,
         nominal: free.sigma,
         relative: false,
+        part: false,
     };
     Hypothesis {
         effect: "Drift".into(),

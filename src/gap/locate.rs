@@ -1,7 +1,7 @@
 //! Where the gap lies, before anything is named: each place gets a slow source of its own, and what the recordings gain
 //! in likelihood by it ranks the places.
 
-use super::filter::{self, SILENT, Setting, Source};
+use super::filter::{self, SILENT, Setting, Source, Tape};
 use super::fit::{self, Fit};
 use super::levels;
 use super::problem::{Assembled, Problem, SLOWER};
@@ -34,17 +34,17 @@ pub fn locate(problem: &Problem<'_>, base: &Fit, accepted: &[Accepted]) -> Vec<L
     let Ok(assembled) = problem.assemble(&chosen, &all) else { return Vec::new() };
     let Some(loud) = setting(problem, base, &assembled, accepted) else { return Vec::new() };
     let fast = base.setting.sources.len();
-    let Some(loudly) = fit::passes(&loud, &problem.train, SAMPLES, true) else { return Vec::new() };
+    let Some(loudly) = fit::passes(&loud, &problem.train, SAMPLES, Tape::Whole) else { return Vec::new() };
     let whole = |passes: &[filter::Pass]| passes.iter().map(|p| p.likelihood).sum::<f64>();
     // linearised where the slow sources lead; where they lead astray, where the model without them goes
     let mut quiet = loud.clone();
     quiet.sources[fast..].iter_mut().for_each(|s| s.level *= SILENT);
-    let quietly = fit::passes(&quiet, &problem.train, SAMPLES, true);
+    let quietly = fit::passes(&quiet, &problem.train, SAMPLES, Tape::Whole);
     let (passes, setting, louder) = match quietly {
         Some(quietly) if whole(&loudly) < whole(&quietly) - ASTRAY => (quietly, quiet, 1.0 / SILENT),
         _ => (loudly, loud, 1.0),
     };
-    let tapes: Vec<&[filter::Step]> = passes.iter().map(|p| &p.tape[..]).collect();
+    let tapes: Vec<&[filter::Step]> = passes.iter().flat_map(|p| &p.tapes).map(Vec::as_slice).collect();
     let mut factors = vec![1.0; fast];
     factors.resize(setting.sources.len(), SILENT);
     let value = |factors: &[f64]| {

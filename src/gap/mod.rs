@@ -1,7 +1,7 @@
 //! The gap between model and bench: where it lies, which effect causes it, how far it shrinks.
 //!
 //! [`effects`] reads the effect models, [`circuit`] the places of the nominal model, [`hypotheses`] puts every effect at
-//! every place where it fits, [`shapes`] fits their grids to the recordings, and [`augment`] writes the nominal model with
+//! every place where it fits, [`shapes`] fits their grids to the recordings, `capacity` their bounds to the nodes, and [`augment`] writes the nominal model with
 //! effects attached. [`problem`] makes of it what the [`filter`] runs over the recordings; [`fit`], [`screen`] and
 //! [`locate`] weigh parameters, effects and places by their [`evidence`]; [`diagnose`] puts all together into a
 //! [`verdict`]. [`fixed`] writes the corrected model into one file, [`report`] the page. [`plan`] says before measuring
@@ -9,6 +9,7 @@
 
 pub mod augment;
 mod begin;
+mod capacity;
 pub mod circuit;
 pub mod data;
 pub mod diagnose;

@@ -5,7 +5,7 @@
 
 use super::data::Recording;
 use super::diagnose::{ACCEPTED, NEAR};
-use super::filter;
+use super::filter::{self, Tape};
 use super::fit;
 use super::hypotheses::{Hypothesis, Place, Signal};
 use super::problem::{Chosen, Problem};
@@ -148,7 +148,7 @@ impl Products {
         let all: usize = problem.train.iter().map(Recording::len).sum();
         let each = (SAMPLES / problem.train.len().max(1)).max(2);
         let used: usize = problem.train.iter().map(|r| r.len().min(each)).sum();
-        let passes = fit::passes(&setting, &problem.train, each, false)?;
+        let passes = fit::passes(&setting, &problem.train, each, Tape::Nothing)?;
         let width = setting.columns.len();
         let gram = passes.iter().fold(DMatrix::zeros(width + 1, width + 1), |sum, p: &filter::Pass| sum + &p.gram);
         let gram = gram.view((0, 0), (width, width)) * (all as f64 / used.max(1) as f64);

@@ -3,7 +3,7 @@
 
 use super::effects::{Coefficient, Shape};
 use super::evidence;
-use super::filter::{self, SILENT, Source};
+use super::filter::{self, SILENT, Source, Tape};
 use super::fit::{self, Fit, Prior};
 use super::held;
 use super::hypotheses::Hypothesis;
@@ -193,7 +193,7 @@ fn fitting(joins: &dyn Fn(&[Chosen]) -> bool, mut chosen: Vec<Chosen>) -> Vec<Ch
 /// Whether a model has values and derivatives at its start: what is compiled may be singular at its off value.
 fn begins(problem: &Problem<'_>, assembled: &Assembled) -> bool {
     let setting = assembled.setting(&[], &problem.noise_floor, Vec::new());
-    problem.train.first().is_some_and(|r| filter::run(&setting, r, 0, BEGINNING, false).is_ok())
+    problem.train.first().is_some_and(|r| filter::run(&setting, r, 0, BEGINNING, Tape::Nothing).is_ok())
 }
 
 /// The Gram matrices of the joint model.
@@ -242,7 +242,7 @@ impl<'a> Joint<'a> {
         setting.common = common.len();
         setting.cuts.clone_from(&base.cuts);
         setting.groups = entries.iter().map(|e| e.columns.clone()).collect();
-        let passes = fit::passes(&setting, &problem.train, usize::MAX, false)?;
+        let passes = fit::passes(&setting, &problem.train, usize::MAX, Tape::Nothing)?;
         let width = setting.columns.len() + 1;
         let gram = passes.iter().fold(DMatrix::zeros(width, width), |sum, p| sum + &p.gram) * background.share;
         let likelihood = background.share * passes.iter().map(|p| p.likelihood).sum::<f64>();

@@ -1,5 +1,6 @@
 //! From a study to a problem.
 
+use super::capacity;
 use super::circuit::{self, Circuit};
 use super::data::Recording;
 use super::effects::{self, Effect};
@@ -197,6 +198,7 @@ impl Nominal {
         };
         problem.explore();
         shapes::fit(&mut problem);
+        capacity::bound(&mut problem);
         Ok(Question { problem, bound, flat, diagnostics })
     }
 }

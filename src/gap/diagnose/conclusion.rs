@@ -10,11 +10,13 @@ use super::super::recording::Gross;
 use super::super::screen::Accepted;
 use super::super::verdict as v;
 use super::refine::fitted;
-use super::{Search, Shaped};
+use super::{ACCEPTED, Search, Shaped};
 use std::collections::BTreeMap;
 
 /// A gap of so many times the sensors' noise is one, located or not.
 const PLAIN: f64 = 4.0;
+/// Share of independent samples from which the filter's innovations are white.
+const WHITE: f64 = 0.5;
 /// Evidence for a place at which a gap counts as located, nats.
 const LOCATED: f64 = 100.0;
 /// The three models whose gaps are compared, and those for what each effect closes.
@@ -43,9 +45,11 @@ impl Conclusion<'_> {
             |l: &&Located| !matches!(problem.disturbances[l.disturbance].attachments[0].site, Site::Sensor(_));
         let located = s.left.iter().find(physical);
         let place = located.filter(|l| l.evidence > LOCATED && share.is_none_or(|s| s > 0.1));
-        // what several times the noise leaves open is something, even where no place stands out
+        // what several times the noise leaves open is something, even where no place stands out; disturbances that the
+        // filter follows as it should leave as much
+        let followed = s.base.share > WHITE && s.left.iter().all(|l| l.evidence < ACCEPTED);
         let noise = relative(&s.last.setting.noise, &problem.full_scale);
-        let plain = share.is_some_and(|share| share > 0.1) && e.total > PLAIN * noise;
+        let plain = share.is_some_and(|share| share > 0.1) && e.total > PLAIN * noise && !followed;
         let outside = s.accepted.is_empty() && (place.is_some() || plain || s.shape.is_some());
         let verdict = match () {
             () if !s.gross.is_empty() => "recording_error",

@@ -3,6 +3,7 @@
 //! itself at a part of its usual size, on the beginning of the first recording.
 
 use super::super::evidence;
+use super::super::filter::Tape;
 use super::super::fit::{self, Prior};
 use super::super::hypotheses::{Hypothesis, Sharing};
 use super::super::problem::{Chosen, Problem};
@@ -100,7 +101,7 @@ impl Search {
         let (model, priors) = ready(problem, &self.last, &all)?;
         let columns = priors.iter().map(|p| p.parameter).collect();
         let setting = model.setting(&self.last.setting.sources, &self.last.setting.noise, columns);
-        let samples = |samples| fit::passes(&setting, &problem.train[..1], samples, false)?.pop();
+        let samples = |samples| fit::passes(&setting, &problem.train[..1], samples, Tape::Nothing)?.pop();
         let stiff = samples(2 * LOOK)?.cut[LOOK..].iter().filter(|cut| **cut).count();
         if stiff > LOOK / 2 {
             return None;

@@ -1,7 +1,7 @@
 //! Candidates of a screen one by one: each fitted together with everything accepted before, the front to its optimum.
 
 use super::super::effects::Coefficient;
-use super::super::filter::Setting;
+use super::super::filter::{Setting, Tape};
 use super::super::fit::{self, Fit, Prior};
 use super::super::hypotheses::Hypothesis;
 use super::super::locate;
@@ -23,7 +23,7 @@ const LEVEL: f64 = 15.0;
 /// Those first by what the inputs alone bring about that are refined too.
 const DRIVEN: usize = 3;
 /// Part of a tolerance within which a parameter counts as at its end.
-const AT_BOUND: f64 = 1e-3;
+pub(super) const AT_BOUND: f64 = 1e-3;
 /// Candidates that are there or not; the deviation of their share from the whole, and samples with which their shapes are
 /// tried.
 const BOUNDED: usize = 4;
@@ -159,7 +159,7 @@ impl Search {
         let all: Vec<Accepted> = self.accepted.iter().cloned().chain(further).collect();
         let (model, _) = ready(problem, &self.last, &all)?;
         let setting = model.setting(&self.last.setting.sources, &self.last.setting.noise, Vec::new());
-        Some(fit::passes(&setting, &problem.train[..1], TRIED, false)?[0].likelihood)
+        Some(fit::passes(&setting, &problem.train[..1], TRIED, Tape::Nothing)?[0].likelihood)
     }
 
     /// Those at the front are fitted to the end: comparisons are between optima only. The share of independent samples is
@@ -316,6 +316,11 @@ pub(super) fn ready(problem: &Problem<'_>, from: &Fit, accepted: &[Accepted]) ->
                 None => priors.push(own),
             }
         }
+    }
+    // a parameter that was let go and is no more returns to its tolerance
+    for p in &priors {
+        let value = &mut assembled.theta[p.parameter];
+        *value = value.max(p.min).min(p.max);
     }
     Some((assembled, priors))
 }
