@@ -224,6 +224,7 @@ fn place(system: &System, raised: &Raised) -> Option<Place> {
 /// A constraint lets states vary by themselves only together with a parameter.
 fn bound(system: &System, v: VarId) -> Diagnostic {
     let name = &system.dae.variables[v.index()].name;
+    let name = name.split(" (").next().unwrap_or(name);
     Diagnostic::new(Code::IndexReduction, format!("`{name}` cannot vary by itself: a constraint binds it to states"))
         .help("keep it as it is, or join the parts by something elastic")
 }

@@ -10,11 +10,13 @@ use super::super::recording::Gross;
 use super::super::screen::Accepted;
 use super::super::verdict as v;
 use super::refine::fitted;
-use super::{ACCEPTED, Search, Shaped};
+use super::{Search, Shaped};
 use std::collections::BTreeMap;
 
 /// A gap of so many times the sensors' noise is one, located or not.
 const PLAIN: f64 = 4.0;
+/// Evidence for any place from which something is left, nats.
+const NOTICED: f64 = 30.0;
 /// Share of independent samples from which the filter's innovations are white.
 const WHITE: f64 = 0.5;
 /// Evidence for a place at which a gap counts as located, nats.
@@ -47,7 +49,7 @@ impl Conclusion<'_> {
         let place = located.filter(|l| l.evidence > LOCATED && share.is_none_or(|s| s > 0.1));
         // what several times the noise leaves open is something, even where no place stands out; disturbances that the
         // filter follows as it should leave as much
-        let followed = s.base.share > WHITE && s.left.iter().all(|l| l.evidence < ACCEPTED);
+        let followed = s.base.share > WHITE && s.left.iter().all(|l| l.evidence < NOTICED);
         let noise = relative(&s.last.setting.noise, &problem.full_scale);
         let plain = share.is_some_and(|share| share > 0.1) && e.total > PLAIN * noise && !followed;
         let outside = s.accepted.is_empty() && (place.is_some() || plain || s.shape.is_some());

@@ -1,0 +1,66 @@
+//! The diagnosis on the measured benches of which the recordings are public: what was left out of the nominal model is
+//! found, and beside the complete model nothing is claimed. Skipped where the recordings are not at hand.
+
+#![allow(clippy::disallowed_methods, reason = "tests read their own files")]
+#![allow(clippy::unwrap_used, reason = "tests")]
+#![allow(clippy::print_stdout, reason = "a test without its data says so")]
+
+use serde_json::Value;
+use std::path::Path;
+use std::process::Command;
+
+/// The verdict on a bench with a class of its package, the nominal one or the complete one.
+fn verdict(bench: &str, class: &str, recordings: &str) -> Option<Value> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let data = root.join("../shared/data").join(recordings);
+    if !data.is_dir() {
+        println!("skipped: no folder {}", data.display());
+        return None;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let study = std::fs::read_to_string(root.join("models").join(bench).join("gap.toml")).unwrap();
+    let own = folder.path().join("gap.toml");
+    std::fs::write(&own, study.replace(&format!("{bench}.Nominal"), &format!("{bench}.{class}"))).unwrap();
+    let said =
+        Command::new(env!("CARGO_BIN_EXE_bramah")).arg("gap").arg(&own).arg("--data").arg(&data).output().unwrap();
+    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
+    Some(serde_json::from_slice(&said.stdout).unwrap())
+}
+
+/// The first effect is of this family at this place, and closes this part of the held gap.
+fn finds(bench: &str, recordings: &str, family: &str, place: &str, closes: f64) {
+    let Some(verdict) = verdict(bench, "Nominal", recordings) else { return };
+    let first = &verdict["effects"][0];
+    assert_eq!(
+        (first["family"].as_str(), first["places"][0]["place"].as_str()),
+        (Some(family), Some(place)),
+        "{first:#}"
+    );
+    assert!(first["closes_alone"].as_f64().unwrap() > closes, "{first:#}");
+}
+
+/// No effect is claimed that closes more than a tenth of the held gap.
+fn claims_nothing(bench: &str, recordings: &str) {
+    let Some(verdict) = verdict(bench, "Complete", recordings) else { return };
+    for effect in verdict["effects"].as_array().unwrap() {
+        assert!(effect["closes_alone"].as_f64().is_none_or(|c| c < 0.1), "{effect:#}");
+    }
+}
+
+#[test]
+fn coupled_drives() {
+    finds("CoupledDrives", "ced_coupled_drives", "sensor_rectification", "y", 0.7);
+    claims_nothing("CoupledDrives", "ced_coupled_drives");
+}
+
+#[test]
+fn cascaded_tanks() {
+    finds("CascadedTanks", "cascaded_tanks", "overflow", "lower.port", 0.1);
+    claims_nothing("CascadedTanks", "cascaded_tanks");
+}
+
+#[test]
+fn positioning_axis() {
+    finds("Emps", "emps", "dry_friction", "motor.flange", 0.5);
+    claims_nothing("Emps", "emps");
+}
