@@ -148,7 +148,7 @@ impl Tape {
         let kept = STRETCHED.max(samples / STRETCHED_PART);
         match self {
             Tape::Nothing => Vec::new(),
-            Tape::Stretches if kept < samples => {
+            Tape::Stretches if 2 * kept < samples => {
                 let length = kept / STRETCHES;
                 let start = |i: usize| i * (samples - length) / (STRETCHES - 1);
                 (0..STRETCHES).map(|i| start(i)..start(i) + length).collect()
