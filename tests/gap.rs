@@ -197,7 +197,6 @@ fn friction_above_a_speed_is_told_by_its_shape() {
     assert_eq!(shape.term, "Friction that depends on the speed in a way of its own");
 }
 
-/// The filter cannot follow a sensor that loses the sign where nothing else tells it.
 #[test]
 fn a_periodic_force_that_follows_nothing_is_told_as_one() {
     let found = diagnosed(("rub.P", 3.0), 2);
@@ -216,6 +215,28 @@ fn a_parameter_far_beyond_its_tolerance_is_named() {
     assert_eq!(found.effects[0].family, "parameter", "{found:?}");
 }
 
+/// From where they are not, a lag and a dead time look alike.
+#[test]
+fn a_dead_time_is_no_lag() {
+    let world = MemoryWorld::single("Slide.mo", MODEL);
+    let early = |seed: u64| {
+        let text = recording(&world, ("rub.F", 0.0), seed);
+        let rows: Vec<Vec<&str>> = text.lines().map(|l| l.split(',').collect()).collect();
+        let row = |k: usize| {
+            let told = rows.get(k + 3).filter(|_| k > 0).unwrap_or(&rows[k])[1];
+            format!("{},{told},{},{}\n", rows[k][0], rows[k][2], rows[k][3])
+        };
+        (0..rows.len()).map(row).collect::<String>()
+    };
+    let (train, held) = (early(11), early(12));
+    let verdict = verdict(world, STUDY, train, held);
+    assert_eq!(verdict.effects.len(), 1, "{:?}", verdict.effects);
+    assert_eq!(verdict.effects[0].family, "dead_time", "{:?}", verdict.effects);
+    let time = &verdict.effects[0].parameters["T_d"];
+    assert!((time.value - 0.012).abs() < 3.0 * time.std, "{time:?}");
+}
+
+/// The filter cannot follow a sensor that loses the sign where nothing else tells it.
 #[test]
 fn a_rectifying_sensor_is_named_although_the_filter_loses_it() {
     let world = MemoryWorld::single("Slide.mo", MODEL);
