@@ -4,7 +4,8 @@ model AccumulatorRealGas "Bladder accumulator, real gas (Redlich and Kwong) with
   outer Oil.Fluid oil "Oil of the circuit";
   parameter SI.Volume V_0(min = 1e-6, max = 1, nominal = 1e-3, displayUnit = "l") = 1e-3 "Volume of the gas at the precharge";
   parameter SI.Pressure p_pre(min = 1e4, max = 1e8, nominal = 1e6) = 1e7 "Precharge, absolute, at T_wall";
-  parameter Real fill(unit = "1", min = 0.05, max = 1) = 0.8 "Volume of the gas at the start over V_0";
+  parameter Real fill(unit = "1", min = 0.05, max = 1) = 0.8 "Volume of the gas at the start over V_0, unless p_start is given";
+  parameter SI.Pressure p_start(min = 0, max = 1e8, nominal = 1e6) = 0 "Pressure of the gas at the start; 0: as fill says";
   parameter SI.Temperature T_wall(min = 220, max = 420) = 293.15 "Temperature of the wall";
   parameter SI.Time tau(min = 0.01, max = 1e5, nominal = 10) = 10 "Thermal time constant of the gas, 5 to 30 s";
   parameter SI.SpecificHeatCapacity R(min = 50, max = 5000) = 296.8 "Gas constant, nitrogen";
@@ -16,7 +17,7 @@ model AccumulatorRealGas "Bladder accumulator, real gas (Redlich and Kwong) with
   SI.Pressure p(nominal = 1e7) "Pressure of the oil";
   SI.Pressure p_gas(nominal = 1e7) "Pressure of the gas";
   SI.Temperature T(start = T_wall, fixed = true, nominal = 300, stateSelect = StateSelect.prefer) "Temperature of the gas";
-  SI.Volume V_gas(start = fill*V_0, fixed = true, nominal = 1e-3, stateSelect = StateSelect.prefer) "Volume of the gas";
+  SI.Volume V_gas(start = if p_start > 0 then V_0*min(p_pre/max(p_start, 1), 1) else fill*V_0, nominal = 1e-3, stateSelect = StateSelect.prefer) "Volume of the gas";
   SI.Volume V_oil(nominal = 1e-3) "Volume of the oil";
   SI.Mass m_gas(nominal = 0.1) "Mass of the gas";
   SI.Mass mass(nominal = 1) "Mass of the oil";
@@ -25,16 +26,22 @@ protected
   parameter Real a(unit = "Pa.m6/kg2") = 0.42748*R^2*T_c^2/p_c "Attraction at the critical temperature";
   parameter Real b(unit = "m3/kg") = 0.08664*R*T_c/p_c "Volume of the molecules";
   Real v_pre(unit = "m3/kg", start = R*T_wall/p_pre, nominal = 1e-2) "Specific volume at the precharge";
-  Real v(unit = "m3/kg", nominal = 1e-2) "Specific volume";
+  Real v(unit = "m3/kg", start = R*T_wall/max(p_pre, p_start), nominal = 1e-2) "Specific volume";
   Real p_T(unit = "Pa/K", nominal = 1e4) "Derivative of the gas pressure by temperature";
   Real p_v(unit = "Pa.kg/m3", nominal = 1e9) "Derivative of the gas pressure by specific volume";
   Real p_dot(unit = "Pa/s", nominal = 1e6) "Rate of the oil pressure";
   SI.Density rho(nominal = 1000) "Density of the oil";
   SI.BulkModulus beta(nominal = 1e9) "Tangent bulk modulus of the oil";
 initial equation
+  if p_start > 0 then
+    p_gas = p_start;
+  else
+    V_gas = fill*V_0;
+  end if;
   p_pre = R*T_wall/(v_pre - b) - a*sqrt(T_c/T_wall)/(v_pre*(v_pre + b));
 equation
   assert(V_0 > 0 and p_pre > 0, "V_0 and the precharge p_pre must be positive");
+  assert(p_start <= 0 or p_start >= p_pre, "The pressure at the start p_start must not lie below the precharge p_pre");
   assert(v > 1.05*b, "The gas is compressed beyond the law of Redlich and Kwong");
   der(v_pre) = 0;
   m_gas = V_0/v_pre;

@@ -3,7 +3,7 @@ model AirVolume "Volume whose air dissolves and comes out of solution with time"
   Interfaces.HydraulicPort port "Port";
   outer Oil.Fluid oil "Oil of the circuit; its density law must follow the undissolved share x_u";
   parameter SI.Volume V(min = 1e-9, max = 10, nominal = 1e-3, displayUnit = "ml") = 1e-3 "Volume";
-  parameter SI.Pressure p_start(nominal = 1e6) = 1e5 "Pressure at the start";
+  parameter SI.Pressure p_start(nominal = 1e6) = 101325 "Pressure at the start";
   parameter Real x_start(unit = "1", min = 0, max = 1) = oil.x_u "Undissolved share of the air at the start";
   parameter SI.Pressure p_sat(min = 1e5, max = 1e8, nominal = 1e6) = 3e6 "Pressure at which all air is dissolved in equilibrium";
   parameter SI.Time tau_d(min = 1e-3, max = 1e4, nominal = 10) = 10 "Time constant of dissolving, 1 to 60 s";

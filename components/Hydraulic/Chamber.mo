@@ -9,7 +9,7 @@ model Chamber "Chamber of a cylinder: oil behind a moving piston"
   parameter SI.Position s_0 = 0 "Position of V_0";
   parameter SI.Volume V_min(min = 1e-12, nominal = 1e-6) = 1e-6 "Least volume";
   parameter SI.Pressure p_ambient(nominal = 1e5) = 101325 "Pressure on the other side of the piston, absolute";
-  parameter SI.Pressure p_start(nominal = 1e6) = 1e5 "Pressure at the start";
+  parameter SI.Pressure p_start(nominal = 1e6) = 101325 "Pressure at the start";
   SI.Pressure p(start = p_start, fixed = true, nominal = 1e6, stateSelect = StateSelect.prefer) "Pressure";
   SI.Volume V(nominal = 1e-4) "Volume";
   SI.Mass mass(nominal = 0.1) "Mass of the oil";

@@ -18,8 +18,8 @@ model Cylinder "Double-acting cylinder: two chambers, seal friction, leakage, en
   parameter SI.Pressure p_ambient(nominal = 1e5) = 101325 "Pressure on the rod outside";
   parameter SI.Position s_start = 0.05 "Position at the start";
   parameter SI.Velocity v_start = 0 "Velocity at the start";
-  parameter SI.Pressure p_1_start(nominal = 1e6) = 1e5 "Pressure of chamber 1 at the start";
-  parameter SI.Pressure p_2_start(nominal = 1e6) = 1e5 "Pressure of chamber 2 at the start";
+  parameter SI.Pressure p_1_start(nominal = 1e6) = 101325 "Pressure of chamber 1 at the start";
+  parameter SI.Pressure p_2_start(nominal = 1e6) = 101325 "Pressure of chamber 2 at the start";
   Chamber chamber_1(A = A_1, side = 1, V_0 = V_01, s_0 = 0, p_ambient = p_ambient, p_start = p_1_start) "Chamber 1";
   Chamber chamber_2(A = A_2, side = -1, V_0 = V_02, s_0 = stroke, p_ambient = p_ambient, p_start = p_2_start) "Chamber 2";
   LaminarGap leak(G = C_i, mu_G = mu_C, followViscosity = followViscosity) "Leakage past the piston";
@@ -34,6 +34,7 @@ model Cylinder "Double-acting cylinder: two chambers, seal friction, leakage, en
   SI.Pressure p_2(nominal = 1e6) "Pressure of chamber 2";
 equation
   assert(stroke > 0, "The stroke must be positive");
+  assert(s_start > -0.01*stroke and s_start < 1.01*stroke, "The position at the start s_start must lie from 0 to the stroke");
   connect(port_1, chamber_1.port);
   connect(port_2, chamber_2.port);
   connect(port_1, leak.port_a);

@@ -7,7 +7,7 @@ model Junction "Three-way junction: a small volume with a loss in each branch"
   parameter Real zeta_straight(unit = "1", min = 1e-3, max = 1e3) = 0.1 "Loss coefficient between a and b; half of it in each branch";
   parameter Real zeta_branch(unit = "1", min = 1e-3, max = 1e3) = 1.2 "Loss coefficient into or out of c";
   parameter SI.Volume V(min = 1e-9, max = 1, nominal = 1e-5, displayUnit = "ml") = 1e-5 "Volume";
-  parameter SI.Pressure p_start(nominal = 1e6) = 1e5 "Pressure at the start";
+  parameter SI.Pressure p_start(nominal = 1e6) = 101325 "Pressure at the start";
   LocalLoss loss_a(d = d, zeta = zeta_straight/2) "Loss in branch a";
   LocalLoss loss_b(d = d, zeta = zeta_straight/2) "Loss in branch b";
   LocalLoss loss_c(d = d, zeta = zeta_branch) "Loss in branch c";

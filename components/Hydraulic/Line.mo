@@ -11,7 +11,7 @@ model Line "Pipe or hose of n cells: inertia of the oil, laminar and turbulent f
   replaceable model Friction = LineFriction.Steady constrainedby LineFriction.Law "Law of friction";
   parameter SI.BulkModulus beta_wall(min = 1e6, nominal = 1e9) = Modelica.Constants.inf "Modulus of the wall: 0.5 to 1 GPa for hoses, infinite for tubes";
   parameter SI.Length dh = 0 "Height of port b over port a";
-  parameter SI.Pressure p_start(nominal = 1e6) = 1e5 "Pressure at the start, at port a";
+  parameter SI.Pressure p_start(nominal = 1e6) = 101325 "Pressure at the start, at port a";
   parameter SI.Pressure p_b_start(nominal = 1e6) = p_start "Pressure at the start, at port b";
   parameter SI.MassFlowRate m_flow_start(nominal = 0.1) = 0 "Mass flow at the start";
   SI.Pressure p[N](start = {p_start + (p_b_start - p_start)*x[i] for i in 1:N}, each fixed = true, each nominal = 1e6) "Pressures of the cells";

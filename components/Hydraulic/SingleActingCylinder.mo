@@ -11,7 +11,7 @@ model SingleActingCylinder "Single-acting cylinder: pressure extends, spring and
   parameter SI.Force F_0(min = 0) = 200 "Force of the return spring at s = 0";
   parameter SI.Pressure p_ambient(nominal = 1e5) = 101325 "Pressure outside";
   parameter SI.Position s_start = 0.01 "Position at the start";
-  parameter SI.Pressure p_start(nominal = 1e6) = 1e5 "Pressure at the start";
+  parameter SI.Pressure p_start(nominal = 1e6) = 101325 "Pressure at the start";
   Chamber chamber(A = A, side = 1, V_0 = V_0, p_ambient = p_ambient, p_start = p_start) "Chamber";
   Mechanical.Translational.Mass piston(m = m, s(start = s_start)) "Piston and rod";
   Mechanical.Translational.EndStops stops(s_min = 0, s_max = stroke) "End stops";
@@ -20,6 +20,7 @@ model SingleActingCylinder "Single-acting cylinder: pressure extends, spring and
   replaceable SealFriction.Stribeck seal constrainedby SealFriction.Law "Friction of the seal";
 equation
   assert(stroke > 0 and c > 0, "The stroke and the spring c must be positive");
+  assert(s_start > -0.01*stroke and s_start < 1.01*stroke, "The position at the start s_start must lie from 0 to the stroke");
   connect(port, chamber.port);
   connect(chamber.flange, piston.flange_a);
   connect(seal.flange, piston.flange_a);

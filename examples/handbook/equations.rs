@@ -30,14 +30,22 @@ pub fn connections(list: &[Equation]) -> Vec<(Span, Span)> {
     out
 }
 
-/// What is asserted: the condition typeset, and the message.
+/// What is asserted: the condition typeset, and the message; those in loops and branches too.
 pub fn conditions(list: &[Equation]) -> Vec<(String, String)> {
     let mut out = Vec::new();
     for equation in list {
-        if let EquationKind::Call(call) = &equation.kind
-            && let Some((condition, message)) = assertion(call)
-        {
-            out.push((format!("<math>{}</math>", math::expression(condition)), message));
+        match &equation.kind {
+            EquationKind::Call(call) => {
+                if let Some((condition, message)) = assertion(call) {
+                    out.push((format!("<math>{}</math>", math::expression(condition)), message));
+                }
+            }
+            EquationKind::For { body, .. } => out.extend(conditions(body)),
+            EquationKind::If { branches, otherwise } => {
+                branches.iter().for_each(|(_, body)| out.extend(conditions(body)));
+                out.extend(conditions(otherwise));
+            }
+            _ => {}
         }
     }
     out
@@ -60,8 +68,12 @@ fn equation(e: &Equation) -> String {
         EquationKind::Equal(a, b) => relation(a, "=", b, e.description.as_deref()),
         EquationKind::Connect(..) => String::new(),
         EquationKind::If { branches, otherwise } => {
-            let branches = branches.iter().map(|(c, body)| (c, equations(body)));
-            alternatives(branches, &equations(otherwise), "if", "else if")
+            let written: Vec<_> = branches.iter().map(|(c, body)| (c, equations(body))).collect();
+            let otherwise = equations(otherwise);
+            if otherwise.is_empty() && written.iter().all(|(_, body)| body.is_empty()) {
+                return String::new();
+            }
+            alternatives(written.into_iter(), &otherwise, "if", "else if")
         }
         EquationKind::For { iterators, body } => repeated(iterators, &equations(body)),
         EquationKind::When(branches) => {
@@ -147,6 +159,9 @@ fn alternatives<'a>(
 }
 
 fn repeated(iterators: &[Iterator], body: &str) -> String {
+    if body.is_empty() {
+        return String::new();
+    }
     let over = iterators.iter().map(math::iterator).collect::<Vec<_>>().join("<mo>,</mo>");
     format!(
         "<div class=\"eq\"><span class=\"kw\">for</span> <math><mrow>{over}</mrow></math></div><div class=\"in\">{body}</div>\n"

@@ -50,6 +50,14 @@ pub fn expression(e: &Expr) -> String {
 
 /// A sum on the right of a long equation, cut into lines of terms; one line where it is short.
 pub fn lines(e: &Expr, room: usize) -> Vec<String> {
+    if let ExprKind::Call { function, args, named } = &e.kind
+        && width(e) > room
+        && named.is_empty()
+        && args.len() > 1
+        && function.parts.len() > 1
+    {
+        return call_lines(function, args, room);
+    }
     let mut terms = Vec::new();
     split(e, true, &mut terms);
     let mut out: Vec<String> = Vec::new();
@@ -70,6 +78,26 @@ pub fn lines(e: &Expr, room: usize) -> Vec<String> {
             }
         }
         used += width + 3;
+    }
+    out
+}
+
+/// A call of a function of a package, with a new line before an argument that has no room.
+fn call_lines(function: &Reference, args: &[Expr], room: usize) -> Vec<String> {
+    let name: Vec<&str> = function.parts.iter().map(|p| p.name.name.as_str()).collect();
+    let mut out = vec![format!("{}<mo stretchy=\"false\">(</mo>", upright(&name.join(".")))];
+    let mut used = name_width(function) + 1;
+    for (i, arg) in args.iter().enumerate() {
+        let end = if i + 1 < args.len() { "<mo>,</mo>" } else { "<mo stretchy=\"false\">)</mo>" };
+        let text = format!("{}{end}", write(arg, Level::Whole));
+        match out.last_mut() {
+            Some(line) if used + width(arg) <= room => line.push_str(&text),
+            _ => {
+                out.push(text);
+                used = 0;
+            }
+        }
+        used += width(arg) + 1;
     }
     out
 }
@@ -103,6 +131,7 @@ pub fn width(e: &Expr) -> usize {
             branches.iter().map(|(c, v)| width(c) + width(v) + 6).max().unwrap_or(0).max(width(otherwise))
         }
         ExprKind::Array(items) => items.iter().map(|i| width(i) + 1).sum::<usize>() + 2,
+        ExprKind::Tuple(items) => items.iter().flatten().map(|i| width(i) + 1).sum::<usize>() + 2,
         _ => 6,
     }
 }

@@ -3,21 +3,24 @@
 use clap::Args;
 use include_dir::{Dir, include_dir};
 
+use super::describe::{describe, resembling};
 use super::{Ending, Failure, files};
 use crate::diag::{Code, Diagnostic, nearest};
 
 /// One page a code: cause, smallest example, remedy.
 static PAGES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/docs/errors");
 
-/// Show the page behind a message's code
+/// Show the page behind a message's code, or what a class of the library offers
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
   bramah explain E103
-  bramah explain        lists all codes")]
+  bramah explain Hydraulic            the classes of a package
+  bramah explain Hydraulic.Cylinder   its ports and parameters
+  bramah explain                      lists all codes")]
 pub(super) struct ExplainArgs {
-    /// The code, such as E103
-    #[arg(value_name = "CODE")]
+    /// The code, such as E103, or the class, such as Hydraulic.Cylinder
+    #[arg(value_name = "CODE OR CLASS")]
     code: Option<String>,
 }
 
@@ -37,7 +40,7 @@ fn list() -> String {
 fn page(asked: &str) -> Result<String, Failure> {
     let wanted = asked.trim().to_uppercase();
     let Some(code) = Code::ALL.iter().find(|c| c.id() == wanted) else {
-        return Err(unknown(asked, &wanted));
+        return describe(asked.trim()).ok_or_else(|| unknown(asked, &wanted));
     };
     let file = PAGES.get_file(format!("{}.md", code.id())).and_then(include_dir::File::contents_utf8);
     Ok(match file {
@@ -50,6 +53,10 @@ fn unknown(asked: &str, wanted: &str) -> Failure {
     let same_number = |c: &&Code| wanted.len() == 4 && c.id()[1..] == wanted[1..];
     let near = Code::ALL.iter().find(same_number).map(|c| c.id());
     let near = near.or_else(|| nearest(wanted, Code::ALL.iter().map(|c| c.id())));
+    if near.is_none() && wanted.len() > 4 {
+        let text = format!("there is neither a message nor a class of the library called `{asked}`");
+        return Diagnostic::new(Code::BadArgument, text).help(format!("see {}", resembling(asked))).into();
+    }
     let diagnostic = Diagnostic::new(Code::BadArgument, format!("there is no message with the code `{asked}`"));
     match near {
         Some(code) => diagnostic.help(format!("did you mean `{code}`? `bramah explain` lists all codes")),

@@ -11,6 +11,7 @@ mod columns;
 mod compare;
 mod completions;
 mod data;
+mod describe;
 mod explain;
 mod files;
 mod gap;

@@ -131,6 +131,7 @@ impl<'a> Instance<'a, '_> {
         names.extend(["Real", "Integer", "Boolean", "String"].map(Symbol::new));
         let own: Vec<ClassId> = self.library.own.clone();
         names.extend(own.iter().map(|&o| self.library.class(o).name.name));
+        names.extend(self.library.top_level());
         names
     }
 

@@ -545,7 +545,12 @@ impl<'a> Instance<'a, '_> {
             (false, Val::Text(_)) => {
                 let name = data.name.clone();
                 let message = format!("`{name}` is {} and cannot take {}", type_name(data.ty), value.describe());
-                self.report(Diagnostic::new(Code::TypeMismatch, message).at(b.expr.span, "the value").instance(name));
+                let numeric = data.ty == Type::Real;
+                let mut d = Diagnostic::new(Code::TypeMismatch, message).at(b.expr.span, "the value").instance(name);
+                if numeric {
+                    d = d.help("write a number without quotes, in the SI unit of the variable: 200 bar are `200e5`; only `--set` and experiment files take units");
+                }
+                self.report(d);
                 None
             }
             _ => Some(value),

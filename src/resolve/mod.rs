@@ -227,7 +227,15 @@ impl<'a> Library<'a> {
 
     /// Names of the classes stored in the folder of a package, sorted; empty for other classes.
     pub fn folder_members(&self, class: ClassId) -> Vec<Symbol> {
-        let Some(folder) = &self.entries[class.0 as usize].folder else { return Vec::new() };
+        self.entries[class.0 as usize].folder.as_ref().map_or_else(Vec::new, Self::names_in)
+    }
+
+    /// Names of the packages and models at the top of all folders.
+    pub fn top_level(&self) -> Vec<Symbol> {
+        self.roots.iter().flat_map(Self::names_in).collect()
+    }
+
+    fn names_in(folder: &Folder<'a>) -> Vec<Symbol> {
         let mut names = Vec::new();
         for (name, is_folder) in folder.world.list(&folder.path).unwrap_or_default() {
             if is_folder && has_package(folder.world, &folder.path.join(&name)) {

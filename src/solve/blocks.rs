@@ -2,7 +2,7 @@
 //! equations.
 
 use super::modes::Modes;
-use super::newton::{Newton, NewtonFailure, Scales};
+use super::newton::{Newton, NewtonFailure, Reason, Scales};
 use crate::expr::VarId;
 use crate::lower::{AssignCode, BlockCode, LoopCode, MixedCode, System, Target};
 use crate::structure::Unknown;
@@ -19,8 +19,9 @@ pub enum BlockFailure {
     Loop(Box<NewtonFailure>),
     /// An explicit value that is not finite.
     NonFinite(Target),
-    /// Discrete values of a mixed loop that contradict each other whatever is tried.
-    Mixed(Vec<VarId>),
+    /// Discrete values of a mixed loop that contradict each other whatever is tried; and what the equations did not
+    /// determine with some of these values.
+    Mixed(Vec<VarId>, Option<Unknown>),
 }
 
 /// What all blocks share.
@@ -58,6 +59,8 @@ struct MixedWork {
     targets: Vec<VarId>,
     /// Positions in `slots` that are modes.
     modes: Vec<usize>,
+    /// What a singular matrix left undetermined in a search.
+    undetermined: Option<Unknown>,
 }
 
 impl Blocks {
@@ -144,23 +147,45 @@ impl MixedWork {
             slots: targets.iter().map(|t| t.slot).collect(),
             modes: (0..ids.len()).filter(|&i| modes.crossing(ids[i]).is_some()).collect(),
             targets: ids,
+            undetermined: None,
+        }
+    }
+
+    /// With what the integrator saw cross; when that contradicts itself, without: the crossing was seen within the error
+    /// of the solution but too early, and will be seen again.
+    fn run(&mut self, code: &MixedCode, setting: &Setting<'_>, values: &mut [f64]) -> Result<(), BlockFailure> {
+        let start = self.read(values);
+        self.undetermined = None;
+        match self.search(code, setting, values, &start) {
+            Err(BlockFailure::Mixed(..)) if setting.modes.forces() => {
+                self.write(&start, values);
+                let mut modes = setting.modes.clone();
+                modes.release();
+                self.search(code, &Setting { modes: &modes, ..*setting }, values, &start)
+            }
+            end => end,
         }
     }
 
     /// Fixed point first; when it circles, one change at a time; then combinations of modes, those next to the present
     /// one first.
-    fn run(&mut self, code: &MixedCode, setting: &Setting<'_>, values: &mut [f64]) -> Result<(), BlockFailure> {
-        let start = self.read(values);
+    fn search(
+        &mut self,
+        code: &MixedCode,
+        setting: &Setting<'_>,
+        values: &mut [f64],
+        start: &[f64],
+    ) -> Result<(), BlockFailure> {
         for single in [false, true] {
-            self.write(&start, values);
+            self.write(start, values);
             match self.iterate(code, setting, values, single) {
                 Ok(true) => return Ok(()),
                 Ok(false) | Err(BlockFailure::Loop(_) | BlockFailure::NonFinite(_)) => {}
                 Err(other) => return Err(other),
             }
         }
-        self.write(&start, values);
-        self.combine(code, setting, values, &start)
+        self.write(start, values);
+        self.combine(code, setting, values, start)
     }
 
     fn read(&self, values: &[f64]) -> Vec<f64> {
@@ -179,7 +204,13 @@ impl MixedWork {
         setting: &Setting<'_>,
         values: &mut [f64],
     ) -> Result<(), BlockFailure> {
-        code.continuous.iter().zip(&mut self.continuous).try_for_each(|(c, w)| w.run(c, setting, values))
+        let solved = code.continuous.iter().zip(&mut self.continuous).try_for_each(|(c, w)| w.run(c, setting, values));
+        if let Err(BlockFailure::Loop(failure)) = &solved
+            && let Reason::Singular(unknown) = failure.reason
+        {
+            self.undetermined = Some(unknown);
+        }
+        solved
     }
 
     fn run_discrete(&self, code: &MixedCode, setting: &Setting<'_>, values: &mut [f64]) {
@@ -238,7 +269,7 @@ impl MixedWork {
         }
         self.write(start, values);
         self.solve_continuous(code, setting, values)?;
-        Err(BlockFailure::Mixed(self.targets.clone()))
+        Err(BlockFailure::Mixed(self.targets.clone(), self.undetermined))
     }
 
     /// Whether the modes, flipped where `flips` says, reproduce themselves.

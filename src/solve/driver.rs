@@ -122,6 +122,10 @@ pub struct Driver<'a, 'c> {
     silent: bool,
     /// Pauses in a row between which time hardly moved.
     creep: u32,
+    /// Where algebraic unknowns were last solved anew without an event.
+    renewed: f64,
+    /// How often.
+    renewals: u32,
     /// Other states to go on with.
     choice: Option<StateChoice>,
     program: Program,
@@ -242,6 +246,8 @@ fn prepare<'a, 'c>(
         grid: grid.unwrap_or_else(|| Grid::new(start, settings.stop_time, settings.interval)),
         choice: None,
         creep: 0,
+        renewed: f64::NEG_INFINITY,
+        renewals: 0,
         chatter: Chatter::new(settings.stop_time - settings.start_time, settings.events_at_once),
         told: Told::new(system),
         pending: Vec::new(),

@@ -19,6 +19,8 @@ pub struct Outcome {
     pub changed: bool,
     /// A state was set by `reinit`.
     pub reinitialised: bool,
+    /// A crossing that the integrator saw did not take place.
+    pub refused: bool,
     /// The message of a `terminate`.
     pub terminate: Option<String>,
     /// Assertions inside `when` that failed: index into `Dae::actions`, and the text.

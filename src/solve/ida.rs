@@ -15,6 +15,10 @@ use std::os::raw::{c_int, c_long, c_void};
 use std::ptr::null_mut;
 use sundials_sys as s;
 
+/// Quarterings of one step before the integrator gives up, unless the shortest step comes first. IDA's own ten stop at a
+/// millionth of the usual step, before a valve's edge: a pressure between closed valves runs away as one of them opens.
+const MOST_FAILURES: c_int = 30;
+
 /// How an evaluation went.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Evaluation {
@@ -197,6 +201,8 @@ impl<E: Equations> Ida<E> {
                 s::IDASetJacFn(self.memory, Some(on_jacobian::<E>)),
                 if roots > 0 { s::IDARootInit(self.memory, roots, Some(on_crossings::<E>)) } else { 0 },
                 s::IDASetNoInactiveRootWarn(self.memory),
+                s::IDASetMaxConvFails(self.memory, MOST_FAILURES),
+                s::IDASetMaxErrTestFails(self.memory, MOST_FAILURES),
             ];
             results.into_iter().try_for_each(check)
         }

@@ -2,14 +2,14 @@
 
 use super::blocks::{BlockFailure, Blocks, Setting};
 use super::modes::Modes;
-use super::newton::Scales;
+use super::newton::{NewtonFailure, Reason, Scales};
 use super::report;
 use super::settings::Settings;
 use crate::diag::{Code, Diagnostic};
 use crate::expr::{ExprId, Node};
-use crate::flat::{Equation, Type, Variability};
+use crate::flat::{Equation, Origin, Type, Variability};
 use crate::lower::{Layout, System};
-use crate::structure::{Block, Dae};
+use crate::structure::{Block, Dae, Unknown, places, starts};
 
 /// A redundant fixed start may be off by this part of its size.
 const CHECK_TOLERANCE: f64 = 1e-6;
@@ -91,6 +91,16 @@ pub fn solve(system: &System, scales: &Scales, modes: &mut Modes, values: &mut [
         }
         other => other,
     };
+    let result = match result {
+        Err(BlockFailure::Loop(failure)) if failure.reason == Reason::NoConvergence => {
+            let failed = values.to_vec();
+            start.elsewhere(&failure, values, &guesses).map_err(|_| {
+                values.copy_from_slice(&failed);
+                BlockFailure::Loop(failure)
+            })
+        }
+        other => other,
+    };
     values[Layout::LAMBDA] = 1.0;
     values[Layout::INITIAL] = 0.0;
     modes.after = true;
@@ -123,8 +133,18 @@ fn contradiction(system: &System, equation: &Equation, found: f64, asked: f64) -
     let (found, asked) = (report::number(found), report::number(asked));
     let text =
         format!("`{name}` is to start at {asked}, but the other start values and the constraints make it {found}");
-    report::at_origin(dae, Code::InitialOver, text, equation.origin, "this start is fixed")
-        .help("fix fewer of the starts that the constraints tie together, or give values that fit")
+    let Node::Var(v) = dae.exprs.node(equation.lhs) else {
+        return report::at_origin(dae, Code::InitialOver, text, equation.origin, "this start is fixed")
+            .help("fix fewer of the starts that the constraints tie together, or give values that fit");
+    };
+    let origin = Origin { span: places::place_of(&dae.variables, &dae.instances, v), ..equation.origin };
+    let label = format!("`{name}` is fixed at the start");
+    let behind = starts::parameter_behind(&dae.exprs, &dae.variables, v);
+    let freed = starts::freed(&name).map(|m| format!("let it follow from the others: `{m}`"));
+    let given = behind.map(|p| format!("give a value that fits: `{p} = {found}`"));
+    let ways: Vec<String> = freed.into_iter().chain(given).collect();
+    let made = report::at_origin(dae, Code::InitialOver, text, origin, &label);
+    if ways.is_empty() { made.help("free one of these starts") } else { made.help(ways.join("; or ")) }
 }
 
 fn worth_homotopy(dae: &Dae) -> bool {
@@ -149,6 +169,27 @@ impl Start<'_> {
         }
         self.system.aliases(values);
         Ok(())
+    }
+
+    /// From other beginnings of the unknowns of a loop that was not solved: their nominal values, ten times these, a
+    /// tenth. A pressure without a `start` begins at that of its connector, which may be far from where it has to be.
+    fn elsewhere(&mut self, failure: &NewtonFailure, values: &mut [f64], guesses: &[f64]) -> Result<(), BlockFailure> {
+        let mut last = Ok(());
+        for part in [1.0, 10.0, 0.1] {
+            values.copy_from_slice(guesses);
+            values[Layout::LAMBDA] = 1.0;
+            for &(unknown, ..) in &failure.unknowns {
+                let Unknown::Var(v) = unknown else { continue };
+                let i = v.index();
+                let guess = part * self.scales.nominal[i];
+                values[self.system.layout.var(v)] = guess.max(self.scales.min[i]).min(self.scales.max[i]);
+            }
+            last = self.run(values);
+            if last.is_ok() {
+                break;
+            }
+        }
+        last
     }
 
     /// From the simplified system to the actual one in steps that grow while they succeed.

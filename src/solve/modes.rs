@@ -71,6 +71,16 @@ impl Modes {
         self.any_forced = true;
     }
 
+    /// Whether a crossing keeps what IDA has seen.
+    pub fn forces(&self) -> bool {
+        self.any_forced
+    }
+
+    /// Whether the event ended with a crossing on the side from which IDA had seen it leave.
+    pub fn refused(&self, values: &[f64]) -> bool {
+        self.any_forced && self.forced.iter().zip(&self.slots).any(|(f, &s)| !f.is_nan() && *f != values[s])
+    }
+
     /// Ends the event.
     pub fn release(&mut self) {
         if self.any_forced {

@@ -148,7 +148,8 @@ pub fn block_failure(system: &System, code: Code, failure: &BlockFailure, values
                 }
             }
         }
-        BlockFailure::Mixed(variables) => changing(system, code, variables, when),
+        BlockFailure::Mixed(variables, None) => changing(system, code, variables, when),
+        BlockFailure::Mixed(variables, Some(unknown)) => shared(system, code, variables, *unknown, when),
     }
 }
 
@@ -192,6 +193,28 @@ fn loop_failure(system: &System, code: Code, failure: &NewtonFailure, values: &[
 fn trap_in_loops(system: &System, equation: u32, values: &[f64]) -> Option<Trap> {
     let e = system.dae.equations.get(equation as usize)?;
     system.trap(e.lhs, values).or_else(|| system.trap(e.rhs, values))
+}
+
+/// Discrete values without which something is undetermined, as the shares of two dry frictions that hold one shaft.
+fn shared(system: &System, code: Code, variables: &[VarId], unknown: Unknown, when: &str) -> Diagnostic {
+    let dae = &system.dae;
+    let mut components: Vec<&str> = Vec::new();
+    for v in variables {
+        if let Some((instance, _)) = component(dae, dae.variables[v.index()].origin)
+            && !components.contains(&instance)
+        {
+            components.push(instance);
+        }
+    }
+    let names: Vec<String> = components.iter().take(ROWS).map(|c| format!("`{c}`")).collect();
+    let text = format!("`{}` is not determined {when} while {} hold", name(dae, unknown), names.join(", "));
+    let diagnostic = match variables.first() {
+        Some(v) => at_origin(dae, code, text, dae.variables[v.index()].origin, "switches here"),
+        None => Diagnostic::new(code, text),
+    };
+    diagnostic
+        .note("parts that hold one rigid body share its load in no unique way")
+        .help("leave one dry friction to each rigid body, make the others smooth (`SmoothBearingFriction`, `SmoothSupportFriction`), or put what is elastic in reality between them")
 }
 
 /// Discrete values that find no rest.

@@ -6,6 +6,7 @@ use super::dulmage_mendelsohn::Part;
 use super::parameters::Known;
 use super::places;
 use super::regularity::Singularity;
+use super::starts;
 use super::{Alias, Unknown};
 use crate::diag::{Code, Diagnostic, Severity};
 use crate::expr::{ExprId, VarId};
@@ -39,12 +40,21 @@ pub(super) fn contradicting_aliases(draft: &Draft, known: &mut Known, alias: Ali
     let (a, b) = (alias.target, alias.variable);
     let sign = if alias.negated { "-" } else { "" };
     let message = format!("{} and {sign}{} are equal but start at different values", name(draft, a), name(draft, b));
-    let (at_a, at_b) = (format!("starts at {}, fixed", value(a)), format!("starts at {}, fixed", value(b)));
-    let [at_first, at_second] = [a, b].map(|v| draft.variables[v.index()].origin.span);
-    Diagnostic::new(Code::InitialOver, message)
-        .at(at_first, at_a)
-        .at(at_second, at_b)
-        .help("fix the start of one of them only")
+    let mut said = |v: VarId| {
+        let behind = starts::parameter_behind(&draft.exprs, &draft.variables, v);
+        let behind = behind.map_or(String::new(), |p| format!(" by `{p}`"));
+        format!("{} starts at {}{behind}, fixed", name(draft, v), value(v))
+    };
+    let (at_a, at_b) = (said(a), said(b));
+    let mut made = Diagnostic::new(Code::InitialOver, message);
+    for (v, text) in [(a, at_a), (b, at_b)] {
+        made = made.at(places::own_place(draft, v), text);
+    }
+    // the component nearest to the user's model is the one that was added to the other
+    let depth = |v: VarId| draft.variables[v.index()].name.matches('.').count();
+    let freed = starts::freed(&draft.variables[if depth(a) <= depth(b) { a } else { b }.index()].name);
+    let freed = freed.map_or(String::new(), |m| format!(", as by `{m}`"));
+    made.help(format!("fix the start of one of them only{freed}, or give both the same value"))
 }
 
 /// A constraint that would have to be differentiated but cannot be.

@@ -20,11 +20,12 @@ mod matching;
 mod messages;
 mod pantelides;
 mod parameters;
-mod places;
+pub(crate) mod places;
 mod print;
 mod regularity;
 mod solve_block;
 mod sorting;
+pub(crate) mod starts;
 mod tearing;
 
 pub use analysis::analyze;

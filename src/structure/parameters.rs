@@ -142,7 +142,7 @@ fn check_one(draft: &Draft, v: VarId, values: &[f64]) -> Option<Diagnostic> {
         (_, Some(high)) if value > high => format!("more than its `max`, {high}"),
         _ => return None,
     };
-    let unit = variable.unit.as_deref().map(|u| format!(" {u}")).unwrap_or_default();
+    let unit = variable.unit.as_deref().filter(|u| *u != "1").map(|u| format!(" {u}")).unwrap_or_default();
     let message = format!("`{}` is {value}{unit}, {told}{unit}", variable.name);
     let mut made = Diagnostic::new(Code::OutOfRange, message);
     let holder = &draft.instances[variable.origin.instance as usize];

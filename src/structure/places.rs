@@ -3,23 +3,29 @@
 use super::draft::Draft;
 use crate::diag::Span;
 use crate::expr::VarId;
+use crate::flat::{InstanceInfo, Variable};
 
 /// Where a variable is declared; of a connector's, where the component with the connector is. If that stands in another
 /// file than the model, the innermost component around it that does not, or else the one at the model's top level.
 pub(super) fn own_place(draft: &Draft, v: VarId) -> Span {
-    let origin = draft.variables[v.index()].origin;
-    let own_file = draft.instances[0].span.file;
+    place_of(&draft.variables, &draft.instances, v)
+}
+
+/// [`own_place`], from the lists of variables and instances.
+pub(crate) fn place_of(variables: &[Variable], instances: &[InstanceInfo], v: VarId) -> Span {
+    let origin = variables[v.index()].origin;
+    let own_file = instances[0].span.file;
     let (mut place, mut at) = (origin.span, origin.instance);
-    if at != 0 && is_connector(draft, at) {
-        let connector = &draft.instances[at as usize];
+    if at != 0 && variables.iter().any(|v| v.flow && v.origin.instance == at) {
+        let connector = &instances[at as usize];
         (place, at) = (connector.span, connector.parent);
         if at != 0 {
-            let component = &draft.instances[at as usize];
+            let component = &instances[at as usize];
             (place, at) = (component.span, component.parent);
         }
     }
     while at != 0 && place.file != own_file {
-        let holder = &draft.instances[at as usize];
+        let holder = &instances[at as usize];
         (place, at) = (holder.span, holder.parent);
     }
     place

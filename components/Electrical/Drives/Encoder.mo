@@ -4,7 +4,9 @@ model Encoder "Incremental encoder: speed from counted lines"
   Interfaces.RealOutput w(unit = "rad/s", start = 0, fixed = true) "Measured speed";
   parameter Integer N_c(min = 1) = 10000 "Counts per revolution";
   parameter SI.Time T_s(min = 1e-6) = 0.625e-3 "Sampling period";
-  discrete Real counts(start = 0, fixed = true) "Counted lines at the last sample";
+  discrete Real counts(start = 0) "Counted lines at the last sample";
+initial equation
+  pre(counts) = floor(N_c*flange.phi/(2*Modelica.Constants.pi));
 equation
   assert(N_c > 0 and T_s > 0, "Counts N_c and sampling period T_s must be positive");
   flange.tau = 0;

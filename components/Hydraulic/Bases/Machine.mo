@@ -44,6 +44,7 @@ protected
 equation
   assert(V > 0, "The displacement V must be positive");
   assert(deadVolume >= 0, "The dead volume must not be negative");
+  assert(fill > 0.5 or n_abs < 0.1, "The machine runs dry: the pressure at its inlet lies below p_cav + p_fill/2. Is the inlet open, and does it turn the right way?", AssertionLevel.warning);
   connect(u, u_used);
   if not useInput then
     u_used = 1;

@@ -9,6 +9,7 @@ model LossyGear "Gear with an efficiency that holds for both directions of power
   SI.Power lossPower "Power lost";
 protected
   SI.Power power "Power into flange a";
+  Real side(unit = "1") "1: a drives, -1: b drives";
   Real eta_ab(unit = "1") "Torque of b over ideal torque";
 equation
   assert(abs(ratio) > 0, "The ratio of the gear must not be zero");
@@ -16,9 +17,9 @@ equation
   flange_a.phi = ratio*flange_b.phi;
   w = der(flange_a.phi);
   power = w*flange_a.tau;
-  eta_ab = (eta + 1/eta)/2 + (eta - 1/eta)/2*Smooth.sgn(power, P_0);
+  side = Smooth.sgn(power, P_0);
+  eta_ab = 1 - (1 - eta)*noEvent(max(side, 0)) - (1/eta - 1)*noEvent(min(side, 0));
   flange_b.tau = -ratio*eta_ab*flange_a.tau;
   lossPower = power*(1 - eta_ab);
-  annotation(Documentation(info = "<html><p>Torque at b is <code>eta</code> times the ideal one where a drives and <code>1/eta</code> times where b drives. Around zero power the two
-are blended over <code>P_0</code>; there the loss may be slightly negative, by less than <code>0.3 P_0 (1/eta - eta)</code>.</p></html>"));
+  annotation(Documentation(info = "<html><p>Torque at b is <code>eta</code> times the ideal one where a drives and <code>1/eta</code> times where b drives. Around zero power the loss sets in over <code>P_0</code>; it is negative nowhere.</p></html>"));
 end LossyGear;

@@ -10,14 +10,16 @@ model Screw "Screw spindle with efficiency"
 protected
   parameter Real lead(unit = "m/rad") = pitch/(2*Modelica.Constants.pi) "Way per radian";
   SI.Power power "Power out of the nut";
+  Real side(unit = "1") "1: the spindle drives, -1: the nut drives";
   Real k(unit = "1") "Torque over ideal torque";
 equation
   assert(pitch > 0, "The pitch must be positive");
   assert(eta > 0 and eta <= 1 and eta_back >= 0 and eta_back <= 1, "The efficiencies must lie from 0 to 1");
   flange_T.s = lead*flange_R.phi;
   power = -flange_T.f*der(flange_T.s);
-  k = (1/eta + eta_back)/2 + (1/eta - eta_back)/2*Smooth.sgn(power, P_0);
+  side = Smooth.sgn(power, P_0);
+  k = 1 + (1/eta - 1)*noEvent(max(side, 0)) + (1 - eta_back)*noEvent(min(side, 0));
   flange_R.tau = -lead*k*flange_T.f;
   lossPower = (k - 1)*power;
-  annotation(Documentation(info = "<html><p>Ideal where <code>eta = 1</code>. The efficiency of back driving follows for equal friction from that of driving, <code>2 - 1/eta</code>.</p></html>"));
+  annotation(Documentation(info = "<html><p>Ideal where <code>eta = 1</code>. The efficiency of back driving follows for equal friction from that of driving, <code>2 - 1/eta</code>. Around zero power the loss sets in over <code>P_0</code>; it is negative nowhere.</p></html>"));
 end Screw;

@@ -16,21 +16,25 @@ impl<'a> Driver<'a, '_> {
     /// Runs the event iteration and puts root functions on the right side.
     pub(super) fn iterate(&mut self, model: &mut Model<'a>, cause: Cause) -> Result<Outcome, Stop> {
         let (system, t) = (self.system, self.t);
-        let outcome = self.events.iterate(system, &self.scales, &self.modes, &mut model.values).map_err(|failure| {
-            let when = match cause {
-                Cause::Start => "at the start".to_string(),
-                _ => format!("at the event at time {} s", report::number(t)),
-            };
-            let diagnostic = match failure {
-                EventFailure::Blocks(f) => report::block_failure(system, Code::EventFailed, &f, &model.values, &when),
-                EventFailure::Endless(variables) => report::changing(system, Code::EventFailed, &variables, &when),
-            };
-            let end = match diagnostic.code {
-                Code::NonFinite => End::NonFinite,
-                _ => End::StepTooSmall,
-            };
-            Stop::new(end, diagnostic)
-        })?;
+        let mut outcome =
+            self.events.iterate(system, &self.scales, &self.modes, &mut model.values).map_err(|failure| {
+                let when = match cause {
+                    Cause::Start => "at the start".to_string(),
+                    _ => format!("at the event at time {} s", report::number(t)),
+                };
+                let diagnostic = match failure {
+                    EventFailure::Blocks(f) => {
+                        report::block_failure(system, Code::EventFailed, &f, &model.values, &when)
+                    }
+                    EventFailure::Endless(variables) => report::changing(system, Code::EventFailed, &variables, &when),
+                };
+                let end = match diagnostic.code {
+                    Code::NonFinite => End::NonFinite,
+                    _ => End::StepTooSmall,
+                };
+                Stop::new(end, diagnostic)
+            })?;
+        outcome.refused = self.modes.refused(&model.values);
         self.modes.release();
         if !model.roots.is_empty() {
             system.crossings_from(&mut model.values, model.roots.raw());
@@ -167,7 +171,9 @@ impl<'a> Driver<'a, '_> {
         let t = self.t;
         let next = self.next_stop();
         let ida = self.ida.as_mut().expect("made before the first step");
+        // what was seen crossed in the integrator's past would never be seen again
         let serves = !outcome.reinitialised
+            && !outcome.refused
             && match cause {
                 Cause::Root => self.restart.past_serves_ahead(ida, t, outcome.changed),
                 _ => self.restart.past_serves(ida, t, next),

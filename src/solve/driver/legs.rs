@@ -17,6 +17,9 @@ const PATIENCE: u32 = 20;
 /// nothing about how fast things begin.
 const SHORTEST_STEP: f64 = 1e-15;
 
+/// New beginnings of a run without an event.
+const MOST_RENEWALS: u32 = 1000;
+
 impl<'a> Driver<'a, '_> {
     pub(super) fn integrate(&mut self) -> Flow {
         self.reach()?;
@@ -97,10 +100,36 @@ impl<'a> Driver<'a, '_> {
                 }
                 Err((failure, t)) => {
                     self.t = t;
-                    return Err(self.failed(failure));
+                    if !self.renew(&failure) {
+                        return Err(self.failed(failure));
+                    }
+                    self.ida().set_stop(to);
+                    self.bound_steps();
                 }
             }
         }
+    }
+
+    /// Where the corrector finds no step, algebraic unknowns may have drifted from their equations within what the error
+    /// test allows: where a flow of no size decides on a pressure, as between closed valves, that is far. They are solved
+    /// anew, and the integrator begins again; true when it does.
+    fn renew(&mut self, failure: &Failure) -> bool {
+        let known = *failure == Failure::Convergence && self.carried.is_none();
+        if !known || self.t <= self.renewed || self.renewals >= MOST_RENEWALS {
+            return false;
+        }
+        self.renewed = self.t;
+        self.renewals += 1;
+        self.statistics.restarts += 1;
+        let t = self.t;
+        let solved = self.with_model(|driver, model, y, yp| {
+            model.observe(t, y, yp);
+            driver.restart.before(driver.system, &model.values, y);
+            let solved = driver.iterate(model, Cause::Time).is_ok();
+            driver.restart.gather(driver.system, &model.values);
+            solved
+        });
+        solved && self.first_step(Cause::Time)
     }
 
     fn bound_steps(&mut self) {

@@ -192,9 +192,9 @@ fn contradicting_starts() {
     m.reals("x y").fixed("x = 1; y = 3").equations("der(x) = -x; y = x");
     insta::assert_snapshot!(error(&m), @r"
     E401: `x` and `y` are equal but start at different values
-      at: starts at 1, fixed
-      at: starts at 3, fixed
-      help: fix the start of one of them only
+      at: `x` starts at 1, fixed
+      at: `y` starts at 3, fixed
+      help: fix the start of one of them only, as by `x(fixed = false)`, or give both the same value
     ");
 }
 

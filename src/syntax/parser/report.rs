@@ -102,7 +102,7 @@ impl Parser<'_> {
         let advice = match token.kind {
             TokenKind::Unknown => return advice_on_character(self.word(token)),
             TokenKind::Ident if is_number(previous) && !self.is_on_new_line() => {
-                "a product is written with `*`; a unit belongs into the attribute `unit`, not behind the number"
+                "a product is written with `*`; a value stands in the SI unit of its variable, without the unit behind it: 200 bar are `200e5`"
             }
             TokenKind::Equal if self.blames_comparison() => "equality is tested with `==`",
             TokenKind::StarStar => "a power is written `a^b`",

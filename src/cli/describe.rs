@@ -1,0 +1,196 @@
+//! What a shipped class offers to those who use it, as text: ports, parameters, members of a package.
+
+use crate::resolve::{ClassId, Library, Trees, nested_classes};
+use crate::shipped::Shipped;
+use crate::syntax::ast::{ClassBody, ClassKind, Component, ElementKind, Path, Variability};
+use crate::syntax::symbol::Symbol;
+use crate::world::World;
+use std::fmt::Write;
+
+/// The packages to begin with.
+const PACKAGES: [&str; 6] = ["Hydraulic", "Oil", "Mechanical", "Electrical", "Thermal", "Signal"];
+
+/// A page about a class that ships, `None` where there is none of this name.
+pub(super) fn describe(name: &str) -> Option<String> {
+    with_library(|library| {
+        let id = library.find(name)?;
+        let class = library.class(id);
+        let mut page = format!("{name}: {}\n", class.description.as_deref().unwrap_or("(no description)"));
+        match class.kind {
+            ClassKind::Package => members(library, id, &mut page),
+            _ => offers(library, id, &mut page),
+        }
+        Some(page)
+    })
+}
+
+/// The classes of the library whose name resembles a word, or else its packages.
+pub(super) fn resembling(name: &str) -> String {
+    with_library(|library| {
+        let last = name.rsplit('.').next().unwrap_or_default().to_lowercase();
+        let mut found = Vec::new();
+        for package in PACKAGES {
+            if let Some(id) = library.find(package) {
+                search(library, id, &last, &mut found);
+            }
+        }
+        if found.is_empty() { PACKAGES.map(str::to_owned).to_vec() } else { found }
+    })
+    .join(", ")
+}
+
+fn with_library<T>(act: impl FnOnce(&mut Library<'_>) -> T) -> T {
+    let (trees, shipped) = (Trees::new(), Shipped);
+    let roots = Shipped::roots().map(|root| (&shipped as &dyn World, root)).into();
+    act(&mut Library::new(&trees, roots))
+}
+
+fn search(library: &mut Library<'_>, id: ClassId, word: &str, found: &mut Vec<String>) {
+    for child in children(library, id) {
+        let name = library.full_name(child);
+        let own = name.rsplit('.').next().unwrap_or_default().to_lowercase();
+        if !name.contains(".Examples") && word.len() > 2 && own.contains(word) {
+            found.push(name);
+        }
+        search(library, child, word, found);
+    }
+}
+
+/// Classes in a package, those of its own text first.
+fn children(library: &mut Library<'_>, id: ClassId) -> Vec<ClassId> {
+    if library.class(id).kind != ClassKind::Package {
+        return Vec::new();
+    }
+    let mut names: Vec<Symbol> = nested_classes(library.class(id)).map(|c| c.name.name).collect();
+    names.extend(library.folder_members(id));
+    names.into_iter().filter_map(|name| library.child(id, name)).collect()
+}
+
+fn members(library: &mut Library<'_>, id: ClassId, page: &mut String) {
+    let rows = children(library, id).into_iter().map(|child| {
+        let class = library.class(child);
+        [library.full_name(child), class.description.as_deref().unwrap_or_default().to_owned(), String::new()]
+    });
+    let rows: Vec<[String; 3]> = rows.collect();
+    table(page, &rows);
+    page.push_str("\n`bramah explain CLASS` shows ports and parameters of one of them.\n");
+}
+
+/// Ports, parameters and exchangeable parts, inherited ones too.
+fn offers(library: &mut Library<'_>, id: ClassId, page: &mut String) {
+    let (mut ports, mut parameters, mut parts) = (Vec::new(), Vec::new(), Vec::new());
+    for owner in lineage(library, id) {
+        let ClassBody::Long(body) = &library.class(owner).body else { continue };
+        for element in body.elements.iter().filter(|e| !e.protected) {
+            let ElementKind::Component(c) = &element.kind else { continue };
+            let said = c.description.as_deref().unwrap_or_default().to_owned();
+            let class = dotted(&c.class);
+            if c.prefix.variability == Some(Variability::Parameter) {
+                parameters.push([c.name.name.as_str().to_owned(), value(library, c), said]);
+            } else if class.contains("Interfaces.") {
+                let when = c.condition.as_ref().map(|e| format!(" if {}", library.sources.text(e.span)));
+                ports.push([c.name.name.as_str().to_owned(), class + &when.unwrap_or_default(), said]);
+            } else if c.prefixes.replaceable {
+                parts.push([c.name.name.as_str().to_owned(), class, said]);
+            }
+        }
+    }
+    for (title, rows) in [("Ports", ports), ("Parameters", parameters), ("Parts that can be redeclared", parts)] {
+        if !rows.is_empty() {
+            let _ = write!(page, "\n{title}\n");
+            table(page, &rows);
+        }
+    }
+}
+
+/// `= default`, with the type: units of the library's types are those of SI.
+fn value(library: &Library<'_>, c: &Component) -> String {
+    let kind = c.class.parts.last().map_or("", |p| p.name.as_str());
+    let given = c.modification.as_ref().and_then(|m| m.value.as_ref());
+    match given {
+        Some(e) => format!("{kind} = {}", library.sources.text(e.span)),
+        None => kind.to_owned(),
+    }
+}
+
+/// A class and all it inherits, nearest first.
+fn lineage(library: &mut Library<'_>, id: ClassId) -> Vec<ClassId> {
+    let mut all = vec![id];
+    let mut next = 0;
+    while next < all.len() {
+        let class = library.class(all[next]);
+        let paths: Vec<&Path> = match &class.body {
+            ClassBody::Short { base, .. } => vec![base],
+            ClassBody::Long(body) => body.elements.iter().filter_map(|e| base(&e.kind)).collect(),
+            _ => Vec::new(),
+        };
+        for path in paths {
+            if let Some(found) = around(library, all[next], path).filter(|f| !all.contains(f)) {
+                all.push(found);
+            }
+        }
+        next += 1;
+    }
+    all
+}
+
+fn base(kind: &ElementKind) -> Option<&Path> {
+    match kind {
+        ElementKind::Extends(x) => Some(&x.base),
+        _ => None,
+    }
+}
+
+/// The class of this name in the packages around a class, innermost first.
+fn around(library: &mut Library<'_>, from: ClassId, path: &Path) -> Option<ClassId> {
+    let wanted = dotted(path);
+    let mut scope = library.parent(from);
+    while let Some(id) = scope {
+        let name = format!("{}.{wanted}", library.full_name(id));
+        if let Some(found) = library.find(&name) {
+            return Some(found);
+        }
+        scope = library.parent(id);
+    }
+    library.find(&wanted)
+}
+
+fn dotted(path: &Path) -> String {
+    path.parts.iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(".")
+}
+
+fn table(page: &mut String, rows: &[[String; 3]]) {
+    let width = |k: usize| rows.iter().map(|r| r[k].chars().count()).max().unwrap_or(0).min(40);
+    let (first, second) = (width(0), width(1));
+    for [name, what, said] in rows {
+        let line = format!("  {name:first$}  {what:second$}  {said}");
+        page.push_str(line.trim_end());
+        page.push('\n');
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_class_shows_what_it_inherits() {
+        let page = describe("Hydraulic.Pump").expect("it ships");
+        for wanted in ["port_a", "u  ", "if useInput", "deadVolume", "k_p", "Real = 0.05"] {
+            assert!(page.contains(wanted), "{wanted}:\n{page}");
+        }
+    }
+
+    #[test]
+    fn packages_list_their_members() {
+        assert!(describe("Hydraulic").expect("it ships").contains("Hydraulic.CounterbalanceValve"));
+        assert!(describe("Hydraulic.Spool").expect("it ships").contains("Hydraulic.Spool.SecondOrder"));
+        assert_eq!(describe("Hydraulics.Pump"), None);
+    }
+
+    #[test]
+    fn words_lead_to_classes() {
+        assert!(resembling("counterbalance").contains("Hydraulic.CounterbalanceValve"));
+        assert!(resembling("xyz").starts_with("Hydraulic, Oil"));
+    }
+}

@@ -1,0 +1,179 @@
+//! Whole circuits as engineers put them together: several valves in series without volumes between, cylinders with
+//! masses, closed loops with charge and flushing; they begin and reach their end.
+
+mod rig;
+
+use rig::{at, circuit, column, last, run, shipped};
+
+/// Between flushing valve, relief valve and cooler lie nodes without oil; all are closed while the loop changes sides.
+#[test]
+fn a_hydrostatic_transmission_changes_sides() {
+    let mut simulation = circuit(
+        "inner Oil.ISOVG46 oil(useTemperatureInput = true);
+         Thermal.OilMass heat(C = 60e3, T_start = 303.15);
+         Mechanical.Rotational.ConstantSpeed engine(w_fixed = 188);
+         Hydraulic.AxialPistonMachine pump(useInput = true, useHeatPort = true);
+         Hydraulic.AxialPistonMachine motor(useHeatPort = true);
+         Signal.Ramp swash(height = 1, duration = 2, startTime = 0.5);
+         Hydraulic.ChargeUnit charge;
+         Hydraulic.Volume a(V = 1e-3, p_start = 20e5);
+         Hydraulic.Volume b(V = 1e-3, p_start = 20e5);
+         Hydraulic.FlushingValve flushing;
+         Hydraulic.ReliefValve outlet(p_set = 16e5, useHeatPort = true);
+         Hydraulic.Cooler cooler;
+         Hydraulic.Tank tank;
+         Mechanical.Rotational.Inertia load(J = 5);
+         Mechanical.Rotational.QuadraticLoad drag;",
+        "connect(engine.flange, pump.flange);
+         connect(engine.flange, charge.flange);
+         connect(swash.y, pump.u);
+         connect(pump.port_a, a.port);
+         connect(pump.port_b, b.port);
+         connect(motor.port_a, a.port);
+         connect(motor.port_b, b.port);
+         connect(charge.port_a, a.port);
+         connect(charge.port_b, b.port);
+         connect(charge.port_tank, tank.port);
+         connect(flushing.port_a, a.port);
+         connect(flushing.port_b, b.port);
+         connect(flushing.port_out, outlet.port_a);
+         connect(outlet.port_b, cooler.port_a);
+         connect(cooler.port_b, tank.port);
+         connect(motor.flange, load.flange_a);
+         connect(load.flange_b, drag.flange);
+         connect(pump.heatPort, heat.port);
+         connect(motor.heatPort, heat.port);
+         connect(outlet.heatPort, heat.port);
+         connect(cooler.oilHeat, heat.port);
+         connect(heat.T, oil.T_in);",
+    );
+    for tolerance in [1e-5, 1e-6] {
+        simulation.settings().tolerance = tolerance;
+        let t = run(simulation.stop_time(10.0));
+        // full displacement: motor and pump turn alike but for their leakage
+        assert!(last(&t, "load.w").abs() > 0.9 * 188.0, "{}", last(&t, "load.w"));
+    }
+}
+
+/// Compensator and metering orifice are closed, with a node between, when the lever is moved.
+#[test]
+fn two_consumers_share_a_load_sensing_pump() {
+    let mut simulation = circuit(
+        "inner Oil.ISOVG46 oil;
+         Mechanical.Rotational.ConstantSpeed engine(w_fixed = 200);
+         Hydraulic.Pump pump(V = 45e-6, useInput = true);
+         Hydraulic.PumpControl.LoadSensingControl control(V = 45e-6);
+         Hydraulic.Tank tank;
+         Hydraulic.Volume line(V = 1e-3);
+         Hydraulic.PressureCompensator before_lift, before_steer;
+         Hydraulic.VariableOrifice to_lift, to_steer;
+         Hydraulic.ShuttleValve shuttle;
+         Hydraulic.SingleActingCylinder lift;
+         Hydraulic.Cylinder steer;
+         Mechanical.Translational.Mass m_1(m = 2000, s(fixed = false), v(fixed = false));
+         Mechanical.Translational.Mass m_2(m = 500, s(fixed = false), v(fixed = false));
+         Mechanical.Translational.ConstantForce weight(f_constant = -2e4);
+         Mechanical.Translational.SpringDamper tyre(c = 1e5, d = 1e4);
+         Mechanical.Translational.Fixed road;
+         Signal.Trapezoid u_1(amplitude = 0.5, rising = 0.2, holding = 1, falling = 0.2, startTime = 0.5);
+         Signal.Trapezoid u_2(amplitude = 0.8, rising = 0.2, holding = 1, falling = 0.2, startTime = 1);",
+        "connect(engine.flange, pump.flange);
+         connect(pump.port_b, tank.port);
+         connect(pump.port_a, line.port);
+         connect(control.port_p, line.port);
+         connect(control.u, pump.u);
+         connect(line.port, before_lift.port_a);
+         connect(line.port, before_steer.port_a);
+         connect(before_lift.port_b, to_lift.port_a);
+         connect(before_steer.port_b, to_steer.port_a);
+         connect(to_lift.port_b, lift.port);
+         connect(to_steer.port_b, steer.port_1);
+         connect(before_lift.port_y, lift.port);
+         connect(before_steer.port_y, steer.port_1);
+         connect(shuttle.port_a, lift.port);
+         connect(shuttle.port_b, steer.port_1);
+         connect(shuttle.port_out, control.port_LS);
+         connect(steer.port_2, tank.port);
+         connect(u_1.y, to_lift.u);
+         connect(u_2.y, to_steer.u);
+         connect(lift.flange, m_1.flange_a);
+         connect(m_1.flange_b, weight.flange);
+         connect(steer.flange, m_2.flange_a);
+         connect(m_2.flange_b, tyre.flange_a);
+         connect(tyre.flange_b, road.flange);",
+    );
+    let t = run(simulation.stop_time(4.0));
+    assert!(at(&t, "lift.piston.s", 0.9) > at(&t, "lift.piston.s", 0.5) + 1e-3, "the load is lifted");
+    assert!(at(&t, "steer.s", 2.0) > at(&t, "steer.s", 1.0) + 0.01, "the wheels turn");
+}
+
+/// A body of a hundredth of a gram breaks loose at the force that holds it, and not above.
+#[test]
+fn dry_friction_holds_a_tiny_mass_up_to_its_limit() {
+    for light in ["mass.m", "load.m"] {
+        let mut simulation = shipped("Mechanical.Translational.Examples.FrictionExample");
+        simulation.set(light, 1e-5).expect("it is a parameter");
+        let t = run(&simulation);
+        let most = column(&t, "contact.f").iter().fold(0.0_f64, |m, f| m.max(f.abs()));
+        assert!((3.99..4.0 + 1e-3).contains(&most), "{light}: {most} N");
+    }
+}
+
+/// Whatever drives: at no power, in both directions, with any efficiency.
+#[test]
+fn gears_and_screws_never_give_power() {
+    let mut simulation = circuit(
+        "Signal.Sine torque(amplitude = 2, f = 0.7);
+         Mechanical.Rotational.Torque drive;
+         Mechanical.Rotational.Inertia rotor(J = 1e-2);
+         Mechanical.Rotational.LossyGear gear(ratio = 3, eta = 0.7);
+         Mechanical.Rotational.Screw screw(pitch = 0.02, eta = 0.6, eta_back = 0.05);
+         Mechanical.Translational.Mass table(m = 5);
+         Mechanical.Translational.Spring spring(c = 2e3);
+         Mechanical.Translational.Fixed wall;",
+        "connect(torque.y, drive.tau);
+         connect(drive.flange, rotor.flange_a);
+         connect(rotor.flange_b, gear.flange_a);
+         connect(gear.flange_b, screw.flange_R);
+         connect(screw.flange_T, table.flange_a);
+         connect(table.flange_b, spring.flange_a);
+         connect(spring.flange_b, wall.flange);",
+    );
+    let t = run(simulation.stop_time(5.0));
+    for part in ["gear.lossPower", "screw.lossPower"] {
+        let least = column(&t, part).iter().fold(f64::INFINITY, |m, p| m.min(*p));
+        assert!(least >= 0.0, "{part} falls to {least} W");
+        assert!(column(&t, part).iter().any(|p| *p > 0.1), "{part} does something");
+    }
+}
+
+/// A shaft that stands at any angle has no speed.
+#[test]
+fn an_encoder_begins_where_the_shaft_stands() {
+    let mut simulation = circuit(
+        "Mechanical.Rotational.Inertia shaft(J = 1e-3, phi(start = 2));
+         Electrical.Drives.Encoder encoder;",
+        "connect(shaft.flange_b, encoder.flange);",
+    );
+    let t = run(simulation.stop_time(0.01));
+    assert!(column(&t, "encoder.w").iter().all(|w| *w == 0.0), "{:?}", column(&t, "encoder.w"));
+}
+
+/// The same pressure at the start in each accumulator, as it is the same parameter.
+#[test]
+fn accumulators_begin_at_their_pressure() {
+    for class in ["Accumulator", "AccumulatorPolytropic", "AccumulatorRealGas"] {
+        for bar in [91.0, 150.0, 300.0] {
+            let mut simulation = circuit(
+                &format!(
+                    "inner Oil.ISOVG46 oil; Hydraulic.{class} gas(V_0 = 1e-2, p_pre = 90e5, p_start = {bar}e5);
+                     Hydraulic.Orifice drain(A = 1e-7); Hydraulic.Tank tank;"
+                ),
+                "connect(gas.port, drain.port_a); connect(drain.port_b, tank.port);",
+            );
+            let t = run(simulation.stop_time(1.0));
+            let found = at(&t, "gas.p", 0.0);
+            assert!((found - bar * 1e5).abs() < 1.0, "{class}: {found} Pa instead of {bar} bar");
+        }
+    }
+}
