@@ -6,7 +6,7 @@ usage: compare.py BRAMAH [--full] [--out FOLDER]
 Peers that are not installed are named, with how to get them. Writes results.md and one SVG a problem into FOLDER
 (target/bench). Times are medians over interleaved runs, each in a process of its own; errors are the largest of all
 values at the end, each relative to its reference of tests/stiff/references.toml."""
-import argparse, datetime, glob, json, math, os, platform, shutil, statistics, subprocess, sys, tempfile, time
+import argparse, datetime, glob, importlib, json, math, os, platform, shutil, statistics, subprocess, sys, tempfile, time
 
 try:
     import tomllib
@@ -173,6 +173,41 @@ def build_diffsol(folder):
         failed = subprocess.run(command, stdout=log, stderr=log, env=environment).returncode
     return None if failed else os.path.join(folder, 'release', 'stiff_diffsol')
 
+def program_peer(name, program, version):
+    """A program of benches/peers as a peer; None where it could not be built."""
+    return program and ({name: lambda m, tol, end: c_run(program, m, tol, end, NAMES[m])}, version)
+
+def scipy_peers(scipy):
+    return {f'scipy {m}': scipy_run(m) for m in ('LSODA', 'BDF', 'Radau')}, f'scipy {scipy.__version__}, exact Jacobian'
+
+def rumoca_peer(rumoca):
+    return {'rumoca': rumoca_run()}, f'rumoca {rumoca.version() if callable(rumoca.version) else rumoca.version}'
+
+def casadi_peer(casadi):
+    return {'CasADi IDAS': casadi_run()}, f'CasADi {casadi.__version__}, IDAS, its own derivatives'
+
+def sundae_peer(sksundae):
+    return {'scikit-sundae': sundae_run}, f'scikit-sundae {sksundae.__version__}, CVODE, exact Jacobian'
+
+def python_peer(make, *modules):
+    """A peer from Python packages, the first of which is its own; None where one of them is missing."""
+    try:
+        return make([importlib.import_module(m) for m in modules][0])
+    except ImportError:
+        return None
+
+def installed(folder):
+    """All peers: name, how to get it, and its runs by name with a text on its version, or None."""
+    pip = 'python3 -m pip install '
+    yield 'C on IDA', 'apt-get install gcc cmake make, and build bramah once', program_peer(
+        'C on IDA', build_c(folder), 'C on IDAS of sundials-sys, -O3, exact Jacobian')
+    yield 'scipy', pip + 'scipy', python_peer(scipy_peers, 'scipy', 'scipy.integrate')
+    yield 'rumoca', pip + 'rumoca', python_peer(rumoca_peer, 'rumoca')
+    yield 'diffsol', 'the network once, for `cargo build` in benches/peers/diffsol', program_peer(
+        'diffsol', build_diffsol(os.path.join(folder, 'diffsol')), 'diffsol 0.18.0, BDF, exact Jacobian')
+    yield 'CasADi', pip + 'casadi numpy', python_peer(casadi_peer, 'casadi', 'numpy')
+    yield 'scikit-sundae', pip + 'scikit-sundae scipy', python_peer(sundae_peer, 'sksundae', 'scipy')
+
 def scipy_sizes(model):
     return {'Robertson': [1e-6], 'HiRes': [1e-4], 'VanDerPol': [1]}[model]
 
@@ -280,43 +315,13 @@ def main():
     version = subprocess.run([a.bramah, '--version'], capture_output=True, text=True).stdout.strip()
     peers = {'bramah': lambda m, tol, end: bramah_run(a.bramah, m, tol, end, NAMES[m])}
     versions, skipped = [version], []
-    program = build_c(os.path.join(os.path.dirname(os.path.abspath(a.bramah)), 'peers'))
-    if program:
-        peers['C on IDA'] = lambda m, tol, end: c_run(program, m, tol, end, NAMES[m])
-        versions.append('C on IDAS of sundials-sys, -O3, exact Jacobian')
-    else:
-        skipped.append(('C on IDA', 'apt-get install gcc cmake make, and build bramah once'))
-    try:
-        import scipy.integrate
-        for method in ('LSODA', 'BDF', 'Radau'):
-            peers[f'scipy {method}'] = scipy_run(method)
-        versions.append(f'scipy {scipy.__version__}, exact Jacobian')
-    except ImportError:
-        skipped.append(('scipy', 'python3 -m pip install scipy'))
-    try:
-        import rumoca
-        peers['rumoca'] = rumoca_run()
-        versions.append(f'rumoca {rumoca.version() if callable(rumoca.version) else rumoca.version}')
-    except ImportError:
-        skipped.append(('rumoca', 'python3 -m pip install rumoca'))
-    on_diffsol = build_diffsol(os.path.join(os.path.dirname(os.path.abspath(a.bramah)), 'peers', 'diffsol'))
-    if on_diffsol:
-        peers['diffsol'] = lambda m, tol, end: c_run(on_diffsol, m, tol, end, NAMES[m])
-        versions.append('diffsol 0.18.0, BDF, exact Jacobian')
-    else:
-        skipped.append(('diffsol', 'the network once, for `cargo build` in benches/peers/diffsol'))
-    try:
-        import casadi, numpy
-        peers['CasADi IDAS'] = casadi_run()
-        versions.append(f'CasADi {casadi.__version__}, IDAS, its own derivatives')
-    except ImportError:
-        skipped.append(('CasADi', 'python3 -m pip install casadi numpy'))
-    try:
-        import scipy, sksundae
-        peers['scikit-sundae'] = sundae_run
-        versions.append(f'scikit-sundae {sksundae.__version__}, CVODE, exact Jacobian')
-    except ImportError:
-        skipped.append(('scikit-sundae', 'python3 -m pip install scikit-sundae scipy'))
+    folder = os.path.join(os.path.dirname(os.path.abspath(a.bramah)), 'peers')
+    for name, how, found in installed(folder):
+        if found:
+            peers.update(found[0])
+            versions.append(found[1])
+        else:
+            skipped.append((name, how))
     skipped += [('OpenModelica', 'https://openmodelica.org: reads models/stiff as they are')]
     tolerances = [10.0**-k for k in (range(3, 11) if a.full else range(3, 10, 2))]
     rows = work_precision(peers, tolerances, 11 if a.full else 5)
