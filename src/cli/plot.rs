@@ -83,45 +83,68 @@ pub(super) fn write(
     path: &Path,
     messages: &Messages,
 ) -> Result<(), Failure> {
-    if path == Path::new("-") {
-        return files::print(&svg::write(figure));
-    }
-    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-    let bytes = match extension.as_str() {
-        "svg" => svg::write(figure).into_bytes(),
-        "html" | "htm" => html::write(figure, facts).into_bytes(),
-        "png" => png::write(&svg::write(figure)).map_err(|e| Failure::new(Code::BadArgument, e))?,
-        _ => {
-            let text = format!("a picture is written as .svg, .png or .html, not as `{}`", path.display());
-            return Err(Failure::new(Code::BadArgument, text));
-        }
+    let bytes = match Format::of(path)? {
+        Format::Page => html::write(figure, facts).into_bytes(),
+        format => drawn(svg::write(figure), format)?,
     };
-    files::write(path, &bytes)?;
+    deliver(path, &bytes, messages)
+}
+
+/// The formats of pictures.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Format {
+    Svg,
+    Png,
+    Page,
+}
+
+impl Format {
+    /// As the file's name asks for; SVG on stdout.
+    fn of(path: &Path) -> Result<Format, Failure> {
+        let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+        match extension.as_str() {
+            _ if path == Path::new("-") => Ok(Format::Svg),
+            "svg" => Ok(Format::Svg),
+            "png" => Ok(Format::Png),
+            "html" | "htm" => Ok(Format::Page),
+            _ => {
+                let text = format!("a picture is written as .svg, .png or .html, not as `{}`", path.display());
+                Err(Failure::new(Code::BadArgument, text))
+            }
+        }
+    }
+}
+
+/// A drawn picture as the bytes of an image.
+fn drawn(picture: String, format: Format) -> Result<Vec<u8>, Failure> {
+    match format {
+        Format::Png => png::write(&picture).map_err(|e| Failure::new(Code::BadArgument, e)),
+        Format::Svg | Format::Page => Ok(picture.into_bytes()),
+    }
+}
+
+/// Writes a file, or prints where the name is `-`.
+fn deliver(path: &Path, bytes: &[u8], messages: &Messages) -> Result<(), Failure> {
+    if path == Path::new("-") {
+        return files::print(&String::from_utf8_lossy(bytes));
+    }
+    files::write(path, bytes)?;
     messages.remark(&format!("wrote {}", path.display()));
     Ok(())
 }
 
 /// Writes a picture that is drawn already; a page shows the curves of `figure` below it.
 pub(super) fn write_picture(picture: &str, figure: &Figure, path: &Path, messages: &Messages) -> Result<(), Failure> {
-    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-    let bytes = match extension.as_str() {
-        "svg" => picture.as_bytes().to_vec(),
-        "png" => png::write(picture).map_err(|e| Failure::new(Code::BadArgument, e))?,
-        "html" | "htm" => html::write_around(figure, &[], picture).into_bytes(),
-        _ => return write(figure, &[], path, messages),
+    let bytes = match Format::of(path)? {
+        Format::Page => html::write_around(figure, &[], picture).into_bytes(),
+        format => drawn(picture.to_owned(), format)?,
     };
-    files::write(path, &bytes)?;
-    messages.remark(&format!("wrote {}", path.display()));
-    Ok(())
+    deliver(path, &bytes, messages)
 }
 
 /// Writes a map, which has no page with zoom and hover.
 fn write_map(picture: &str, path: &Path, messages: &Messages) -> Result<(), Failure> {
-    if path == Path::new("-") {
-        return files::print(picture);
-    }
-    let is_page = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("html") || e.eq_ignore_ascii_case("htm"));
-    if is_page {
+    if Format::of(path)? == Format::Page {
         return Err(Failure::new(Code::BadArgument, "a map is written as .svg or .png"));
     }
     write_picture(picture, &Figure::default(), path, messages)

@@ -45,6 +45,11 @@ impl Target {
         }
     }
 
+    /// Whether a name asks for Parquet.
+    pub fn is_parquet(path: &Path) -> bool {
+        matches!(path.to_str().map(Target::new), Some(Ok(Target::Parquet(_))))
+    }
+
     /// The name for messages.
     pub fn name(&self) -> String {
         match self {

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 
 use super::files::{self, access};
 use super::messages::Messages;
+use super::recorder::Target;
 use super::request::ModelArgs;
 use super::{Ending, Failure, columns, interrupt, model, plot};
 use crate::analysis::sweep::{Plan, Table, fingerprint, indices, matrix, scatter};
@@ -120,7 +121,7 @@ fn settings(args: &SweepArgs, experiment: &Experiment, model: &Model, plan: &Pla
     });
     settings.wanted.clone_from(&plan.wanted);
     if args.trajectories.is_some() {
-        let target = super::recorder::Target::Stdout;
+        let target = Target::Stdout;
         let more = columns::choose(&model.dae, &experiment.variables, &target)?;
         settings.wanted.extend(more.into_iter().filter(|v| !plan.wanted.contains(v)));
     }
@@ -129,16 +130,12 @@ fn settings(args: &SweepArgs, experiment: &Experiment, model: &Model, plan: &Pla
 
 /// The file that takes a line a run: Parquet cannot grow.
 fn with_lines(output: &Path) -> PathBuf {
-    if is_parquet(output) { output.with_extension("csv") } else { output.to_owned() }
-}
-
-fn is_parquet(path: &Path) -> bool {
-    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("parquet"))
+    if Target::is_parquet(output) { output.with_extension("csv") } else { output.to_owned() }
 }
 
 /// The whole table once more as Parquet, where that is wanted.
 fn write_parquet(args: &SweepArgs, table: &Table) -> Result<(), Failure> {
-    let Some(path) = args.output_file.as_ref().filter(|path| is_parquet(path)) else { return Ok(()) };
+    let Some(path) = args.output_file.as_ref().filter(|path| Target::is_parquet(path)) else { return Ok(()) };
     let mut bytes = Vec::new();
     write_table(&mut bytes, &table.typed()).map_err(|e| access(path, "written", &e))?;
     files::write(path, &bytes)

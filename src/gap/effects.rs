@@ -6,7 +6,7 @@ use crate::diag::{Checked, Code, Diagnostic, FileId};
 use crate::expr::{ExprId, Node};
 use crate::flat::{FlatModel, Variable};
 use crate::shipped::Shipped;
-use crate::syntax::ast::{self, Argument, ArgumentKind, ClassBody, ElementKind, Expr, ExprKind, Modification, UnaryOp};
+use crate::syntax::ast::{self, Argument, ArgumentKind, ClassBody, ElementKind, Expr, ExprKind, Modification};
 use crate::world::{MemoryWorld, Overlay, World};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -496,7 +496,7 @@ fn shapes(
         };
         let name = dotted(path);
         let grid: Option<Vec<f64>> = match m.value.as_ref().map(|v| &v.kind) {
-            Some(ExprKind::Array(items)) => items.iter().map(literal).collect(),
+            Some(ExprKind::Array(items)) => items.iter().map(Expr::as_number).collect(),
             _ => None,
         };
         let grid =
@@ -546,15 +546,6 @@ fn texts(modification: &Modification, name: &str) -> Vec<String> {
     let Some(ExprKind::Array(items)) = value(modification, name).map(|v| &v.kind) else { return Vec::new() };
     let string = |e: &Expr| if let ExprKind::String(s) = &e.kind { Some(s.to_string()) } else { None };
     items.iter().filter_map(string).collect()
-}
-
-fn literal(e: &Expr) -> Option<f64> {
-    match &e.kind {
-        ExprKind::Real(x) => Some(*x),
-        ExprKind::Integer(i) => Some(*i as f64),
-        ExprKind::Unary(UnaryOp::Minus, inner) => literal(inner).map(|x| -x),
-        _ => None,
-    }
 }
 
 fn dotted(path: &ast::Path) -> String {

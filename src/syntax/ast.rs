@@ -412,6 +412,19 @@ pub struct Expr {
     pub span: Span,
 }
 
+impl Expr {
+    /// The number, where it is written as one, with a sign or without.
+    pub fn as_number(&self) -> Option<f64> {
+        match &self.kind {
+            ExprKind::Real(x) => Some(*x),
+            ExprKind::Integer(i) => Some(*i as f64),
+            ExprKind::Unary(UnaryOp::Minus, inner) => inner.as_number().map(|x| -x),
+            ExprKind::Unary(UnaryOp::Plus, inner) => inner.as_number(),
+            _ => None,
+        }
+    }
+}
+
 /// The kinds of expressions.
 #[derive(Clone, Debug)]
 pub enum ExprKind {
