@@ -116,6 +116,7 @@ codes! {
     StuckSignal = "W605", Warning, "a measured signal never changes";
     BadCheckpoint = "E606", Error, "a run cannot go on from a checkpoint";
     WorseThanConstant = "W607", Warning, "a fitted signal is met worse than by a constant";
+    SteppingInput = "W608", Warning, "an input that steps is joined by straight lines";
     // 9xx command line
     BadArgument = "E901", Error, "an argument cannot be used";
     FileAccess = "E902", Error, "a file cannot be read or written";

@@ -2,9 +2,10 @@
 
 use super::bind::{Bound, conversion};
 use super::table::at;
-use super::{RecordingFile, Role};
+use super::{InputColumn, RecordingFile, Role};
 use crate::diag::{Checked, Code, Diagnostic, Sources, Span};
 use crate::results::{Strictness, Trajectory, number, read_csv};
+use crate::solve::Interpolation;
 use crate::world::World;
 use std::path::Path;
 
@@ -79,6 +80,9 @@ pub fn full_scales(bound: &Bound, train: &[Recording]) -> Vec<f64> {
     bound.signals.iter().enumerate().map(|(k, s)| s.full_scale.unwrap_or_else(|| range(k))).collect()
 }
 
+/// From so many jumps on an input is taken for one that steps.
+const MANY_JUMPS: usize = 4;
+
 struct Loader<'a> {
     bound: &'a Bound,
     role: Role,
@@ -126,7 +130,11 @@ impl Loader<'_> {
         for (input, values) in self.bound.inputs.iter().zip(columns.by_ref()) {
             let said = &table.signals[inputs.len()].unit;
             let unit = input.entry.unit.as_deref().unwrap_or(said);
-            inputs.push(self.in_unit(values, unit, &input.unit, 1.0, &input.entry.column, head));
+            let values = self.in_unit(values, unit, &input.unit, 1.0, &input.entry.column, head);
+            if input.interpolation == Interpolation::Linear {
+                self.check_course(&values, &input.entry, head);
+            }
+            inputs.push(values);
         }
         let mut signals = Vec::new();
         for (signal, values) in self.bound.signals.iter().zip(columns) {
@@ -150,6 +158,22 @@ impl Loader<'_> {
                 self.diagnostics.push(Diagnostic::new(Code::BadData, text).at(head, "in this file"));
                 values
             }
+        }
+    }
+
+    /// An input that is to be joined by straight lines but jumps between values that last: its source holds it.
+    fn check_course(&mut self, values: &[f64], entry: &InputColumn, head: Span) {
+        let changes = (1..values.len()).filter(|&i| values[i] != values[i - 1]);
+        let (mut jumps, mut ramps) = (0, 0);
+        for i in changes {
+            let stays = |a: usize, b: usize| values.get(a) == values.get(b);
+            let alone = (i < 2 || stays(i - 2, i - 1)) && (i + 1 == values.len() || stays(i, i + 1));
+            if alone { jumps += 1 } else { ramps += 1 }
+        }
+        if jumps >= MANY_JUMPS && ramps <= jumps / 10 {
+            let text = format!("`{}` jumps {jumps} times and is joined by straight lines", entry.name);
+            let d = Diagnostic::new(Code::SteppingInput, text).at(entry.span, "`hold = false`");
+            self.diagnostics.push(d.at(head, "in this file").help("a source that holds its output is `hold = true`"));
         }
     }
 

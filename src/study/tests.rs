@@ -153,3 +153,18 @@ proptest::proptest! {
         load(&world(&text));
     }
 }
+
+#[test]
+fn an_input_that_steps_is_not_joined_by_straight_lines() {
+    let stepping = "t_s,q,level,T\n0,1,0,1\n0.1,1,0,1\n0.2,2,0,1\n0.3,2,0,1\n0.4,1,0,1\n0.5,1,0,1\n0.6,2,0,1\n0.7,2,0,1\n\
+                    0.8,1,0,1\n0.9,1,-1,1\n";
+    let study = STUDY.replace("unit = \"l/min\"", "unit = \"l/min\", hold = false");
+    let said = |recording: &str| {
+        let mut world = world(&study);
+        world.add("lab/a.csv", recording);
+        load(&world).1
+    };
+    assert!(said(stepping).contains("W608") && said(stepping).contains("`u` jumps 4 times"), "{}", said(stepping));
+    // a course that climbs from sample to sample
+    assert_eq!(said(&stepping.replace("0.1,1", "0.1,1.5").replace("0.5,1", "0.5,1.5")), "");
+}
