@@ -185,6 +185,8 @@ pub struct Exprs {
     nodes: Vec<Node>,
     /// Where each node stands: the ids alone, for the nodes are in the list already.
     index: HashTable<ExprId>,
+    /// The node of each variable's value, 0 for none: half of all requests are for these.
+    leaves: Vec<ExprId>,
     args: Vec<ExprId>,
     arg_index: FxHashMap<Box<[ExprId]>, Args>,
     /// The function that takes values and tangents and returns tangents, by original.
@@ -200,6 +202,7 @@ impl Default for Exprs {
         let mut pool = Exprs {
             nodes: Vec::new(),
             index: HashTable::new(),
+            leaves: Vec::new(),
             args: Vec::new(),
             arg_index: FxHashMap::default(),
             tangents: FxHashMap::default(),
@@ -284,7 +287,20 @@ impl Exprs {
 
     /// The value of a variable.
     pub fn var(&mut self, v: VarId) -> ExprId {
-        self.intern(Node::Var(v))
+        match self.leaves.get(v.index()) {
+            Some(&e) if e != Self::ZERO => e,
+            _ => self.new_leaf(v),
+        }
+    }
+
+    fn new_leaf(&mut self, v: VarId) -> ExprId {
+        let (e, known) = (self.intern(Node::Var(v)), self.leaves.len());
+        // locals of functions have numbers far away
+        if v.index() < 2 * known + 1024 {
+            self.leaves.resize(known.max(v.index() + 1), Self::ZERO);
+            self.leaves[v.index()] = e;
+        }
+        e
     }
 
     /// The derivative of a variable.
