@@ -202,9 +202,10 @@ fn change_when(when: &mut When, change: &mut impl FnMut(&mut ExprId)) {
         branch.conditions.iter_mut().for_each(&mut *change);
         for action in &mut branch.actions {
             match action {
-                WhenAction::Assign { value, .. } | WhenAction::Reinit { value, .. } => change(value),
+                WhenAction::Assign { value, .. } => change(value),
+                WhenAction::Reinit { value, guard, .. } => [value, guard].into_iter().for_each(&mut *change),
                 WhenAction::Assert(assert) => change(&mut assert.condition),
-                WhenAction::Terminate { .. } => {}
+                WhenAction::Terminate { guard, .. } => change(guard),
             }
         }
     }

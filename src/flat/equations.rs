@@ -7,10 +7,10 @@ use super::{
 };
 use crate::diag::{Code, Diagnostic, Span};
 use crate::expr::{ExprId, Exprs, Node};
-use crate::instance::algorithm::AlgorithmWhen;
+use crate::instance::algorithm::{AlgorithmCall, AlgorithmWhen, Asserted, assigned};
 use crate::instance::value::Val;
 use crate::instance::{Instance, ScopeId, View};
-use crate::syntax::ast::{self, ClassBody, EquationKind, Expr, ExprKind, Statement, StatementKind};
+use crate::syntax::ast::{self, ClassBody, EquationKind, Expr, ExprKind, Statement};
 use crate::syntax::symbol::Symbol;
 
 /// Scalar sides of an equation with the place it comes from.
@@ -88,6 +88,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
             EquationKind::Equal(l, r) => self.equal(l, r, view, e.span, out),
             EquationKind::For { iterators, body } => self.for_equation(iterators, body, view, out),
             EquationKind::If { branches, otherwise } => self.if_equation(branches, otherwise, view, e.span, out),
+            EquationKind::When(_) if !self.guards.is_empty() => self.when_under_if(e.span),
             EquationKind::When(branches) => self.when_equation(branches, view, e.span),
             EquationKind::Call(call) => self.call(call, view, e.span),
         }
@@ -106,7 +107,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
             }
             return;
         };
-        let Some(values) = self.instance.loop_values(first, view) else { return };
+        let Some(values) = self.instance.loop_values(first, body, view) else { return };
         for value in values {
             self.instance.push_local(first.name.name, value);
             self.for_equation(rest, body, view, out);
@@ -253,6 +254,15 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
         self.flat.whens.push(when);
     }
 
+    fn when_under_if(&mut self, span: Span) {
+        let message = "a `when` cannot stand inside an `if` whose condition changes during the run";
+        self.instance.diagnostics.push(
+            Diagnostic::new(Code::BadCall, message)
+                .at(span, "this would act at some times only")
+                .help("put the condition into the `when`: `when c and other then`"),
+        );
+    }
+
     fn when_body(&mut self, e: &'a ast::Equation, view: View, guard: ExprId, out: &mut Vec<WhenAction>) {
         match &e.kind {
             EquationKind::Equal(l, r) => {
@@ -292,7 +302,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
             }
             return;
         };
-        let Some(values) = self.instance.loop_values(first, view) else { return };
+        let Some(values) = self.instance.loop_values(first, body, view) else { return };
         for value in values {
             self.instance.push_local(first.name.name, value);
             self.when_for(rest, body, view, guard, out);
@@ -374,8 +384,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
                         self.bad_call(span, "`reinit` needs a variable as its first argument");
                         return;
                     };
-                    let value = self.instance.exprs.if_(guard, p.rhs, p.lhs);
-                    out.push(WhenAction::Reinit { variable, value, origin });
+                    out.push(WhenAction::Reinit { variable, value: p.rhs, guard, origin });
                 }
             }
             "assert" => {
@@ -386,14 +395,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
             }
             "terminate" => {
                 let text = args.first().and_then(|m| self.instance.eval(m, view));
-                if guard != Exprs::ONE {
-                    self.bad_call(
-                        span,
-                        "`terminate` inside an `if` of a `when` is not supported: put its condition into the `when`",
-                    );
-                    return;
-                }
-                out.push(WhenAction::Terminate { message: message(text), origin });
+                out.push(WhenAction::Terminate { message: message(text), guard, origin });
             }
             _ => self.bad_call(span, "only `reinit`, `assert` and `terminate` can be called here"),
         }
@@ -446,25 +448,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
     }
 
     fn assertion(&mut self, call: &'a Expr, view: View, span: Span) -> Option<Assert> {
-        let ExprKind::Call { args, named, .. } = &call.kind else { return None };
-        let by_name = |n: &str| named.iter().find(|(i, _)| i.name == n).map(|(_, e)| e);
-        let Some(condition) = args.first().or_else(|| by_name("condition")) else {
-            self.bad_call(span, "`assert` needs a condition and a message");
-            return None;
-        };
-        let was = self.instance.set_no_event(true);
-        let value = self.instance.eval(condition, view);
-        self.instance.set_no_event(was);
-        let (condition, _) = value?.scalar()?;
-        let text = args.get(1).or_else(|| by_name("message")).and_then(|m| self.instance.eval(m, view));
-        let level = args.get(2).or_else(|| by_name("level"));
-        let warning = match level {
-            Some(l) => {
-                let v = self.instance.constant(l, view)?;
-                v.as_number(&self.instance.exprs) == Some(1.0)
-            }
-            None => false,
-        };
+        let Asserted { condition, message: text, warning } = self.instance.assertion(call, view)?;
         Some(Assert { condition, message: message(text), warning, origin: self.origin(span, view) })
     }
 
@@ -491,6 +475,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
         let done = self.instance.run_section(section, view, count);
         let results: Vec<Val> = self.instance.take_locals(count);
         let whens = self.instance.take_whens();
+        let calls = self.instance.take_calls();
         if done.is_none() {
             self.section_failed(section);
             return;
@@ -498,6 +483,39 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
         self.section_results(&originals, &results, &whens, &in_when, view, section, initial);
         for when in whens {
             self.algorithm_when(when, &originals, view);
+        }
+        for call in calls {
+            self.algorithm_call(call, view, initial);
+        }
+    }
+
+    /// An `assert` of an algorithm section outside `when`; one of an initial section is judged at the start only.
+    fn algorithm_call(&mut self, call: AlgorithmCall, view: View, initial: bool) {
+        let Some(condition) = call.condition else {
+            self.bad_call(call.span, "`terminate` can only stand inside a `when`");
+            return;
+        };
+        let mut condition = self.unless(call.guard, condition);
+        if initial {
+            let start = self.instance.exprs.intern(Node::Initial);
+            condition = self.unless(start, condition);
+        }
+        let origin = self.origin(call.span, view);
+        if condition != Exprs::ONE {
+            self.flat.asserts.push(Assert { condition, message: message(call.message), warning: call.warning, origin });
+        }
+    }
+
+    /// An `assert` or `terminate` inside a `when` of an algorithm section.
+    fn algorithm_action(&mut self, call: AlgorithmCall, view: View, out: &mut Vec<WhenAction>) {
+        let origin = self.origin(call.span, view);
+        let message = message(call.message);
+        match call.condition {
+            Some(condition) => {
+                let condition = self.unless(call.guard, condition);
+                out.push(WhenAction::Assert(Assert { condition, message, warning: call.warning, origin }));
+            }
+            None => out.push(WhenAction::Terminate { message, guard: call.guard, origin }),
         }
     }
 
@@ -572,41 +590,12 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
                     }
                 }
             }
+            for call in branch.calls {
+                self.algorithm_action(call, view, &mut actions);
+            }
             made.branches.push(WhenBranch { conditions: branch.conditions, actions });
         }
         self.flat.whens.push(made);
-    }
-}
-
-/// First parts of the names assigned in statements: outside `when`, and inside.
-fn assigned<'a>(
-    statements: &'a [Statement],
-    inside: bool,
-    always: &mut Vec<&'a ast::ReferencePart>,
-    in_when: &mut Vec<&'a ast::ReferencePart>,
-) {
-    let mut note = |e: &'a Expr| {
-        if let ExprKind::Reference(r) = &e.kind {
-            if inside { in_when.push(&r.parts[0]) } else { always.push(&r.parts[0]) }
-        }
-    };
-    for s in statements {
-        match &s.kind {
-            StatementKind::Assign(target, _) => note(target),
-            StatementKind::AssignTuple(targets, _) => targets.iter().flatten().for_each(&mut note),
-            _ => {}
-        }
-    }
-    for s in statements {
-        match &s.kind {
-            StatementKind::If { branches, otherwise } => {
-                branches.iter().for_each(|(_, b)| assigned(b, inside, always, in_when));
-                assigned(otherwise, inside, always, in_when);
-            }
-            StatementKind::For { body, .. } | StatementKind::While(_, body) => assigned(body, inside, always, in_when),
-            StatementKind::When(branches) => branches.iter().for_each(|(_, b)| assigned(b, true, always, in_when)),
-            _ => {}
-        }
     }
 }
 

@@ -6,12 +6,12 @@ use super::numbers::Numbers;
 use super::{
     Equation, Experiment, FlatModel, InstanceInfo, Origin, OriginKind, StateSelect, Type, Variability, Variable,
 };
-use super::{balance, ports};
+use super::{balance, discrete, ports};
 use crate::diag::{Checked, Code, Diagnostic};
 use crate::expr::{ExprId, Exprs};
 use crate::instance::{Instance, ScopeId};
 use crate::network::{Network, component_scopes};
-use crate::syntax::ast::{self, ArgumentKind, ClassBody, ExprKind, Modification};
+use crate::syntax::ast::{self, ArgumentKind, ClassBody, Modification};
 use crate::syntax::symbol::Symbol;
 
 /// Flattens an instance. The instance's expression pool moves into the flat model.
@@ -24,6 +24,7 @@ pub fn flatten(instance: &mut Instance<'_, '_>, network: &Network) -> Checked<Fl
     variables(instance, &numbers, &mut flat);
     Walker::new(instance, &numbers, &mut flat).walk(&scopes);
     connections(instance, network, &numbers, &mut flat);
+    discrete::check(instance, &flat);
     for (v, &i) in flat.variables.iter_mut().zip(&instance.order) {
         if v.variability == Variability::Parameter && instance.variables[i as usize].structural {
             v.variability = Variability::Constant;
@@ -149,8 +150,12 @@ fn binding(instance: &mut Instance<'_, '_>, i: u32, v: &mut Variable, flat: &mut
         );
         return;
     }
+    // What varies is no default that could be held: such an input is given by its own equation.
+    v.input &= instance.variability(e) <= Variability::Parameter;
     if parameter || v.input {
         v.binding = Some(e);
+        // an input starts, and unless it is driven stays, at its default
+        v.start = if v.input { Some(e) } else { v.start };
         return;
     }
     let id = instance.variables[i as usize].id;
@@ -221,7 +226,7 @@ fn experiment(instance: &mut Instance<'_, '_>) -> Experiment {
             continue;
         }
         let Some(m) = base.ast.annotation.as_ref().and_then(|a| argument(a, "experiment")) else { continue };
-        let number = |name: &str| argument(m, name).and_then(|m| m.value.as_ref()).and_then(literal);
+        let number = |name: &str| argument(m, name).and_then(|m| m.value.as_ref()).and_then(ast::Expr::as_number);
         experiment.start_time = experiment.start_time.or(number("StartTime"));
         experiment.stop_time = experiment.stop_time.or(number("StopTime"));
         // Tools write 0 where a number of rows was chosen instead.
@@ -238,13 +243,4 @@ fn argument<'m>(m: &'m Modification, name: &str) -> Option<&'m Modification> {
         ArgumentKind::Modify { path, modification: Some(m), .. } if path.parts[0].name == wanted => Some(m),
         _ => None,
     })
-}
-
-fn literal(e: &ast::Expr) -> Option<f64> {
-    match &e.kind {
-        ExprKind::Integer(i) => Some(*i as f64),
-        ExprKind::Real(x) => Some(*x),
-        ExprKind::Unary(ast::UnaryOp::Minus, inner) => literal(inner).map(|x| -x),
-        _ => None,
-    }
 }

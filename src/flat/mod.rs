@@ -2,6 +2,7 @@
 
 mod balance;
 mod census;
+mod discrete;
 mod equations;
 mod explain;
 mod flatten;
@@ -262,12 +263,14 @@ pub enum WhenAction {
         /// Where it stands.
         origin: Origin,
     },
-    /// `reinit(x, value)`; `condition` is 1 unless it stood in an `if`.
+    /// `reinit(x, value)`
     Reinit {
         /// The variable whose derivative appears.
         variable: VarId,
         /// Its new value.
         value: ExprId,
+        /// 1 unless it stood in an `if`.
+        guard: ExprId,
         /// Where it stands.
         origin: Origin,
     },
@@ -277,6 +280,8 @@ pub enum WhenAction {
     Terminate {
         /// The message.
         message: Message,
+        /// 1 unless it stood in an `if`.
+        guard: ExprId,
         /// Where it stands.
         origin: Origin,
     },

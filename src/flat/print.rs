@@ -1,7 +1,7 @@
 //! The flat model as text, close to flat Modelica, for `check --emit flat` and for tests.
 
 use super::{Equation, FlatModel, Message, MessagePart, Type, Variability, Variable, When, WhenAction};
-use crate::expr::{ExprId, VarId};
+use crate::expr::{ExprId, Exprs, VarId};
 use std::fmt::Write;
 
 impl FlatModel {
@@ -101,12 +101,18 @@ impl FlatModel {
     fn action(&self, action: &WhenAction) -> String {
         match action {
             WhenAction::Assign { variable, value, .. } => format!("{} = {}", self.name(*variable), self.expr(*value)),
-            WhenAction::Reinit { variable, value, .. } => {
-                format!("reinit({}, {})", self.name(*variable), self.expr(*value))
+            WhenAction::Reinit { variable, value, guard, .. } => {
+                self.guarded(*guard, format!("reinit({}, {})", self.name(*variable), self.expr(*value)))
             }
             WhenAction::Assert(a) => format!("assert({}, {})", self.expr(a.condition), self.message(&a.message)),
-            WhenAction::Terminate { message, .. } => format!("terminate({})", self.message(message)),
+            WhenAction::Terminate { message, guard, .. } => {
+                self.guarded(*guard, format!("terminate({})", self.message(message)))
+            }
         }
+    }
+
+    fn guarded(&self, guard: ExprId, action: String) -> String {
+        if guard == Exprs::ONE { action } else { format!("if {} then {action}; end if", self.expr(guard)) }
     }
 
     fn message(&self, message: &Message) -> String {

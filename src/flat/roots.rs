@@ -30,9 +30,13 @@ impl FlatModel {
 
 fn action<'m>(a: &'m mut WhenAction, roots: &mut Vec<&'m mut ExprId>) {
     match a {
-        WhenAction::Assign { value, .. } | WhenAction::Reinit { value, .. } => roots.push(value),
+        WhenAction::Assign { value, .. } => roots.push(value),
+        WhenAction::Reinit { value, guard, .. } => roots.extend([value, guard]),
         WhenAction::Assert(a) => assert(a, roots),
-        WhenAction::Terminate { message, .. } => parts(&mut message.parts, roots),
+        WhenAction::Terminate { message, guard, .. } => {
+            roots.push(guard);
+            parts(&mut message.parts, roots);
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! Statements carried out on symbolic values: what an algorithm computes, as expressions.
 
+use super::deduce::Body;
 use super::value::Val;
 use super::{Instance, View};
 use crate::diag::{Code, Span};
@@ -36,6 +37,34 @@ pub struct AlgorithmBranch {
     pub conditions: Vec<ExprId>,
     /// New values of assigned variables, by the first part of their names.
     pub values: Vec<(Symbol, Val)>,
+    /// Its `assert`s and `terminate`s.
+    pub calls: Vec<AlgorithmCall>,
+}
+
+/// An `assert` or `terminate` of an algorithm section of a model, with the values that the section has there.
+#[derive(Clone, Debug)]
+pub struct AlgorithmCall {
+    /// What must hold; `None` for `terminate`.
+    pub condition: Option<ExprId>,
+    /// When it is reached.
+    pub guard: ExprId,
+    /// Its text.
+    pub message: Option<Val>,
+    /// `AssertionLevel.warning`
+    pub warning: bool,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// What an `assert` says.
+#[derive(Clone, Debug)]
+pub struct Asserted {
+    /// What must hold.
+    pub condition: ExprId,
+    /// The text.
+    pub message: Option<Val>,
+    /// `AssertionLevel.warning`
+    pub warning: bool,
 }
 
 impl<'a> Instance<'a, '_> {
@@ -238,16 +267,54 @@ impl<'a> Instance<'a, '_> {
                         }
                     };
                 }
-                "assert" | "terminate" => {
-                    // Left to the flat model, with the values that the locals have here.
-                    self.unsupported(call.span, "`assert` or `terminate` in an algorithm section of a model");
-                    return None;
+                "assert" => {
+                    let a = self.assertion(call, view)?;
+                    return self.keep_call(Some(a.condition), a.message, a.warning, call.span);
+                }
+                "terminate" => {
+                    let message = args.first().and_then(|m| self.eval(m, view));
+                    return self.keep_call(None, message, false, call.span);
                 }
                 _ => {}
             }
         }
         self.eval(call, view)?;
         Some(Flow::Next)
+    }
+
+    /// Leaves an `assert` or `terminate` of a section to the flat model.
+    fn keep_call(
+        &mut self,
+        condition: Option<ExprId>,
+        message: Option<Val>,
+        warning: bool,
+        span: Span,
+    ) -> Option<Flow> {
+        let mut guard = Exprs::ONE;
+        for g in self.eval.guards.clone() {
+            guard = self.exprs.and(guard, g);
+        }
+        self.eval.calls.push(AlgorithmCall { condition, guard, message, warning, span });
+        Some(Flow::Next)
+    }
+
+    /// The parts of an `assert`; its condition makes no events.
+    pub fn assertion(&mut self, call: &'a Expr, view: View) -> Option<Asserted> {
+        let ExprKind::Call { args, named, .. } = &call.kind else { return None };
+        let by_name = |n: &str| named.iter().find(|(i, _)| i.name == n).map(|(_, e)| e);
+        let Some(condition) = args.first().or_else(|| by_name("condition")) else {
+            return self.fail(Code::BadCall, "`assert` needs a condition and a message", call.span);
+        };
+        let was = self.set_no_event(true);
+        let value = self.eval(condition, view);
+        self.set_no_event(was);
+        let (condition, _) = value?.scalar()?;
+        let message = args.get(1).or_else(|| by_name("message")).and_then(|m| self.eval(m, view));
+        let warning = match args.get(2).or_else(|| by_name("level")) {
+            Some(level) => self.constant(level, view)?.as_number(&self.exprs) == Some(1.0),
+            None => false,
+        };
+        Some(Asserted { condition, message, warning })
     }
 
     fn if_statement(
@@ -264,9 +331,10 @@ impl<'a> Instance<'a, '_> {
         }
         let frame = self.eval.frame;
         let before = self.eval.locals.clone();
-        let first = self.execute(body, view)?;
+        let not = self.exprs.not(test);
+        let first = self.guarded(test, |s| s.execute(body, view))?;
         let after = std::mem::replace(&mut self.eval.locals, before);
-        let second = self.if_statement(rest, otherwise, view)?;
+        let second = self.guarded(not, |s| s.if_statement(rest, otherwise, view))?;
         if first != Flow::Next || second != Flow::Next {
             self.eval.not_inline = true;
             return None;
@@ -284,6 +352,14 @@ impl<'a> Instance<'a, '_> {
         Some(Flow::Next)
     }
 
+    /// Runs statements that are reached under a condition only.
+    fn guarded<T>(&mut self, guard: ExprId, f: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
+        self.eval.guards.push(guard);
+        let done = f(self);
+        self.eval.guards.pop();
+        done
+    }
+
     fn for_statement(
         &mut self,
         iterators: &'a [crate::syntax::ast::Iterator],
@@ -291,7 +367,7 @@ impl<'a> Instance<'a, '_> {
         view: View,
     ) -> Option<Flow> {
         let Some((first, rest)) = iterators.split_first() else { return self.execute(body, view) };
-        for value in self.iterate(first, view)? {
+        for value in self.iterate(first, Body::Statements(body), view)? {
             self.eval.locals.push((first.name.name, value));
             let flow = self.for_statement(rest, body, view);
             self.eval.locals.pop();
@@ -331,11 +407,13 @@ impl<'a> Instance<'a, '_> {
         }
         let mut collected = AlgorithmWhen { branches: Vec::new(), span };
         let before = self.eval.locals.clone();
+        let outside = std::mem::take(&mut self.eval.calls);
         for (condition, body) in branches {
             let conditions = self.when_conditions(condition, view)?;
             let was = std::mem::replace(&mut self.eval.no_event, true);
             let done = self.execute(body, view);
             self.eval.no_event = was;
+            let calls = std::mem::take(&mut self.eval.calls);
             done?;
             let frame = self.eval.frame;
             let mut values = Vec::new();
@@ -345,8 +423,9 @@ impl<'a> Instance<'a, '_> {
                 }
             }
             self.eval.locals.clone_from(&before);
-            collected.branches.push(AlgorithmBranch { conditions, values });
+            collected.branches.push(AlgorithmBranch { conditions, values, calls });
         }
+        self.eval.calls = outside;
         self.eval.whens.push(collected);
         Some(Flow::Next)
     }
@@ -363,6 +442,38 @@ impl<'a> Instance<'a, '_> {
         }
         conditions.retain(|&c| c != Exprs::ZERO);
         Some(conditions)
+    }
+}
+
+/// First parts of the names assigned in statements: outside `when`, and inside.
+pub fn assigned<'a>(
+    statements: &'a [Statement],
+    inside: bool,
+    always: &mut Vec<&'a ReferencePart>,
+    in_when: &mut Vec<&'a ReferencePart>,
+) {
+    let mut note = |e: &'a Expr| {
+        if let ExprKind::Reference(r) = &e.kind {
+            if inside { in_when.push(&r.parts[0]) } else { always.push(&r.parts[0]) }
+        }
+    };
+    for s in statements {
+        match &s.kind {
+            StatementKind::Assign(target, _) => note(target),
+            StatementKind::AssignTuple(targets, _) => targets.iter().flatten().for_each(&mut note),
+            _ => {}
+        }
+    }
+    for s in statements {
+        match &s.kind {
+            StatementKind::If { branches, otherwise } => {
+                branches.iter().for_each(|(_, b)| assigned(b, inside, always, in_when));
+                assigned(otherwise, inside, always, in_when);
+            }
+            StatementKind::For { body, .. } | StatementKind::While(_, body) => assigned(body, inside, always, in_when),
+            StatementKind::When(branches) => branches.iter().for_each(|(_, b)| assigned(b, true, always, in_when)),
+            _ => {}
+        }
     }
 }
 

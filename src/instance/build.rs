@@ -11,7 +11,7 @@ use crate::flat::{StateSelect, Type, Variability};
 use crate::resolve::{ClassId, Library};
 use crate::syntax::ast::{self, ClassKind, Subscript};
 use crate::syntax::symbol::Symbol;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::rc::Rc;
 
 /// The most scalar variables a model may have; beyond, a size is probably mistaken.
@@ -60,6 +60,7 @@ pub fn instantiate<'a, 'l>(library: &'l mut Library<'a>, request: &ModelRequest)
         dynamic_packages: Vec::new(),
         array_values: FxHashMap::default(),
         inner_declared: FxHashMap::default(),
+        functions_checked: FxHashSet::default(),
         procedures: FxHashMap::default(),
         outer_checked: FxHashMap::default(),
         variabilities: Vec::new(),
@@ -206,7 +207,10 @@ impl<'a> Instance<'a, '_> {
                 ArgKind::Component(c) => c.name,
                 ArgKind::Class(c) => c.name,
             };
-            if template.by_name.contains_key(&name.name) {
+            if let Some(&i) = template.by_name.get(&name.name) {
+                if template.elements[i as usize].protected {
+                    self.protected_modifier(name, template);
+                }
                 continue;
             }
             let class = self.library.full_name(template.class);
@@ -216,6 +220,20 @@ impl<'a> Instance<'a, '_> {
                 self.unknown_modifier(name, &class, &names);
             }
         }
+    }
+
+    /// A component cannot change what its class keeps to itself; a class that extends it can (MLS 4.1, 7.2).
+    fn protected_modifier(&mut self, name: ast::Ident, template: &Template<'a>) {
+        if self.diagnostics.iter().any(|d| d.labels.first().is_some_and(|l| l.span == name.span)) {
+            return;
+        }
+        let class = self.library.full_name(template.class);
+        self.report(
+            Diagnostic::new(Code::UnknownModifier, format!("`{}` of `{class}` is protected", name.name))
+                .at(name.span, "cannot be modified from outside")
+                .class(class)
+                .help("modify it in a class that extends this one, or declare it above `protected`"),
+        );
     }
 
     /// The node of a component element; `None` if it is conditional and absent, or could not be built.
@@ -296,15 +314,22 @@ impl<'a> Instance<'a, '_> {
             return self.fits_outer(node, declared, view).then_some(node);
         }
         let found = self.class_at(view, &declared.class)?;
-        let Found::Class(class) = &found else { return None };
+        let no_inner = |instance: String, help: String| {
+            Diagnostic::new(Code::NoInner, format!("`outer {name}` finds no `inner {name}`"))
+                .at(declared.name.span, "needs an `inner` component of this name further up")
+                .instance(instance)
+                .help(help)
+        };
+        let instance = self.scope(scope).name.clone();
+        let Found::Class(class) = &found else {
+            let ty = super::lookup::dotted(&declared.class);
+            self.report(no_inner(instance, format!("add `inner {ty} {name} = ...;` to the model")));
+            return None;
+        };
         let full = self.library.full_name(class.class);
         if self.library.class(class.class).prefixes.partial {
-            self.report(
-                Diagnostic::new(Code::NoInner, format!("`outer {name}` finds no `inner {name}`"))
-                    .at(declared.name.span, "needs an `inner` component of this name further up")
-                    .instance(self.scope(scope).name.clone())
-                    .help(format!("add `inner SomeClass {name};` to the model, with a class that extends `{full}`")),
-            );
+            let help = format!("add `inner SomeClass {name};` to the model, with a class that extends `{full}`");
+            self.report(no_inner(instance, help));
             return None;
         }
         self.report(

@@ -109,6 +109,32 @@ impl<'a> Instance<'a, '_> {
         })
     }
 
+    /// A mathematical function called by its full name, as `Modelica.Math.sin`.
+    pub(super) fn named_mathematics(
+        &mut self,
+        name: &str,
+        args: &'a [Expr],
+        named: &'a [(Ident, Expr)],
+        view: View,
+        span: Span,
+    ) -> Option<Val> {
+        let args = match named {
+            [(_, only)] if args.is_empty() => std::slice::from_ref(only),
+            _ => args,
+        };
+        if name == "atan2" {
+            let (a, b) = self.two(name, args, view, span)?;
+            return self.real_pair(Binary::Atan2, &a, &b, span);
+        }
+        match mathematical(name) {
+            Some(op) => self.one(name, args, view, span).and_then(|v| self.mathematics(op, &v, span)),
+            None => {
+                self.unsupported(span, &format!("the external function `{name}`"));
+                None
+            }
+        }
+    }
+
     fn one(&mut self, name: &str, args: &'a [Expr], view: View, span: Span) -> Option<Val> {
         match args {
             [a] => self.eval(a, view),

@@ -54,7 +54,10 @@ impl<'a> Instance<'a, '_> {
             span: function.span,
         };
         match self.lookup_path(view, &path) {
-            Ok(Found::Class(class)) => self.call_class(class, args, named, view, span),
+            Ok(Found::Class(class)) => match self.external_builtin(&class) {
+                Some(name) => self.named_mathematics(&name, args, named, view, span),
+                None => self.call_class(class, args, named, view, span),
+            },
             Ok(Found::Builtin(Builtin::Enumeration(i))) => self.enumeration_of(i, args, view, span),
             _ => match self.instance_function(function, view) {
                 Some(class) => self.call_class(class, args, named, view, span),
@@ -64,6 +67,14 @@ impl<'a> Instance<'a, '_> {
                 }
             },
         }
+    }
+
+    /// The built-in function that `external "builtin" y = sin(u)` stands for.
+    fn external_builtin(&self, class: &ClassRef<'a>) -> Option<String> {
+        let ast::ClassBody::Long(body) = &self.library.class(class.class).body else { return None };
+        let called = body.external_text.as_deref()?.trim_start().strip_prefix("\"builtin\"")?;
+        let called = called.split_once('=').map_or(called, |(_, right)| right);
+        Some(called.split('(').next()?.trim().to_string())
     }
 
     /// A function named through a component, as in `oil.density(p)`.
@@ -360,6 +371,9 @@ impl<'a> Instance<'a, '_> {
             return self.fail(Code::Partial, &message, span);
         }
         let known = self.all_known(&positional) && named.iter().all(|(_, v)| self.known(v));
+        if !self.well_formed(callee) {
+            return None;
+        }
         let limit = if known { DEEPEST_KNOWN } else { DEEPEST_INLINE };
         if self.eval.depth >= limit {
             if known {
@@ -390,6 +404,41 @@ impl<'a> Instance<'a, '_> {
         }
         self.diagnostics.truncate(mark);
         self.call_procedure(callee, positional, named, span)
+    }
+
+    /// Whether a function keeps to what functions may do (MLS 12.2).
+    fn well_formed(&mut self, callee: &Callee<'a>) -> bool {
+        let class = callee.template.class;
+        if self.functions_checked.contains(&class) {
+            return true;
+        }
+        let inputs = self.formals(callee, is_input);
+        let mut wrong = None;
+        for base in &callee.template.bases {
+            let ast::ClassBody::Long(body) = &base.ast.body else { continue };
+            if let Some(e) = body.equations.first().or_else(|| body.initial_equations.first()) {
+                let message = format!("the function `{}` holds an equation", callee.name);
+                let d = Diagnostic::new(Code::Syntax, message).at(e.span, "a function has statements only");
+                wrong = Some(d.help("write `algorithm` and `:=`"));
+            }
+            let (mut targets, mut in_when) = (Vec::new(), Vec::new());
+            body.algorithms.iter().for_each(|s| super::algorithm::assigned(s, false, &mut targets, &mut in_when));
+            if let Some(part) = targets.iter().find(|p| inputs.iter().any(|f| f.name == p.name.name)) {
+                let message =
+                    format!("`{}` is an input of `{}` and cannot be assigned to", part.name.name, callee.name);
+                let d = Diagnostic::new(Code::TypeMismatch, message).at(part.name.span, "assigned here");
+                wrong = Some(d.help("give its value to a protected variable, and change that"));
+            }
+        }
+        match wrong {
+            None => self.functions_checked.insert(class),
+            Some(d) => {
+                if self.diagnostics.iter().all(|told| told.message != d.message) {
+                    self.report(d);
+                }
+                false
+            }
+        }
     }
 
     fn all_known(&self, values: &[Val]) -> bool {
@@ -556,12 +605,8 @@ fn declared_number(component: &ast::Component, attribute: &str) -> Option<f64> {
             modification.as_ref()?.value.as_ref()
         }
         _ => None,
-    })?;
-    match value.kind {
-        ast::ExprKind::Real(x) => Some(x),
-        ast::ExprKind::Integer(i) => Some(i as f64),
-        _ => None,
-    }
+    });
+    value?.as_number()
 }
 
 pub(super) fn is_input(c: &ast::Component, protected: bool) -> bool {

@@ -1,5 +1,6 @@
 //! Expressions of the language to values: symbolic in the flat model, by number where a value must be known.
 
+use super::deduce::Body;
 use super::modifiers::{Access, Binding};
 use super::value::{Val, size_text, stack, wider};
 use super::{Instance, View};
@@ -36,6 +37,10 @@ pub struct State {
     pub budget: usize,
     /// `when`s met in an algorithm section of the model.
     pub whens: Vec<super::algorithm::AlgorithmWhen>,
+    /// `assert`s and `terminate`s met there since the section, or the branch of a `when`, began.
+    pub calls: Vec<super::algorithm::AlgorithmCall>,
+    /// Conditions of the `if`s around the present statement of such a section.
+    pub guards: Vec<ExprId>,
     /// The procedure being translated.
     pub(super) translation: super::procedure::Translation,
     /// The variables of the algorithm section being carried out, among the locals.
@@ -597,15 +602,13 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// The values a loop variable takes.
-    pub(super) fn iterate(&mut self, iterator: &'a crate::syntax::ast::Iterator, view: View) -> Option<Vec<Val>> {
-        let Some(range) = &iterator.range else {
-            self.report(
-                Diagnostic::new(Code::Unsupported, "a loop without a range is not supported")
-                    .at(iterator.name.span, "the range would have to be deduced")
-                    .help(format!("write `for {} in 1:n`", iterator.name.name)),
-            );
-            return None;
-        };
+    pub(super) fn iterate(
+        &mut self,
+        iterator: &'a crate::syntax::ast::Iterator,
+        body: Body<'a>,
+        view: View,
+    ) -> Option<Vec<Val>> {
+        let Some(range) = &iterator.range else { return self.deduced_range(iterator, body, view) };
         if let Some(values) = self.enumeration_range(range, view) {
             return Some(values);
         }
@@ -621,6 +624,26 @@ impl<'a> Instance<'a, '_> {
         match &value {
             Val::Array { dims, .. } => (0..dims[0]).map(|i| value.slice(i)).collect(),
             _ => self.wrong_type("a range or vector", &value, range.span),
+        }
+    }
+
+    fn deduced_range(
+        &mut self,
+        iterator: &'a crate::syntax::ast::Iterator,
+        body: Body<'a>,
+        view: View,
+    ) -> Option<Vec<Val>> {
+        let name = iterator.name.name;
+        match self.deduced_count(name, body, view) {
+            Some(n) => Some((1..=n).map(|i| self.integer(i as f64)).collect()),
+            None => {
+                self.report(
+                    Diagnostic::new(Code::BadIndex, format!("how often the loop over `{name}` runs is not said"))
+                        .at(iterator.name.span, "no range, and no array that this alone indexes")
+                        .help(format!("write `for {name} in 1:n`")),
+                );
+                None
+            }
         }
     }
 
@@ -652,7 +675,7 @@ impl<'a> Instance<'a, '_> {
     ) -> Option<Val> {
         let Some((last, rest)) = iterators.split_last() else { return self.eval(body, view) };
         let mut items = Vec::new();
-        for value in self.iterate(last, view)? {
+        for value in self.iterate(last, Body::Expr(body), view)? {
             self.eval.locals.push((last.name.name, value));
             let item = self.array_comprehension(body, rest, view, span);
             self.eval.locals.pop();
@@ -675,7 +698,7 @@ impl<'a> Instance<'a, '_> {
             out.push(self.eval(body, view)?);
             return Some(());
         };
-        for value in self.iterate(first, view)? {
+        for value in self.iterate(first, Body::Expr(body), view)? {
             self.eval.locals.push((first.name.name, value));
             let done = self.each_element(body, rest, view, out);
             self.eval.locals.pop();

@@ -9,6 +9,7 @@ pub mod algorithm;
 pub mod build;
 pub mod builtin;
 pub mod call;
+pub mod deduce;
 mod errors;
 pub mod evaluate;
 mod files;
@@ -29,7 +30,7 @@ use crate::results::table::Matrix;
 use crate::syntax::ast;
 use crate::syntax::symbol::Symbol;
 use modifiers::{Arg, Binding};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::rc::Rc;
 use template::Template;
 use value::Val;
@@ -212,6 +213,8 @@ pub struct Instance<'a, 'l> {
     array_values: FxHashMap<(*const ast::Expr, View, bool), Val>,
     inner_declared: FxHashMap<(ScopeId, Symbol), NodeId>,
     outer_checked: FxHashMap<(NodeId, *const ast::Component), bool>,
+    /// Functions that were seen to keep to what functions may do.
+    functions_checked: FxHashSet<ClassId>,
     procedures: FxHashMap<String, (crate::expr::FunctionId, Vec<Val>)>,
     /// Tables read from files, by file and name.
     tables: FxHashMap<(FileId, String), Rc<Matrix>>,

@@ -5,6 +5,7 @@
 //! then turned into terms.
 
 use super::call::{Callee, is_input};
+use super::deduce::Body;
 use super::evaluate::Pick;
 use super::value::Val;
 use super::{Instance, View};
@@ -433,7 +434,7 @@ impl<'a> Instance<'a, '_> {
                 self.loop_over(first.name.name, ty, (from, step, to), None, rest, body, view)
             }
             _ => {
-                let values = self.iterate(first, view)?;
+                let values = self.iterate(first, Body::Statements(body), view)?;
                 let n = values.len();
                 let Some(ty) = values.first().and_then(Val::element_type) else { return Some(()) };
                 let array = Val::array(vec![n], values);

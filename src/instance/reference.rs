@@ -1,5 +1,6 @@
 //! Component references: `a.b[i].c` to the variables it means.
 
+use super::deduce::Body;
 use super::errors::{list_names, nearest, short};
 use super::evaluate::{Pick, QUANTITY};
 use super::lookup::{Builtin, Found};
@@ -710,14 +711,15 @@ impl<'a> Instance<'a, '_> {
     pub fn for_each(
         &mut self,
         iterators: &'a [crate::syntax::ast::Iterator],
+        repeated: Body<'a>,
         view: View,
         body: &mut dyn FnMut(&mut Self),
     ) {
         let Some((first, rest)) = iterators.split_first() else { return body(self) };
-        let Some(values) = self.iterate(first, view) else { return };
+        let Some(values) = self.iterate(first, repeated, view) else { return };
         for value in values {
             self.eval.locals.push((first.name.name, value));
-            self.for_each(rest, view, body);
+            self.for_each(rest, repeated, view, body);
             self.eval.locals.pop();
         }
     }
@@ -726,8 +728,13 @@ impl<'a> Instance<'a, '_> {
 /// Doors for `flat`, which walks the equations.
 impl<'a> Instance<'a, '_> {
     /// The values of a loop variable.
-    pub fn loop_values(&mut self, iterator: &'a crate::syntax::ast::Iterator, view: View) -> Option<Vec<Val>> {
-        self.iterate(iterator, view)
+    pub fn loop_values(
+        &mut self,
+        iterator: &'a crate::syntax::ast::Iterator,
+        body: &'a [crate::syntax::ast::Equation],
+        view: View,
+    ) -> Option<Vec<Val>> {
+        self.iterate(iterator, Body::Equations(body), view)
     }
 
     /// Enters a loop variable.
@@ -772,6 +779,8 @@ impl<'a> Instance<'a, '_> {
         self.eval.not_inline = false;
         let end = self.eval.locals.len();
         self.eval.section = end - count..end;
+        self.eval.calls.clear();
+        self.eval.guards.clear();
         let done = self.execute(section, view).map(|_| ());
         self.eval.section = 0..0;
         done
@@ -781,6 +790,11 @@ impl<'a> Instance<'a, '_> {
     pub fn take_locals(&mut self, count: usize) -> Vec<Val> {
         let at = self.eval.locals.len() - count;
         self.eval.locals.split_off(at).into_iter().map(|(_, v)| v).collect()
+    }
+
+    /// The `assert`s and `terminate`s met outside `when` since the last section began.
+    pub fn take_calls(&mut self) -> Vec<super::algorithm::AlgorithmCall> {
+        std::mem::take(&mut self.eval.calls)
     }
 
     /// The `when`s met since the last call.

@@ -171,8 +171,13 @@ impl<'a> Instance<'a, '_> {
     }
 
     fn gather_long(&mut self, t: &mut Template<'a>, base: u32, body: &'a ast::LongBody, chain: &mut Vec<ClassId>) {
-        if body.class_extends.is_some() {
-            self.unsupported(t.bases[base as usize].ast.name.span, "`class extends`");
+        if let Some(modification) = &body.class_extends {
+            let (ast, parent) = (t.bases[base as usize].ast, t.bases[base as usize].parent);
+            let arguments = modification.as_ref().map_or(&[][..], |m| m.arguments.as_slice());
+            match self.replaced_class(ast, parent) {
+                Some(found) => self.gather_base(t, base, &found, arguments, chain),
+                None => t.broken = true,
+            }
         }
         for element in &body.elements {
             match &element.kind {
@@ -333,6 +338,35 @@ impl<'a> Instance<'a, '_> {
                 }
             }
         }
+    }
+
+    /// The inherited class that `redeclare model extends M` takes the place of and extends (MLS 7.3.1): the declaration,
+    /// or the redeclaration nearest to it, below the one that is given.
+    fn replaced_class(&mut self, ast: &'a ast::Class, parent: View) -> Option<ClassRef<'a>> {
+        let mut scope = parent.scope;
+        let mut holder = self.scope(scope).template.clone();
+        if !holder.by_name.contains_key(&ast.name.name) {
+            // seen from an `extends` clause beside it, before anything inherited is known
+            let base = holder.bases.get(parent.base as usize)?;
+            let around = ClassRef { class: base.class, parent: base.parent, args: Rc::from([]) };
+            scope = self.package(&around);
+            holder = self.scope(scope).template.clone();
+        }
+        let element = &holder.elements[*holder.by_name.get(&ast.name.name)? as usize];
+        let Kind::Class(declared) = element.kind else { return None };
+        let own = |s: &Source<'a>| matches!(s.what, What::Class(c) if std::ptr::eq(c, ast));
+        let below = element.modified.iter().position(own)? + 1;
+        let redeclared = element.modified[below..].iter().find_map(|s| match s.what {
+            What::Class(c) => Some((c, s.base)),
+            What::Argument(a) => match &a.kind {
+                ArgumentKind::Class(c) => Some((&**c, s.base)),
+                _ => None,
+            },
+            What::Component(_) => None,
+        });
+        let (class, base) = redeclared.unwrap_or((declared, element.base));
+        let class = self.library.enter(class, Some(holder.bases[base as usize].class));
+        Some(ClassRef { class, parent: View { scope, base }, args: Rc::from([]) })
     }
 
     /// Selective extension (Modelica 3.6, 7.4): `extends B(break x)` leaves out `x` and its connections.

@@ -3,6 +3,7 @@
 use super::{Connection, FlowSet, Network, PotentialSet, SignalPair};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::flat::{Type, Variability};
+use crate::instance::deduce::Body;
 use crate::instance::lookup::Found;
 use crate::instance::reference::Selection;
 use crate::instance::template::{Base, Kind};
@@ -121,7 +122,7 @@ impl Collector {
                     self.connect(instance, a, b, view, e.span);
                 }
                 EquationKind::For { iterators, body } if has_connect(body) => {
-                    instance.for_each(iterators, view, &mut |instance| {
+                    instance.for_each(iterators, Body::Equations(body), view, &mut |instance| {
                         self.equations(instance, body, view, base);
                     });
                 }

@@ -11,7 +11,7 @@ use super::events::{Events, Outcome};
 use super::ida::{Failure, Ida, Tolerances};
 use super::linear::Lu;
 use super::model::Model;
-use super::modes::{Modes, RootFunctions};
+use super::modes::{Modes, RootFunctions, follows_time};
 use super::monitor::{Chatter, Told};
 use super::newton::Scales;
 use super::output::Grid;
@@ -405,7 +405,8 @@ impl<'a> Driver<'a, '_> {
         let ida = Ida::new(model, &pattern, lu, roots, &tolerances, start);
         let mut ida = ida.map_err(|f| self.refused(&f))?;
         let span = self.settings.stop_time - self.t;
-        let longest = if still { span / 500.0 } else { self.settings.longest_step };
+        let unseen = system.dae.states.is_empty() || follows_time(&system.dae);
+        let longest = self.settings.longest_step.min(if unseen { span / 500.0 } else { f64::INFINITY });
         ida.set_longest_step(longest);
         if !self.restart.is_explicit() {
             ida.set_corrector_tolerance(algebraic_corrector(self.settings.tolerance));

@@ -4,9 +4,10 @@
 //! and results would be silently wrong. So the function given to IDA is `d` shifted beyond the threshold, away from the
 //! present side: never zero after a restart, and when IDA reports the root, `d` has really changed its side.
 
-use crate::expr::{Rel, VarId};
+use crate::expr::{ExprId, Node, Rel, VarId};
 use crate::lower::{Layout, System};
-use crate::structure::CrossingKind;
+use crate::structure::{Assign, Block, Crossing, CrossingKind, Dae, Unknown};
+use rustc_hash::FxHashSet;
 
 /// Shift of root functions beyond the threshold, in units of the sides' size.
 const SHIFT: f64 = 1e-12;
@@ -119,6 +120,36 @@ impl Modes {
     fn keep(&self, c: usize, computed: f64, distance: f64, size: f64) -> f64 {
         if distance <= 10.0 * self.tolerance * size { self.forced[c] } else { computed }
     }
+}
+
+/// Whether a crossing is a function of time that no state follows: no error test sees it, and a long step could hold two
+/// of its roots.
+pub fn follows_time(dae: &Dae) -> bool {
+    let watched = |c: &Crossing| match c.kind {
+        CrossingKind::Relation(_, left, right) => Some([left, right]),
+        CrossingKind::Floor(argument) => Some([argument, argument]),
+        CrossingKind::Time(..) => None,
+    };
+    let watched: Vec<ExprId> = dae.crossings.iter().filter_map(watched).flatten().collect();
+    if watched.is_empty() {
+        return false;
+    }
+    let mut moved: FxHashSet<VarId> = FxHashSet::default();
+    let moves = |e: ExprId, moved: &FxHashSet<VarId>| {
+        dae.exprs.reachable(&[e], |_| true).iter().any(|&e| match dae.exprs.node(e) {
+            Node::Time => true,
+            Node::Var(v) => moved.contains(&v),
+            _ => false,
+        })
+    };
+    for block in &dae.continuous {
+        if let Block::Assign(Assign { unknown: Unknown::Var(v), value, .. }) = block
+            && moves(*value, &moved)
+        {
+            moved.insert(*v);
+        }
+    }
+    watched.iter().any(|&e| moves(e, &moved))
 }
 
 /// A time relation just after the time it compares with.

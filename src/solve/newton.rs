@@ -13,6 +13,8 @@ const TOLERANCE: f64 = 1e-11;
 const ROUND_OFF: f64 = 1e-7;
 const MAX_ITERATIONS: u32 = 60;
 const SMALLEST_DAMPING: f64 = 1e-5;
+/// Steps of a linear loop at most.
+const REFINEMENTS: u32 = 3;
 
 /// Sizes and bounds of all variables, by `VarId::index`.
 #[derive(Clone, Debug, Default)]
@@ -135,7 +137,8 @@ impl Newton {
         Err(failure)
     }
 
-    /// One step, and a second one against round-off where it matters.
+    /// One step, and further ones as long as round-off of the first guess is seen: signs of values that are tiny beside
+    /// the guess decide about modes.
     fn linear(&mut self, code: &LoopCode, values: &mut [f64]) -> Result<(), Reason> {
         self.iterations = 1;
         if !evaluate(code, &self.x, values) {
@@ -145,14 +148,24 @@ impl Newton {
             }
         }
         self.factor(code, values)?;
-        self.correction(code, values);
-        if !self.step.iter().all(|v| v.is_finite()) {
-            return Err(Reason::NoConvergence);
+        for _ in 0..REFINEMENTS {
+            self.correction(code, values);
+            if !self.step.iter().all(|v| v.is_finite()) {
+                return Err(Reason::NoConvergence);
+            }
+            let mut moved = false;
+            for (x, dx) in self.x.iter_mut().zip(&self.step) {
+                moved |= dx.abs() > 1e-14 * x.abs();
+                *x += dx;
+            }
+            if !evaluate(code, &self.x, values) {
+                return Err(Reason::NonFinite);
+            }
+            if !moved {
+                break;
+            }
         }
-        for (x, dx) in self.x.iter_mut().zip(&self.step) {
-            *x += dx;
-        }
-        if evaluate(code, &self.x, values) { Ok(()) } else { Err(Reason::NonFinite) }
+        Ok(())
     }
 
     fn iterate(&mut self, code: &LoopCode, scales: &Scales, values: &mut [f64]) -> Result<(), Reason> {

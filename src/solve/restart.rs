@@ -125,7 +125,9 @@ impl Restart {
     /// ones agree there.
     pub fn past_serves_ahead(&mut self, ida: &mut Ida<Model<'_>>, t: f64, changed: bool) -> bool {
         if !changed {
-            return self.jump() <= SMALL_JUMP;
+            // Algebraic unknowns are met to a tolerance only: seen through them a crossing lies behind already, and
+            // would never be found, that the exact values of the event still have ahead.
+            return self.explicit && self.jump() <= SMALL_JUMP;
         }
         let kink = self.norm(|i| self.yp[i] - self.old_slopes[i]);
         let tail = (ida.internal_time() - t).abs();

@@ -104,13 +104,18 @@ fn add_actions(draft: &mut Draft, when: &When, fires: &[ExprId]) {
         let first = draft.exprs.and(fires, none);
         earlier = draft.exprs.or(earlier, fires);
         for action in &branch.actions {
-            let (kind, origin) = match action {
+            let (kind, guard, origin) = match action {
                 WhenAction::Assign { .. } => continue,
-                WhenAction::Reinit { variable, value, origin } => (ActionKind::Reinit(*variable, *value), *origin),
-                WhenAction::Assert(assert) => (ActionKind::Assert(assert.clone()), assert.origin),
-                WhenAction::Terminate { message, origin } => (ActionKind::Terminate(message.clone()), *origin),
+                WhenAction::Reinit { variable, value, guard, origin } => {
+                    (ActionKind::Reinit(*variable, *value), *guard, *origin)
+                }
+                WhenAction::Assert(assert) => (ActionKind::Assert(assert.clone()), Exprs::ONE, assert.origin),
+                WhenAction::Terminate { message, guard, origin } => {
+                    (ActionKind::Terminate(message.clone()), *guard, *origin)
+                }
             };
-            draft.actions.push(Action { fires: first, kind, origin });
+            let fires = draft.exprs.and(first, guard);
+            draft.actions.push(Action { fires, kind, origin });
         }
     }
 }

@@ -170,9 +170,13 @@ impl Draft {
             branch.conditions.iter_mut().for_each(&mut visit);
             for action in &mut branch.actions {
                 match action {
-                    flat::WhenAction::Assign { value, .. } | flat::WhenAction::Reinit { value, .. } => visit(value),
+                    flat::WhenAction::Assign { value, .. } => visit(value),
+                    flat::WhenAction::Reinit { value, guard, .. } => [value, guard].into_iter().for_each(&mut visit),
                     flat::WhenAction::Assert(assert) => each_of_assert(assert, &mut visit),
-                    flat::WhenAction::Terminate { message, .. } => each_of_message(message, &mut visit),
+                    flat::WhenAction::Terminate { message, guard, .. } => {
+                        visit(guard);
+                        each_of_message(message, &mut visit);
+                    }
                 }
             }
         }

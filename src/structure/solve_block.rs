@@ -11,8 +11,8 @@ use rustc_hash::FxHashMap;
 /// How an equation can be solved for an unknown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Solved {
-    /// By this value, always; `gentle` when the coefficient is plus or minus one.
-    Explicit { value: ExprId, gentle: bool },
+    /// By this value, always; `gentle` when the coefficient is plus or minus one, `switched` when it changes with a mode.
+    Explicit { value: ExprId, gentle: bool, switched: bool },
     /// It is affine, but the coefficient may vanish.
     Affine,
     /// Not affine.
@@ -63,7 +63,9 @@ impl<'a> BlockSolver<'a> {
     /// The torn loop of several equations; `columns` are their unknowns, as many as members.
     ///
     /// In a nonlinear loop only equations with a coefficient of plus or minus one are solved: the integrator finds the
-    /// iteration variables to its tolerance, and dividing by a small coefficient would multiply that error.
+    /// iteration variables to its tolerance, and dividing by a small coefficient would multiply that error. For the same
+    /// reason no loop is solved by a coefficient that switches, as those of ideal diodes do between 1 and 1e-5: pivoting
+    /// has to follow the modes.
     pub fn torn(&mut self, members: &[Member], columns: &[u32], unknowns: &[Unknown]) -> Block {
         let local: FxHashMap<u32, u32> = columns.iter().enumerate().map(|(i, &c)| (c, i as u32)).collect();
         let unknown = |c: u32| unknowns[columns[c as usize] as usize];
@@ -75,7 +77,7 @@ impl<'a> BlockSolver<'a> {
                 let c = local[c];
                 let safe = at < member.solvable
                     && match self.solve(&member.equation, unknown(c)) {
-                        Solved::Explicit { gentle, .. } => linear || gentle,
+                        Solved::Explicit { gentle, switched, .. } => linear && !switched || gentle,
                         _ => false,
                     };
                 row.push((c, safe));
@@ -129,7 +131,9 @@ impl<'a> BlockSolver<'a> {
             None => Solved::No,
             Some((value, coefficient)) if self.known.is_nonzero(pool, coefficient) => {
                 let gentle = pool.as_num(coefficient).is_some_and(|c| c.abs() == 1.0);
-                Solved::Explicit { value, gentle }
+                let switched =
+                    pool.reachable(&[coefficient], |_| true).iter().any(|&e| matches!(pool.node(e), Node::If(..)));
+                Solved::Explicit { value, gentle, switched }
             }
             Some(_) => Solved::Affine,
         };

@@ -48,7 +48,7 @@ pub(super) fn relations(model: &FlatModel) -> Vec<Relation> {
     }
     for branch in model.whens.iter().flat_map(|when| &when.branches) {
         for action in &branch.actions {
-            if let WhenAction::Assign { variable, value, origin } | WhenAction::Reinit { variable, value, origin } =
+            if let WhenAction::Assign { variable, value, origin } | WhenAction::Reinit { variable, value, origin, .. } =
                 action
             {
                 let (span, instance) = (origin.span, origin.instance);

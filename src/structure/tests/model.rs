@@ -172,7 +172,7 @@ impl Model {
         let (left, value) = text.split_once('=').expect("an assignment");
         let value = self.expr(value);
         match left.trim().strip_prefix("reinit ") {
-            Some(x) => WhenAction::Reinit { variable: self.id(x.trim()), value, origin },
+            Some(x) => WhenAction::Reinit { variable: self.id(x.trim()), value, guard: Exprs::ONE, origin },
             None => WhenAction::Assign { variable: self.id(left.trim()), value, origin },
         }
     }

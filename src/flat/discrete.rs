@@ -1,0 +1,84 @@
+//! What changes at events only must be given so: a `discrete` or Integer variable by its equation, `pre` by its argument.
+
+use super::{Equation, FlatModel, Type, Variability, When};
+use crate::diag::{Code, Diagnostic};
+use crate::expr::{ExprId, Node, Unary, VarId};
+use crate::instance::Instance;
+use rustc_hash::FxHashSet;
+
+/// Tells what is wrong; the expressions are still those of the instance.
+pub(super) fn check(instance: &mut Instance<'_, '_>, flat: &FlatModel) {
+    let assigned: FxHashSet<VarId> = flat.whens.iter().flat_map(When::assigned).collect();
+    check_equations(instance, flat, &assigned);
+    check_pre(instance, flat, &assigned);
+}
+
+/// The variable that a side of an equation is, with the other side.
+fn bare(instance: &Instance<'_, '_>, e: &Equation) -> impl Iterator<Item = (VarId, ExprId)> + use<> {
+    let of = |side, other| match instance.exprs.node(side) {
+        Node::Var(v) => Some((v, other)),
+        _ => None,
+    };
+    [of(e.lhs, e.rhs), of(e.rhs, e.lhs)].into_iter().flatten()
+}
+
+fn check_equations(instance: &mut Instance<'_, '_>, flat: &FlatModel, assigned: &FxHashSet<VarId>) {
+    let stepping = |v: VarId| {
+        let variable = &flat.variables[v.index()];
+        let declared = variable.variability == Variability::Discrete || variable.ty == Type::Integer;
+        declared && variable.variability > Variability::Parameter && !variable.input && !assigned.contains(&v)
+    };
+    let mut given: FxHashSet<VarId> = FxHashSet::default();
+    let mut doubtful = Vec::new();
+    for e in &flat.equations {
+        for (v, other) in bare(instance, e).filter(|b| stepping(b.0)) {
+            if instance.variability(other) <= Variability::Discrete {
+                given.insert(v);
+            } else if !matches!(instance.exprs.node(other), Node::Var(_)) && is_smooth(instance, other) {
+                doubtful.push((v, e.origin.span));
+            }
+        }
+    }
+    for (v, span) in doubtful.into_iter().filter(|(v, _)| !given.contains(v)) {
+        let variable = &flat.variables[v.index()];
+        let kind = if variable.ty == Type::Integer { "an Integer" } else { "`discrete`" };
+        let message = format!("`{}` is {kind} and is given a value that changes all the time", variable.name);
+        let d = Diagnostic::new(Code::TypeMismatch, message).at(span, "this changes between events");
+        instance.diagnostics.push(d.at(variable.origin.span, "declared here").help(
+            "sample it in a `when`, round it by `integer(..)`, or declare the variable as a Real that is not `discrete`",
+        ));
+    }
+}
+
+/// Neither calls nor switches: what these give may be constant between events all the same.
+fn is_smooth(instance: &Instance<'_, '_>, e: ExprId) -> bool {
+    let steps = |e: &ExprId| match instance.exprs.node(*e) {
+        Node::Unary(op, _) => matches!(op, Unary::Floor | Unary::Sign),
+        node => matches!(node, Node::Call(..) | Node::Rel(..) | Node::If(..)),
+    };
+    !instance.exprs.reachable(&[e], |_| true).iter().any(steps)
+}
+
+fn check_pre(instance: &mut Instance<'_, '_>, flat: &FlatModel, assigned: &FxHashSet<VarId>) {
+    let smooth = |v: VarId| {
+        let variable = flat.variables.get(v.index());
+        variable.is_some_and(|x| x.ty == Type::Real && x.variability == Variability::Continuous)
+            && !assigned.contains(&v)
+    };
+    let wrong = |instance: &Instance<'_, '_>, e: ExprId| match instance.exprs.node(e) {
+        Node::Pre(v) if smooth(v) => Some(v),
+        _ => None,
+    };
+    if !(0..).map(ExprId).take(instance.exprs.len()).any(|e| wrong(instance, e).is_some()) {
+        return;
+    }
+    for e in &flat.equations {
+        let reached = instance.exprs.reachable(&[e.lhs, e.rhs], |_| true);
+        if let Some(v) = reached.iter().find_map(|&e| wrong(instance, e)) {
+            let name = &flat.variables[v.index()].name;
+            let message = format!("`pre({name})` outside a `when`: `{name}` changes all the time");
+            let d = Diagnostic::new(Code::TypeMismatch, message).at(e.origin.span, "in this equation");
+            instance.diagnostics.push(d.help("`pre` means the value before an event: use it inside a `when`"));
+        }
+    }
+}

@@ -1,0 +1,150 @@
+//! Loops without a range, `for i loop x[i] = ...`: it is `1:size(x, 1)`, after an array that the variable indexes alone
+//! (MLS 10.4.1.1, 11.2.2.1).
+
+use super::lookup::Found;
+use super::value::Val;
+use super::{Instance, Node, View};
+use crate::syntax::ast::{Equation, EquationKind, Expr, ExprKind, Reference, Statement, StatementKind, Subscript};
+use crate::syntax::symbol::Symbol;
+
+/// What a loop repeats.
+#[derive(Clone, Copy)]
+pub enum Body<'a> {
+    /// An element of an array or reduction.
+    Expr(&'a Expr),
+    /// Equations.
+    Equations(&'a [Equation]),
+    /// Statements.
+    Statements(&'a [Statement]),
+}
+
+impl<'a> Instance<'a, '_> {
+    /// How often a loop over `name` runs, where an array tells.
+    pub(super) fn deduced_count(&mut self, name: Symbol, body: Body<'a>, view: View) -> Option<usize> {
+        let mut found: Vec<(&'a Reference, usize, usize)> = Vec::new();
+        walk(body, &mut |r| {
+            for (p, part) in r.parts.iter().enumerate() {
+                found.extend(part.subscripts.iter().position(|s| is_name(s, name)).map(|k| (r, p, k)));
+            }
+        });
+        found.into_iter().find_map(|(r, part, dimension)| self.indexed_size(r, part, dimension, view))
+    }
+
+    /// The size of the array that `parts[..=part]` names without its subscripts.
+    fn indexed_size(&mut self, r: &'a Reference, part: usize, dimension: usize, view: View) -> Option<usize> {
+        let first = r.parts[0].name.name;
+        if part == 0
+            && let Some(i) = self.local(first)
+        {
+            return self.eval.locals[i].1.dims().get(dimension).copied();
+        }
+        let Found::Component(mut scope, mut index) = self.lookup(view, first)? else { return None };
+        for step in &r.parts[1..=part] {
+            let first = self.first_of(scope, index)?;
+            let Node::Object(inner) = *self.node(first) else { return None };
+            scope = inner;
+            index = *self.scope(inner).template.by_name.get(&step.name.name)?;
+        }
+        let node = self.component(scope, index)?;
+        match self.node(node) {
+            Node::Array { dims, .. } => dims.get(dimension).copied(),
+            _ => self.node_value(node, r.span).as_ref().map(Val::dims)?.get(dimension).copied(),
+        }
+    }
+
+    /// A component, or the first element of an array of them.
+    fn first_of(&mut self, scope: super::ScopeId, index: u32) -> Option<super::NodeId> {
+        let node = self.component(scope, index)?;
+        match self.node(node) {
+            Node::Array { elements, .. } => elements.first().copied(),
+            _ => Some(node),
+        }
+    }
+}
+
+fn is_name(s: &Subscript, name: Symbol) -> bool {
+    matches!(s, Subscript::Expr(Expr { kind: ExprKind::Reference(r), .. })
+        if r.parts.len() == 1 && r.parts[0].subscripts.is_empty() && r.parts[0].name.name == name)
+}
+
+/// Shows all references to `see`.
+fn walk<'a>(body: Body<'a>, see: &mut dyn FnMut(&'a Reference)) {
+    match body {
+        Body::Expr(e) => expression(e, see),
+        Body::Equations(list) => list.iter().for_each(|e| equation(e, see)),
+        Body::Statements(list) => list.iter().for_each(|s| statement(s, see)),
+    }
+}
+
+fn equation<'a>(e: &'a Equation, see: &mut dyn FnMut(&'a Reference)) {
+    match &e.kind {
+        EquationKind::Equal(a, b) | EquationKind::Connect(a, b) => [a, b].into_iter().for_each(|e| expression(e, see)),
+        EquationKind::If { branches, otherwise } => {
+            branches.iter().for_each(|(_, body)| walk(Body::Equations(body), see));
+            walk(Body::Equations(otherwise), see);
+        }
+        EquationKind::For { body, .. } => walk(Body::Equations(body), see),
+        EquationKind::When(branches) => branches.iter().for_each(|(_, body)| walk(Body::Equations(body), see)),
+        EquationKind::Call(call) => expression(call, see),
+    }
+}
+
+fn statement<'a>(s: &'a Statement, see: &mut dyn FnMut(&'a Reference)) {
+    match &s.kind {
+        StatementKind::Assign(a, b) => [a, b].into_iter().for_each(|e| expression(e, see)),
+        StatementKind::AssignTuple(targets, call) => {
+            targets.iter().flatten().for_each(|e| expression(e, see));
+            expression(call, see);
+        }
+        StatementKind::Call(call) => expression(call, see),
+        StatementKind::If { branches, otherwise } => {
+            branches.iter().for_each(|(_, body)| walk(Body::Statements(body), see));
+            walk(Body::Statements(otherwise), see);
+        }
+        StatementKind::For { body, .. } | StatementKind::While(_, body) => walk(Body::Statements(body), see),
+        StatementKind::When(branches) => branches.iter().for_each(|(_, body)| walk(Body::Statements(body), see)),
+        StatementKind::Break | StatementKind::Return => {}
+    }
+}
+
+fn expression<'a>(e: &'a Expr, see: &mut dyn FnMut(&'a Reference)) {
+    match &e.kind {
+        ExprKind::Reference(r) => {
+            see(r);
+            r.parts.iter().flat_map(|p| &p.subscripts).for_each(|s| subscript(s, see));
+        }
+        ExprKind::Unary(_, a) => expression(a, see),
+        ExprKind::Binary(_, a, b) => [a, b].into_iter().for_each(|e| expression(e, see)),
+        ExprKind::If { branches, otherwise } => {
+            branches.iter().for_each(|(c, value)| [c, value].into_iter().for_each(|e| expression(e, see)));
+            expression(otherwise, see);
+        }
+        ExprKind::Range { from, step, to } => {
+            [Some(from), step.as_ref(), Some(to)].into_iter().flatten().for_each(|e| expression(e, see));
+        }
+        ExprKind::Call { args, named, .. } => {
+            args.iter().chain(named.iter().map(|(_, e)| e)).for_each(|e| expression(e, see));
+        }
+        ExprKind::Comprehension { body, .. } => expression(body, see),
+        ExprKind::PartialApplication { named, .. } => named.iter().for_each(|(_, e)| expression(e, see)),
+        ExprKind::Array(items) => items.iter().for_each(|e| expression(e, see)),
+        ExprKind::Matrix(rows) => rows.iter().flatten().for_each(|e| expression(e, see)),
+        ExprKind::Tuple(items) => items.iter().flatten().for_each(|e| expression(e, see)),
+        ExprKind::Index(inner, subscripts) => {
+            expression(inner, see);
+            subscripts.iter().for_each(|s| subscript(s, see));
+        }
+        ExprKind::Integer(_)
+        | ExprKind::Real(_)
+        | ExprKind::String(_)
+        | ExprKind::Boolean(_)
+        | ExprKind::End
+        | ExprKind::Error => {}
+    }
+}
+
+fn subscript<'a>(s: &'a Subscript, see: &mut dyn FnMut(&'a Reference)) {
+    if let Subscript::Expr(e) = s {
+        expression(e, see);
+    }
+}
