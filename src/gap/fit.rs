@@ -110,7 +110,7 @@ pub fn adjust_slowly(setting: &mut Setting, train: &[Recording], rounds: usize, 
         let found = passes(setting, train, usize::MAX, Tape::Stretches)?;
         setting.starts = found.iter().map(|p| p.start.clone()).collect();
         let tapes: Vec<&[filter::Step]> = found.iter().flat_map(|p| &p.tapes).map(Vec::as_slice).collect();
-        let (factors, _) = levels::fit(setting, &tapes, growth);
+        let factors = levels::fit(setting, &tapes, growth);
         let settled = factors.iter().all(|f| *f < growth / SETTLED);
         adjust_noise(setting, &tapes, &factors);
         setting.sources.iter_mut().zip(factors).for_each(|(s, f)| s.level *= f);
