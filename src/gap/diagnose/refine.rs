@@ -29,6 +29,8 @@ pub(super) const AT_BOUND: f64 = 1e-3;
 const BOUNDED: usize = 4;
 const WHOLE: f64 = 0.3;
 const TRIED: usize = 1500;
+/// Part of the time of a lag that is tried beside it.
+const SHORT: f64 = 0.1;
 /// Shapes without a name that are refined beside, each of another kind.
 const SHAPES: usize = 5;
 /// Iterations with which candidates are compared before the front is polished, and candidates polished.
@@ -38,6 +40,8 @@ const POLISHED: usize = 5;
 /// before, then at their own.
 const BEHIND: f64 = 0.4;
 const FAR_BEHIND: f64 = 0.5;
+/// The same for those that only have coefficients: they are nearly there after a few iterations.
+const FAR_IF_LINEAR: f64 = 0.2;
 const CLOSE: f64 = 200.0;
 /// A candidate that is so much worse than the model without it is not tried further, nats.
 const HOPELESS: f64 = 3e3;
@@ -97,7 +101,10 @@ impl Search {
         if bounded(h) {
             make_whole(h, &mut whole);
             if h.variants().len() > 1 {
-                self.shape_of_whole(problem, h, &mut whole);
+                let found = self.shape_of_whole(problem, h, &mut whole);
+                if h.shapes.iter().all(|s| s.unit == "s") && !self.comes_late(problem, &whole, found) {
+                    return None;
+                }
             }
         }
         let accepted = whole.accepted();
@@ -134,6 +141,16 @@ impl Search {
         open.into_par_iter().filter_map(whole).collect()
     }
 
+    /// Whether a lag or dead time with the best time of its grid, or a much shorter one, is better than none on the
+    /// beginning of the first recording.
+    fn comes_late(&self, problem: &Problem<'_>, whole: &Candidate, found: Option<f64>) -> bool {
+        let Some(without) = self.tried(problem, None) else { return true };
+        let mut short = whole.accepted();
+        let count = problem.hypotheses[whole.chosen.hypothesis].coefficients.len();
+        short.chosen.values[count..].iter_mut().for_each(|t| *t *= SHORT);
+        found.is_some_and(|f| f > without) || self.tried(problem, Some(short)).is_some_and(|f| f > without)
+    }
+
     /// Gives a whole effect the shape that fits it: that of a small share of it may be nothing like (a twentieth of twenty
     /// samples' delay is one sample's). Gives its likelihood on the beginning of the first recording.
     fn shape_of_whole(&self, problem: &Problem<'_>, h: &Hypothesis, whole: &mut Candidate) -> Option<f64> {
@@ -166,9 +183,13 @@ impl Search {
     /// that of the whitest: a model that explains what is missing leaves white innovations, and then all samples count.
     pub(super) fn sharpen(&mut self, problem: &Problem<'_>, refined: &mut Vec<Refined>) {
         let front = refined.first().map_or(0.0, |r| r.fit.evidence);
-        let far = (FAR_BEHIND * (front - self.last.evidence)).max(CLOSE);
+        let far = |r: &Refined| {
+            let shaped = !problem.hypotheses[r.accepted.chosen.hypothesis].shapes.is_empty();
+            let part = if shaped { FAR_BEHIND } else { FAR_IF_LINEAR };
+            (part * (front - self.last.evidence)).max(CLOSE)
+        };
         let sharper = |(i, r): (usize, Refined)| {
-            if i >= POLISHED || r.fit.evidence < front - far {
+            if i >= POLISHED || r.fit.evidence < front - far(&r) {
                 return r;
             }
             r.refitted(problem, |fit| fit::polish(fit, &problem.train, Some(self.last.search_share())))
