@@ -34,8 +34,10 @@ const BROKEN: f64 = 100.0;
 const SETTLING: usize = 5;
 /// Factor by which they grow in one of them.
 const GROWTH: f64 = 30.0;
-/// Gain that an effect must have to be accepted, nats.
-pub(super) const ACCEPTED: f64 = 8.0;
+/// Gain from which an effect counts as seen, nats.
+pub(super) const SEEN: f64 = 8.0;
+/// Gain that an effect must have to be accepted, nats: the best of some hundred hypotheses gains much of it by chance.
+const CLAIMED: f64 = 12.0;
 /// Vuong statistic that it must have.
 const CONSISTENT: f64 = 2.0;
 /// Vuong statistic that makes up for a gain that is small because few samples count.
@@ -239,7 +241,7 @@ impl Search {
         progress(Stage::Screen(number));
         let screened = screen::screen(problem, &self.last, &self.accepted);
         if number == 1 {
-            let seen = screened.followed.iter().filter(|c| c.visible > ACCEPTED).count();
+            let seen = screened.followed.iter().filter(|c| c.visible > SEEN).count();
             self.visible = seen as f64 / screened.followed.len().max(1) as f64;
         }
         progress(Stage::Refine(number));
@@ -332,7 +334,7 @@ impl Search {
         let seldom = !always && (returned > 0.5 * gain || rare(&best.fit, &self.last, gain));
         let t = vuong(&best.fit.blocks, &self.last.blocks);
         // blocks are long against most colours: where they agree so well it does not matter how few samples count
-        gain >= ACCEPTED && (t > CONSISTENT || seldom)
+        gain >= CLAIMED && (t > CONSISTENT || seldom)
             || gain > 0.0 && t > CERTAIN && won_and_lost(&best.fit, &self.last).0 > RARE
     }
 
@@ -383,7 +385,7 @@ impl Search {
         let gain = self.gain(&shape.fit);
         let named = best.map_or(0.0, |b| self.gain(&b.fit)).max(0.0);
         let rival = best.filter(|_| named > 0.0).map_or(&self.last, |b| &b.fit);
-        let ahead = gain > ACCEPTED && gain - named > AHEAD.max(AHEAD_PART * named);
+        let ahead = gain > SEEN && gain - named > AHEAD.max(AHEAD_PART * named);
         let consistent =
             || vuong(&shape.fit.blocks, &rival.blocks) > CONSISTENT || rare(&shape.fit, rival, gain - named);
         let driven = || driven::gain(problem, shape, &self.last).is_some_and(|driven| driven > DRIVEN * gain);

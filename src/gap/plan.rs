@@ -4,7 +4,7 @@
 //! over follows from their products.
 
 use super::data::Recording;
-use super::diagnose::{ACCEPTED, NEAR};
+use super::diagnose::{NEAR, SEEN};
 use super::filter::{self, Tape};
 use super::fit;
 use super::hypotheses::{Hypothesis, Place, Signal};
@@ -86,7 +86,7 @@ pub fn plan(problem: &mut Problem<'_>, progress: &mut dyn FnMut(&str)) -> Option
     let confused = planned.confused();
     let change = |what: String, products: &Products| Change {
         what,
-        seen: (0..hypotheses.len()).filter(|&h| products.nats(h) > ACCEPTED).count(),
+        seen: (0..hypotheses.len()).filter(|&h| products.nats(h) > SEEN).count(),
         separates: confused.iter().filter(|p| products.behind(p.there, p.instead) > NEAR).count(),
     };
     let measured = problem.train.clone();
@@ -194,7 +194,7 @@ impl Products {
     fn confused(&self) -> Vec<Pair> {
         let count = self.variants.len();
         let mut found = Vec::new();
-        for there in (0..count).filter(|&h| self.nats(h) > ACCEPTED) {
+        for there in (0..count).filter(|&h| self.nats(h) > SEEN) {
             for instead in (0..count).filter(|&h| h != there) {
                 let behind = self.behind(there, instead);
                 if behind < NEAR {
@@ -312,7 +312,7 @@ fn with_sensor(problem: &mut Problem<'_>, signal: &Signal) -> Option<Products> {
 impl Plan {
     /// The plan in words, for people.
     pub fn words(&self) -> String {
-        let seen = self.hypotheses.iter().filter(|h| h.nats > ACCEPTED).count();
+        let seen = self.hypotheses.iter().filter(|h| h.nats > SEEN).count();
         let name = |i: usize| {
             let h = &self.hypotheses[i];
             format!("{} at {}", h.effect, h.places.join(" + "))

@@ -11,7 +11,7 @@ use super::super::hypotheses::{Hypothesis, Site};
 use super::super::problem::{Assembled, Problem};
 use super::super::screen::{self, Accepted, Candidate};
 use super::refine::{Refined, bounded, make_whole, ready, share, switched_off};
-use super::{ACCEPTED, CONSISTENT, Found, Search, driven};
+use super::{CONSISTENT, Found, SEEN, Search, driven};
 use rayon::prelude::*;
 
 /// An effect is lost when the filter says that it is so much worse than the model without it, nats.
@@ -84,7 +84,7 @@ impl Search {
         let off = switched_off(problem, &refined[index].accepted, &assembled, &fit);
         let closes =
             self.gap_of(problem, &fit.setting, &problem.train) < CLOSING * self.gap_of(problem, &off, &problem.train);
-        let beaten = closes && over.iter().all(|(gain, t)| *gain > ACCEPTED && *t > CONSISTENT);
+        let beaten = closes && over.iter().all(|(gain, t)| *gain > SEEN && *t > CONSISTENT);
         let least = |of: fn(&(f64, f64)) -> f64| over.iter().map(of).fold(f64::INFINITY, f64::min);
         let found = Found { gain: least(|o| o.0), t: least(|o| o.1), alternatives: Vec::new() };
         beaten.then(|| (Refined::new(problem, refined[index].accepted.clone(), assembled, fit), found))
