@@ -61,6 +61,6 @@ fn cascaded_tanks() {
 
 #[test]
 fn positioning_axis() {
-    finds("Emps", "emps", "dry_friction", "motor.flange", 0.5);
+    finds("Emps", "emps", "dry_friction", "motor.flange", 0.4);
     claims_nothing("Emps", "emps");
 }
