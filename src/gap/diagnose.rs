@@ -56,6 +56,8 @@ const AS_GOOD: f64 = 2.0;
 pub(super) const NEAR: f64 = 6.0;
 /// Nor those this near that no block prefers clearly.
 const NEAR_IF_INCONSISTENT: f64 = 15.0;
+/// Part of a gain by which it depends on the levels that were found on the way.
+const SCATTER: f64 = 0.02;
 /// Vuong statistic below which an alternative is worse for certain.
 const CERTAINLY_WORSE: f64 = -1.64;
 
@@ -304,7 +306,7 @@ impl Search {
         if refined.is_empty() {
             return false;
         }
-        let best = refined.remove(simplest(problem, &refined));
+        let best = refined.remove(simplest(problem, &refined, self.last.evidence));
         if !self.convinces(problem, &best) || self.mends_form(problem, &best) {
             return false;
         }
@@ -498,7 +500,7 @@ fn won_and_lost(with: &Fit, without: &Fit) -> (f64, f64) {
 /// Among the candidates that are practically as good as the first, the one with the fewest parameters and states, at the
 /// fewest places. An effect that cuts a connection is named only where the data tell it from all that leave the network as
 /// it is: slip of a pump's shaft is a leak across the pump, but for the inertia in between.
-fn simplest(problem: &Problem<'_>, refined: &[Refined]) -> usize {
+fn simplest(problem: &Problem<'_>, refined: &[Refined], before: f64) -> usize {
     let h = |r: &Refined| &problem.hypotheses[r.accepted.chosen.hypothesis];
     let size = |r: &Refined| {
         let states = h(r).attachments[0].effect.as_ref().map_or(0, |e| e.states);
@@ -507,7 +509,8 @@ fn simplest(problem: &Problem<'_>, refined: &[Refined]) -> usize {
     let front = &refined[0];
     let as_good = |r: &Refined| {
         let behind = front.fit.evidence - r.fit.evidence;
-        let whole = h(front).changes_order && !h(r).changes_order && near(r, front);
+        let scatter = SCATTER * (front.fit.evidence - before);
+        let whole = h(front).changes_order && !h(r).changes_order && (behind < scatter || near(r, front));
         whole || behind < AS_GOOD && !certainly_worse(&r.fit, &front.fit)
     };
     (0..refined.len()).filter(|&i| i == 0 || as_good(&refined[i])).min_by_key(|&i| (size(&refined[i]), i)).unwrap_or(0)

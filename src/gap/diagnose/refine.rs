@@ -40,8 +40,6 @@ const POLISHED: usize = 5;
 /// before, then at their own.
 const BEHIND: f64 = 0.4;
 const FAR_BEHIND: f64 = 0.5;
-/// The same for those that only have coefficients: they are nearly there after a few iterations.
-const FAR_IF_LINEAR: f64 = 0.2;
 const CLOSE: f64 = 200.0;
 /// A candidate that is so much worse than the model without it is not tried further, nats.
 const HOPELESS: f64 = 3e3;
@@ -183,13 +181,9 @@ impl Search {
     /// that of the whitest: a model that explains what is missing leaves white innovations, and then all samples count.
     pub(super) fn sharpen(&mut self, problem: &Problem<'_>, refined: &mut Vec<Refined>) {
         let front = refined.first().map_or(0.0, |r| r.fit.evidence);
-        let far = |r: &Refined| {
-            let shaped = !problem.hypotheses[r.accepted.chosen.hypothesis].shapes.is_empty();
-            let part = if shaped { FAR_BEHIND } else { FAR_IF_LINEAR };
-            (part * (front - self.last.evidence)).max(CLOSE)
-        };
+        let far = (FAR_BEHIND * (front - self.last.evidence)).max(CLOSE);
         let sharper = |(i, r): (usize, Refined)| {
-            if i >= POLISHED || r.fit.evidence < front - far(&r) {
+            if i >= POLISHED || r.fit.evidence < front - far {
                 return r;
             }
             r.refitted(problem, |fit| fit::polish(fit, &problem.train, Some(self.last.search_share())))
