@@ -84,7 +84,7 @@ fn offers(library: &mut Library<'_>, id: ClassId, page: &mut String) {
         for element in body.elements.iter().filter(|e| !e.protected) {
             let ElementKind::Component(c) = &element.kind else { continue };
             let said = c.description.as_deref().unwrap_or_default().to_owned();
-            let class = dotted(&c.class);
+            let class = c.class.dotted();
             if c.prefix.variability == Some(Variability::Parameter) {
                 parameters.push([c.name.name.as_str().to_owned(), value(library, c), said]);
             } else if class.contains("Interfaces.") {
@@ -143,7 +143,7 @@ fn base(kind: &ElementKind) -> Option<&Path> {
 
 /// The class of this name in the packages around a class, innermost first.
 fn around(library: &mut Library<'_>, from: ClassId, path: &Path) -> Option<ClassId> {
-    let wanted = dotted(path);
+    let wanted = path.dotted();
     let mut scope = library.parent(from);
     while let Some(id) = scope {
         let name = format!("{}.{wanted}", library.full_name(id));
@@ -153,10 +153,6 @@ fn around(library: &mut Library<'_>, from: ClassId, path: &Path) -> Option<Class
         scope = library.parent(id);
     }
     library.find(&wanted)
-}
-
-fn dotted(path: &Path) -> String {
-    path.parts.iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(".")
 }
 
 fn table(page: &mut String, rows: &[[String; 3]]) {

@@ -65,16 +65,13 @@ fn check_pre(instance: &mut Instance<'_, '_>, flat: &FlatModel, assigned: &FxHas
         variable.is_some_and(|x| x.ty == Type::Real && x.variability == Variability::Continuous)
             && !assigned.contains(&v)
     };
-    let wrong = |instance: &Instance<'_, '_>, e: ExprId| match instance.exprs.node(e) {
-        Node::Pre(v) if smooth(v) => Some(v),
-        _ => None,
-    };
-    if !(0..).map(ExprId).take(instance.exprs.len()).any(|e| wrong(instance, e).is_some()) {
+    let wrong = |e: ExprId| matches!(instance.exprs.node(e), Node::Pre(v) if smooth(v));
+    if !(0..).map(ExprId).take(instance.exprs.len()).any(wrong) {
         return;
     }
     for e in &flat.equations {
-        let reached = instance.exprs.reachable(&[e.lhs, e.rhs], |_| true);
-        if let Some(v) = reached.iter().find_map(|&e| wrong(instance, e)) {
+        let pres = instance.exprs.dependencies(&[e.lhs, e.rhs]).pres;
+        if let Some(v) = pres.into_iter().find(|&v| smooth(v)) {
             let name = &flat.variables[v.index()].name;
             let message = format!("`pre({name})` outside a `when`: `{name}` changes all the time");
             let d = Diagnostic::new(Code::TypeMismatch, message).at(e.origin.span, "in this equation");

@@ -2,9 +2,9 @@
 //! gives way at once. What a node has is read off the nominal model: how fast its potential answers to a flow.
 
 use super::circuit::same_kind;
+use super::filter;
 use super::hypotheses::{Hypothesis, Site};
 use super::problem::Problem;
-use crate::analysis::local::Local;
 use std::collections::BTreeMap;
 
 /// Usual part of the node's own capacity. It is also far enough below the whole for the coefficient to count as a size, not
@@ -37,17 +37,15 @@ fn capacities(problem: &Problem<'_>) -> Option<BTreeMap<Site, f64>> {
     let sources = problem.node_sources();
     let model = problem.assemble(&[], &sources).ok()?;
     let first = problem.train.first()?;
-    let u: Vec<f64> = first.inputs.iter().map(|i| i[0]).collect();
-    let mut local = Local::start(model.plan.clone(), first.times[0], &model.theta, &u).ok()?;
-    let state = local.state();
-    local.linearize(first.times[0], &state, &model.theta, &u).ok()?;
+    let setting = model.setting(&[], &problem.noise_floor, Vec::new());
+    let (local, _) = filter::at_first(&setting, first, None).ok()?;
     let mut found = BTreeMap::new();
     for (&source, parameter) in sources.iter().zip(model.sources.clone()) {
         let site = &problem.disturbances[source].attachments[0].site;
         let Site::Node(port) = site else { continue };
         let unit = &problem.circuit.ports[*port].potential.unit;
         let own = |i: &usize| model.plan.state_unit(*i).is_some_and(|u| same_kind(u, unit));
-        let answer = (0..state.len()).filter(own).map(|i| local.linear.b[(i, parameter)].abs()).fold(0.0, f64::max);
+        let answer = (0..local.rates.len()).filter(own).map(|i| local.linear.b[(i, parameter)].abs()).fold(0.0, f64::max);
         if answer > 0.0 && answer.is_finite() {
             found.insert(site.clone(), 1.0 / answer);
         }

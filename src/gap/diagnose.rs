@@ -367,6 +367,11 @@ impl Search {
         self.adopt(best.fit, best.assembled);
     }
 
+    /// Whether a hypothesis is accepted.
+    fn has(&self, hypothesis: usize) -> bool {
+        self.accepted.iter().any(|a| a.chosen.hypothesis == hypothesis)
+    }
+
     /// Nats that a fit is ahead of the last one.
     fn gain(&self, fit: &Fit) -> f64 {
         fit.evidence - self.last.evidence

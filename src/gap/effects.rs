@@ -231,7 +231,7 @@ impl Reader {
             }
         }
         let extends = body.elements.iter().filter_map(|e| match &e.kind {
-            ElementKind::Extends(x) => Some(dotted(&x.base)),
+            ElementKind::Extends(x) => Some(x.base.dotted()),
             _ => None,
         });
         let own = vendor(class.annotation.as_ref()).cloned().unwrap_or_default();
@@ -494,7 +494,7 @@ fn shapes(
         let ArgumentKind::Modify { path, modification: Some(m), .. } = &a.kind else {
             return Err("`shapes` holds something other than `name = {values}`".to_string());
         };
-        let name = dotted(path);
+        let name = path.dotted();
         let grid: Option<Vec<f64>> = match m.value.as_ref().map(|v| &v.kind) {
             Some(ExprKind::Array(items)) => items.iter().map(Expr::as_number).collect(),
             _ => None,
@@ -546,10 +546,6 @@ fn texts(modification: &Modification, name: &str) -> Vec<String> {
     let Some(ExprKind::Array(items)) = value(modification, name).map(|v| &v.kind) else { return Vec::new() };
     let string = |e: &Expr| if let ExprKind::String(s) = &e.kind { Some(s.to_string()) } else { None };
     items.iter().filter_map(string).collect()
-}
-
-fn dotted(path: &ast::Path) -> String {
-    path.parts.iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(".")
 }
 
 fn joined(prefix: &str, name: &str) -> String {

@@ -3,7 +3,7 @@
 
 use super::augment::{self, Attached, Augmented, PLANT};
 use super::circuit::Circuit;
-use super::data::Recording;
+use super::data::{Inputs, Recording};
 use super::filter::{Setting, Source};
 use super::held;
 use super::hypotheses::{Hypothesis, Signal, Site};
@@ -260,7 +260,7 @@ impl Problem<'_> {
         let u = vec![0.0; plan.inputs()];
         let sizes = match self.train.first() {
             Some(r) => {
-                let u: Vec<f64> = r.inputs.iter().map(|i| i[0]).collect();
+                let u = Inputs::new(r).from;
                 Local::start(plan.clone(), r.times[0], &theta, &u)
             }
             None => Local::start(plan.clone(), 0.0, &theta, &u),
@@ -323,7 +323,7 @@ impl Assembled {
             plan.state_variables().map(|v| plan.system.dae.variables[v.index()].name.as_str())
         }
         let start = |(r, known): (&Recording, &Vec<f64>)| {
-            let u: Vec<f64> = r.inputs.iter().map(|i| i[0]).collect();
+            let u = Inputs::new(r).from;
             let mut start = Local::start(self.plan.clone(), r.times[0], &self.theta, &u).ok()?.state();
             let known: BTreeMap<&str, f64> = names(&other.plan).zip(known.iter().copied()).collect();
             let own = start.iter_mut().zip(names(&self.plan));

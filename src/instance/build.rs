@@ -322,7 +322,7 @@ impl<'a> Instance<'a, '_> {
         };
         let instance = self.scope(scope).name.clone();
         let Found::Class(class) = &found else {
-            let ty = super::lookup::dotted(&declared.class);
+            let ty = declared.class.dotted();
             self.report(no_inner(instance, format!("add `inner {ty} {name} = ...;` to the model")));
             return None;
         };

@@ -1,6 +1,6 @@
 //! Messages of this stage.
 
-use super::lookup::{Builtin, dotted};
+use super::lookup::Builtin;
 use super::{Instance, View};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::resolve::{ClassId, nested_classes};
@@ -47,7 +47,7 @@ impl<'a> Instance<'a, '_> {
     pub(super) fn unknown_class(&mut self, path: &ast::Path, class: ClassId) {
         let inside = self.library.full_name(class);
         self.report(
-            Diagnostic::new(Code::UnknownClass, format!("`{}` is not a class", short(&dotted(path))))
+            Diagnostic::new(Code::UnknownClass, format!("`{}` is not a class", short(&path.dotted())))
                 .at(path.span, "a class is needed here")
                 .class(inside),
         );
@@ -101,7 +101,7 @@ impl<'a> Instance<'a, '_> {
 
     fn unknown_class_message(&mut self, path: &ast::Path, part: usize, names: &[Symbol]) {
         let name = path.parts[part].name.as_str();
-        let whole = short(&dotted(path));
+        let whole = short(&path.dotted());
         let message = if part == 0 {
             format!("there is no class `{}`", short(name))
         } else {

@@ -190,7 +190,7 @@ impl<'a> Instance<'a, '_> {
     pub fn class_at(&mut self, view: View, path: &'a ast::Path) -> Option<Found<'a>> {
         match self.lookup_path(view, path) {
             Ok(Found::Component(..)) => {
-                let name = dotted(path);
+                let name = path.dotted();
                 self.report(
                     Diagnostic::new(Code::WrongClassKind, format!("`{name}` is a component, not a class"))
                         .at(path.span, "a class is needed here"),
@@ -405,9 +405,4 @@ fn source_arg<'a>(source: &Source<'a>, view: View, none: &Rc<[super::modifiers::
         What::Component(c) => Some(made(ArgKind::Component(c), c.name.span)),
         What::Class(c) => Some(made(ArgKind::Class(c), c.name.span)),
     }
-}
-
-/// A dotted name as text.
-pub fn dotted(path: &ast::Path) -> String {
-    path.parts.iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(".")
 }

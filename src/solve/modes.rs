@@ -4,7 +4,7 @@
 //! and results would be silently wrong. So the function given to IDA is `d` shifted beyond the threshold, away from the
 //! present side: never zero after a restart, and when IDA reports the root, `d` has really changed its side.
 
-use crate::expr::{ExprId, Node, Rel, VarId};
+use crate::expr::{ExprId, Rel, VarId};
 use crate::lower::{Layout, System};
 use crate::structure::{Assign, Block, Crossing, CrossingKind, Dae, Unknown};
 use rustc_hash::FxHashSet;
@@ -136,11 +136,8 @@ pub fn follows_time(dae: &Dae) -> bool {
     }
     let mut moved: FxHashSet<VarId> = FxHashSet::default();
     let moves = |e: ExprId, moved: &FxHashSet<VarId>| {
-        dae.exprs.reachable(&[e], |_| true).iter().any(|&e| match dae.exprs.node(e) {
-            Node::Time => true,
-            Node::Var(v) => moved.contains(&v),
-            _ => false,
-        })
+        let on = dae.exprs.dependencies(&[e]);
+        on.time || on.vars.iter().any(|v| moved.contains(v))
     };
     for block in &dae.continuous {
         if let Block::Assign(Assign { unknown: Unknown::Var(v), value, .. }) = block

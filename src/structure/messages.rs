@@ -394,7 +394,7 @@ impl Report<'_> {
     fn is_potential(&self, v: VarId) -> bool {
         self.names_of(v).any(|v| {
             let variable = &self.draft.variables[v.index()];
-            !variable.flow && places::is_connector(self.draft, variable.origin.instance)
+            !variable.flow && places::is_connector(&self.draft.variables, variable.origin.instance)
         })
     }
 
@@ -403,7 +403,7 @@ impl Report<'_> {
         let mut found: Vec<u32> = Vec::new();
         for v in unknowns.iter().flat_map(|&v| self.names_of(v)) {
             let instance = self.draft.variables[v.index()].origin.instance;
-            if places::is_connector(self.draft, instance) {
+            if places::is_connector(&self.draft.variables, instance) {
                 found.push(self.draft.instances[instance as usize].parent);
             }
         }

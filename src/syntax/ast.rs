@@ -23,6 +23,13 @@ pub struct Path {
     pub span: Span,
 }
 
+impl Path {
+    /// The parts joined by dots.
+    pub fn dotted(&self) -> String {
+        self.parts.iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(".")
+    }
+}
+
 /// One file: `within` and classes.
 #[derive(Clone, Debug, Default)]
 pub struct StoredDefinition {

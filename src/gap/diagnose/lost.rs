@@ -9,8 +9,8 @@ use super::super::fit::{Fit, Prior, vuong};
 use super::super::held;
 use super::super::hypotheses::{Hypothesis, Site};
 use super::super::problem::{Assembled, Problem};
-use super::super::screen::{self, Accepted, Candidate};
-use super::refine::{Refined, bounded, make_whole, ready, share, switched_off};
+use super::super::screen::{Accepted, Candidate};
+use super::refine::{Refined, bounded, ready, share, switched_off, whole};
 use super::{CONSISTENT, Found, SEEN, Search, driven};
 use rayon::prelude::*;
 
@@ -28,14 +28,13 @@ impl Search {
             let h = &problem.hypotheses[i];
             matches!(h.attachments[0].site, Site::Sensor(_)) && bounded(h) && !known(i)
         };
-        let taken = |i: &usize| self.accepted.iter().any(|a| a.chosen.hypothesis == *i);
-        let open: Vec<usize> = (0..problem.hypotheses.len()).filter(|i| unknown(i) && !taken(i)).collect();
+        let open: Vec<usize> = (0..problem.hypotheses.len()).filter(|i| unknown(i) && !self.has(*i)).collect();
         let first = &problem.train[..1];
         // parameters that were fitted in the filter may simulate worse than those of the nominal model
         let plain = self.gap_with(problem, &[], first).unwrap_or(f64::INFINITY);
         let left = self.gap_of(problem, &self.last.setting, first).min(plain);
         let near = |i: usize| {
-            let candidate = whole(&problem.hypotheses[i], i)?;
+            let candidate = of_shares(&problem.hypotheses[i], i)?;
             let gap = self.gap_with(problem, &[candidate.accepted()], first)?;
             (gap < CLOSING * left).then_some(candidate)
         };
@@ -104,17 +103,9 @@ impl Search {
     }
 }
 
-/// An effect as a whole, with the first of its shapes.
-fn whole(h: &Hypothesis, index: usize) -> Option<Candidate> {
-    if !h.coefficients.iter().all(|c| share(c).is_some()) {
-        return None;
-    }
-    let chosen = screen::variants(h, index).into_iter().next()?;
-    let sigmas: Vec<f64> = h.coefficients.iter().map(|c| c.nominal.abs()).collect();
-    let priors = screen::priors(h, &chosen.values, &sigmas);
-    let mut candidate = Candidate { chosen, gain: 0.0, priors, visible: 0.0 };
-    make_whole(h, &mut candidate);
-    Some(candidate)
+/// An effect as a whole that is nothing but shares of one.
+fn of_shares(h: &Hypothesis, index: usize) -> Option<Candidate> {
+    if h.coefficients.iter().all(|c| share(c).is_some()) { whole(h, index) } else { None }
 }
 
 /// The model with effects, parameters at their nominal values.

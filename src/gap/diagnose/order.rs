@@ -37,7 +37,7 @@ impl Search {
     pub(super) fn reordering(&mut self, problem: &Problem<'_>) -> Vec<Candidate> {
         let before = self.beginning(problem, None).and_then(|b| b.explained(b.priors.len()));
         let Some((before, _)) = before else { return Vec::new() };
-        let taken = |i: usize| self.accepted.iter().any(|a| a.chosen.hypothesis == i) || self.unfit.contains(&i);
+        let taken = |i: usize| self.has(i) || self.unfit.contains(&i);
         let open = |i: &usize| {
             let h = &problem.hypotheses[*i];
             h.changes_order && !h.is_shape() && h.sharing == Sharing::Single && !taken(*i)

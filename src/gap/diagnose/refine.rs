@@ -76,7 +76,9 @@ impl Search {
     /// Fits candidates one by one; best first. At the levels of the model before, those that fall far behind stay as they
     /// are; for the others the levels are found anew.
     pub(super) fn refined(&self, problem: &Problem<'_>, chosen: &[Candidate]) -> Vec<Refined> {
-        let mut refined: Vec<Refined> = chosen.par_iter().filter_map(|c| self.refine(problem, c)).collect();
+        let is_lag = |c: &Candidate| is_lag(&problem.hypotheses[c.chosen.hypothesis]);
+        let without = if chosen.iter().any(is_lag) { self.tried(problem, None) } else { None };
+        let mut refined: Vec<Refined> = chosen.par_iter().filter_map(|c| self.refine(problem, c, without)).collect();
         best_first(&mut refined);
         let front = refined.first().map_or(0.0, |r| self.gain(&r.fit));
         let far = (BEHIND * front).max(CLOSE);
@@ -92,15 +94,16 @@ impl Search {
     }
 
     /// Fits one candidate together with everything accepted before. An effect that is there or not (a rectifying sensor)
-    /// looks small from where it is not: it begins as a whole, and less than half of it would be something else.
-    fn refine(&self, problem: &Problem<'_>, candidate: &Candidate) -> Option<Refined> {
+    /// looks small from where it is not: it begins as a whole, and less than half of it would be something else. `without`
+    /// is the likelihood of the model without it on the beginning of the first recording.
+    fn refine(&self, problem: &Problem<'_>, candidate: &Candidate, without: Option<f64>) -> Option<Refined> {
         let h = &problem.hypotheses[candidate.chosen.hypothesis];
         let mut whole = candidate.clone();
         if bounded(h) {
             make_whole(h, &mut whole);
             if h.variants().len() > 1 {
                 let found = self.shape_of_whole(problem, h, &mut whole);
-                if h.shapes.iter().all(|s| s.unit == "s") && !self.comes_late(problem, &whole, found) {
+                if is_lag(h) && !without.is_none_or(|w| self.comes_late(problem, &whole, found, w)) {
                     return None;
                 }
             }
@@ -122,27 +125,24 @@ impl Search {
         let near =
             |r: &&Refined| bounded(&problem.hypotheses[of(r)]) && self.gain(&r.fit) > PROMISING.max(BEHIND * front);
         let sites: Vec<_> = refined.iter().filter(near).map(|r| site(of(r))).collect();
-        let known =
-            |i: usize| refined.iter().any(|r| of(r) == i) || self.accepted.iter().any(|a| a.chosen.hypothesis == i);
+        let known = |i: usize| self.has(i) || refined.iter().any(|r| of(r) == i);
         let open = |i: &usize| bounded(&problem.hypotheses[*i]) && sites.contains(&site(*i)) && !known(*i);
         let open: Vec<usize> = (0..problem.hypotheses.len()).filter(open).collect();
+        if open.is_empty() {
+            return Vec::new();
+        }
         let Some(without) = self.tried(problem, None) else { return Vec::new() };
-        let whole = |i: usize| {
+        let better = |i: usize| {
             let h = &problem.hypotheses[i];
-            let chosen = screen::variants(h, i).into_iter().next()?;
-            let sigmas: Vec<f64> = h.coefficients.iter().map(|c| c.nominal.abs()).collect();
-            let priors = screen::priors(h, &chosen.values, &sigmas);
-            let mut whole = Candidate { chosen, gain: 0.0, priors, visible: 0.0 };
-            make_whole(h, &mut whole);
-            (self.shape_of_whole(problem, h, &mut whole)? > without).then_some(whole)
+            let mut candidate = whole(h, i)?;
+            (self.shape_of_whole(problem, h, &mut candidate)? > without).then_some(candidate)
         };
-        open.into_par_iter().filter_map(whole).collect()
+        open.into_par_iter().filter_map(better).collect()
     }
 
     /// Whether a lag or dead time with the best time of its grid, or a much shorter one, is better than none on the
     /// beginning of the first recording.
-    fn comes_late(&self, problem: &Problem<'_>, whole: &Candidate, found: Option<f64>) -> bool {
-        let Some(without) = self.tried(problem, None) else { return true };
+    fn comes_late(&self, problem: &Problem<'_>, whole: &Candidate, found: Option<f64>, without: f64) -> bool {
         let mut short = whole.accepted();
         let count = problem.hypotheses[whole.chosen.hypothesis].coefficients.len();
         short.chosen.values[count..].iter_mut().for_each(|t| *t *= SHORT);
@@ -289,8 +289,24 @@ pub(super) fn share(c: &Coefficient) -> Option<f64> {
     c.max.filter(|m| m.is_finite() && *m <= 10.0 * c.nominal.abs())
 }
 
+/// A lag or a dead time, or a sum of them.
+fn is_lag(h: &Hypothesis) -> bool {
+    bounded(h) && h.variants().len() > 1 && h.shapes.iter().all(|s| s.unit == "s")
+}
+
+/// An effect that is there or not: one that has a share of a whole.
 pub(super) fn bounded(h: &Hypothesis) -> bool {
     h.family != "parameter" && h.coefficients.iter().any(|c| share(c).is_some())
+}
+
+/// An effect as a whole, with the first of its shapes.
+pub(super) fn whole(h: &Hypothesis, index: usize) -> Option<Candidate> {
+    let chosen = screen::variants(h, index).into_iter().next()?;
+    let sigmas: Vec<f64> = h.coefficients.iter().map(|c| c.nominal.abs()).collect();
+    let priors = screen::priors(h, &chosen.values, &sigmas);
+    let mut candidate = Candidate { chosen, gain: 0.0, priors, visible: 0.0 };
+    make_whole(h, &mut candidate);
+    Some(candidate)
 }
 
 /// Begins with the shares of an effect that is there or not at the whole.
