@@ -43,8 +43,8 @@ const CONSISTENT: f64 = 2.0;
 /// Vuong statistic that makes up for a gain that is small because few samples count.
 const CERTAIN: f64 = 5.0;
 /// Gain from which an effect may be one that acts rarely, nats; and how much more it must win than lose.
-const RARE: f64 = 30.0;
-const RARE_RATIO: f64 = 3.5;
+const RARE: f64 = 20.0;
+const RARE_RATIO: f64 = 4.0;
 /// Part of the gain of an accepted effect that a further one of its family or at its place must reach: less is a form
 /// other than the library's, not another cause.
 const FORM: f64 = 0.25;
@@ -503,7 +503,7 @@ fn won_and_lost(with: &Fit, without: &Fit) -> (f64, f64) {
 }
 
 /// Among the candidates that are practically as good as the first, the one with the fewest parameters and states, at the
-/// fewest places. An effect that cuts a connection is named only where the data tell it from all that leave the network as
+/// fewest places, that leaves the machine nearest to its data sheet. An effect that cuts a connection is named only where the data tell it from all that leave the network as
 /// it is: slip of a pump's shaft is a leak across the pump, but for the inertia in between.
 fn simplest(problem: &Problem<'_>, refined: &[Refined], before: f64) -> usize {
     let h = |r: &Refined| &problem.hypotheses[r.accepted.chosen.hypothesis];
@@ -515,10 +515,16 @@ fn simplest(problem: &Problem<'_>, refined: &[Refined], before: f64) -> usize {
     let as_good = |r: &Refined| {
         let behind = front.fit.evidence - r.fit.evidence;
         let scatter = SCATTER * (front.fit.evidence - before);
-        let whole = h(front).changes_order && !h(r).changes_order && (behind < scatter || near(r, front));
+        let whole = h(front).changes_order && !h(r).changes_order && h(r).family != h(front).family;
+        let whole = whole && (behind < scatter || near(r, front));
         whole || behind < AS_GOOD && !certainly_worse(&r.fit, &front.fit)
     };
-    (0..refined.len()).filter(|&i| i == 0 || as_good(&refined[i])).min_by_key(|&i| (size(&refined[i]), i)).unwrap_or(0)
+    let sheet = |r: &Refined| front.fit.evidence - r.fit.evidence + r.fit.prior_cost(problem.tolerances.len());
+    let simpler = |a: &usize, b: &usize| {
+        let (a, b) = (&refined[*a], &refined[*b]);
+        size(a).cmp(&size(b)).then(sheet(a).total_cmp(&sheet(b)))
+    };
+    (0..refined.len()).filter(|&i| i == 0 || as_good(&refined[i])).min_by(simpler).unwrap_or(0)
 }
 
 impl Search {

@@ -7,7 +7,10 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 /// Factors by which a level is tried, coarse ones first.
-const ROUNDS: [&[f64]; 3] = [&[0.1, 10.0], &[0.3, 3.0], &[0.55, 1.8]];
+const ROUNDS: [&[f64]; 4] = [&[0.1, 10.0], &[0.3, 3.0], &[0.55, 1.8], &[1.0 / FINE, FINE]];
+/// The finest factor; between the last three values a parabola over the logarithm gives the best one. Levels that are a
+/// third off cost tens of nats, which would be taken for a difference between effects.
+const FINE: f64 = 1.25;
 
 /// Steps at most in a direction that pays.
 const FURTHER: usize = 5;
@@ -40,14 +43,22 @@ impl<'a> Likelihood<'a> {
         own
     }
 
+    fn sum(&self, tapes: &[&[Step]], factors: &[f64]) -> f64 {
+        tapes.par_iter().map(|t| likelihood(self.setting, t, factors)).sum()
+    }
+
+    /// Of all tapes.
+    fn at(&self, factors: &[f64]) -> f64 {
+        self.sum(&self.first, factors) + self.sum(&self.others, factors)
+    }
+
     /// Whether these factors are the best so far.
     fn improves(&mut self, factors: &[f64]) -> bool {
-        let sum = |tapes: &[&[Step]]| tapes.par_iter().map(|t| likelihood(self.setting, t, factors)).sum::<f64>();
-        let first = sum(&self.first);
+        let first = self.sum(&self.first, factors);
         if first < self.best.0 - SURE {
             return false;
         }
-        let all = first + sum(&self.others);
+        let all = first + self.sum(&self.others, factors);
         let better = all > self.best.1;
         if better {
             self.best = (first, all);
@@ -85,6 +96,20 @@ pub fn fit(setting: &Setting, tapes: &[&[Step]], growth: f64) -> Vec<f64> {
                 }
             }
             factors[i] = kept;
+        }
+    }
+    for i in 0..factors.len() {
+        let best = factors[i];
+        let mut at = |factor: f64| {
+            factors[i] = factor;
+            likelihood.at(&factors)
+        };
+        let (below, above) = (at(best / FINE), at(best * FINE));
+        let bend = 2.0 * likelihood.best.1 - below - above;
+        let shift = 0.5 * (above - below) / bend;
+        factors[i] = if bend > 0.0 { (best * FINE.powf(shift.clamp(-1.0, 1.0))).min(most[i].max(best)) } else { best };
+        if !likelihood.improves(&factors) {
+            factors[i] = best;
         }
     }
     factors

@@ -2,12 +2,12 @@
 
 use super::super::effects::Coefficient;
 use super::super::filter::{Setting, Tape};
-use super::super::fit::{self, Fit, Prior};
+use super::super::fit::{self, Fit, Prior, vuong};
 use super::super::hypotheses::Hypothesis;
 use super::super::locate;
 use super::super::problem::{Assembled, Chosen, Problem};
 use super::super::screen::{self, Accepted, Candidate};
-use super::Search;
+use super::{CONSISTENT, SCATTER, Search};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
@@ -41,6 +41,8 @@ const POLISHED: usize = 5;
 const BEHIND: f64 = 0.4;
 const FAR_BEHIND: f64 = 0.5;
 const CLOSE: f64 = 200.0;
+/// Turns at most in which those that are nearly as good take over each other's levels.
+const LEVELLED: usize = 2;
 /// A candidate that is so much worse than the model without it is not tried further, nats.
 const HOPELESS: f64 = 3e3;
 
@@ -182,27 +184,54 @@ impl Search {
     pub(super) fn sharpen(&mut self, problem: &Problem<'_>, refined: &mut Vec<Refined>) {
         let front = refined.first().map_or(0.0, |r| r.fit.evidence);
         let far = (FAR_BEHIND * (front - self.last.evidence)).max(CLOSE);
+        let idle = |r: &Refined| {
+            self.gain(&r.fit) < PROMISING && vuong(&r.fit.blocks, &self.last.blocks) < CONSISTENT
+        };
         let sharper = |(i, r): (usize, Refined)| {
-            if i >= POLISHED || r.fit.evidence < front - far {
+            if i >= POLISHED || r.fit.evidence < front - far || idle(&r) {
                 return r;
             }
             r.refitted(problem, |fit| fit::polish(fit, &problem.train, Some(self.last.search_share())))
         };
         let taken = std::mem::take(refined);
-        let polished: Vec<Refined> = taken.into_par_iter().enumerate().map(sharper).collect();
+        let mut polished: Vec<Refined> = taken.into_par_iter().enumerate().map(sharper).collect();
+        best_first(&mut polished);
+        self.level(problem, &mut polished);
         let share = polished.iter().take(POLISHED).map(|r| r.fit.own_share()).fold(self.last.share, f64::max);
         refined.extend(polished.into_iter().map(|r| Refined { fit: r.fit.at_share(share), ..r }));
         self.last = self.last.clone().at_share(share);
     }
 
+    /// Fits those that are nearly as good as the best one from its levels, and that one from theirs: levels found on
+    /// different ways differ, and with them the evidence.
+    fn level(&self, problem: &Problem<'_>, refined: &mut [Refined]) {
+        for _ in 0..LEVELLED {
+            let Some(front) = refined.first() else { return };
+            let (like, index) = (front.fit.clone(), front.accepted.chosen.hypothesis);
+            let least = like.evidence - SCATTER * self.gain(&like);
+            let levelled = |r: &mut Refined| {
+                if r.accepted.chosen.hypothesis == index || r.fit.evidence < least || r.is_shape(problem) {
+                    return;
+                }
+                let Some(fit) = at_levels_of(&like, &r.fit, problem) else { return };
+                let another = Refined::new(problem, r.accepted.clone(), r.assembled.clone(), fit);
+                if another.fit.evidence > r.fit.evidence {
+                    *r = another;
+                }
+            };
+            refined.par_iter_mut().for_each(levelled);
+            best_first(refined);
+            if refined.first().is_none_or(|r| r.accepted.chosen.hypothesis == index) {
+                return;
+            }
+        }
+    }
+
     /// Fits the model without a further effect from the levels and noise that the best candidate led to: what they alone
     /// gain is no gain of the effect.
     pub(super) fn relevel(&mut self, problem: &Problem<'_>, front: &Fit) {
-        let mut setting = self.last.setting.clone();
-        setting.sources.iter_mut().zip(&front.setting.sources).for_each(|(own, s)| own.level = s.level);
-        setting.noise.clone_from(&front.setting.noise);
         let share = self.last.share;
-        let fit = fit::fit(setting, &self.last.priors, &problem.train, Some(share), fit::ITERATIONS);
+        let fit = at_levels_of(front, &self.last, problem);
         if let Some(fit) = fit
             && fit.evidence > self.last.evidence
         {
@@ -367,6 +396,14 @@ fn at_levels(problem: &Problem<'_>, from: &Fit, accepted: &[Accepted]) -> Option
     let (assembled, priors) = ready(problem, from, accepted)?;
     let setting = assembled.setting(&from.setting.sources, &from.setting.noise, Vec::new());
     Some((fit::fit(setting, &priors, &problem.train, Some(from.search_share()), RACE)?, assembled))
+}
+
+/// A fit again from the levels and noise of another one.
+fn at_levels_of(like: &Fit, own: &Fit, problem: &Problem<'_>) -> Option<Fit> {
+    let mut setting = own.setting.clone();
+    setting.sources.iter_mut().zip(&like.setting.sources).for_each(|(s, l)| s.level = l.level);
+    setting.noise.clone_from(&like.setting.noise);
+    fit::fit(setting, &own.priors, &problem.train, Some(own.share), fit::ITERATIONS)
 }
 
 /// The same with levels of its own: sources as strong as the model before needed them hide how right this one is.
