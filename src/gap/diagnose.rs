@@ -187,6 +187,7 @@ pub fn search(problem: &Problem<'_>, progress: &mut dyn FnMut(Stage)) -> Result<
     } else {
         locate::locate(problem, &search.last, &search.accepted)
     };
+    search.simulate(problem);
     Ok(search)
 }
 
@@ -199,7 +200,7 @@ fn anchor(problem: &Problem<'_>, noise: &[f64]) -> Result<(Fit, Assembled), Trou
     let nominal = model.setting(&sources, noise, Vec::new());
     let mut silent = model.setting(&[], &problem.full_scale, Vec::new());
     silent.sources.clear();
-    let near = driven::fitted(problem, silent, &priors).map(|f| {
+    let near = driven::fitted(problem, silent, &priors, None).map(|f| {
         let mut setting = nominal.clone();
         setting.theta[model.free.clone()].copy_from_slice(&f.setting.theta[model.free.clone()]);
         setting
@@ -435,6 +436,13 @@ impl Search {
         self.shape = Some(Shaped { hypothesis, gain, closes });
     }
 
+    /// Takes parameters that simulate better, where there are such.
+    fn simulate(&mut self, problem: &Problem<'_>) {
+        let (last, model) = (driven::simulating(problem, self.last.clone()), self.last_model.clone());
+        self.base = if self.accepted.is_empty() { last.clone() } else { driven::simulating(problem, self.base.clone()) };
+        self.adopt(last, model);
+    }
+
     fn trial(&self, round: usize, r: &Refined) -> Trial {
         Trial {
             round,
@@ -503,8 +511,8 @@ fn won_and_lost(with: &Fit, without: &Fit) -> (f64, f64) {
 }
 
 /// Among the candidates that are practically as good as the first, the one with the fewest parameters and states, at the
-/// fewest places, that leaves the machine nearest to its data sheet. An effect that cuts a connection is named only where the data tell it from all that leave the network as
-/// it is: slip of a pump's shaft is a leak across the pump, but for the inertia in between.
+/// fewest places, that leaves the machine nearest to its data sheet. An effect that cuts a connection is named only where
+/// the data tell it from all others that leave the network as it is: slip of a pump's shaft is a leak across the pump, but for the inertia in between.
 fn simplest(problem: &Problem<'_>, refined: &[Refined], before: f64) -> usize {
     let h = |r: &Refined| &problem.hypotheses[r.accepted.chosen.hypothesis];
     let size = |r: &Refined| {

@@ -159,6 +159,12 @@ pub fn gap_of(problem: &Problem<'_>, setting: &Setting, recordings: &[Recording]
     gap(&simulate_all(setting, recordings), recordings, noise, &problem.full_scale)
 }
 
+/// Noise in parts of the full scales, RMS over the signals.
+pub fn relative(noise: &[f64], full_scale: &[f64]) -> f64 {
+    let parts: Vec<f64> = noise.iter().zip(full_scale).map(|(n, f)| n / f).collect();
+    rms(&parts)
+}
+
 /// Standard error of the total from the spread of the mean squares of blocks.
 fn standard_error(runs: &[Option<Residuals>], recordings: &[Recording], full_scale: &[f64], total: f64) -> f64 {
     let mut blocks = Vec::new();

@@ -10,7 +10,7 @@ use super::super::recording::Gross;
 use super::super::screen::Accepted;
 use super::super::verdict as v;
 use super::refine::fitted;
-use super::{Search, Shaped};
+use super::{Search, Shaped, driven};
 use std::collections::BTreeMap;
 
 /// A gap of so many times the sensors' noise is one, located or not.
@@ -50,7 +50,7 @@ impl Conclusion<'_> {
         // what several times the noise leaves open is something, even where no place stands out; disturbances that the
         // filter follows as it should leave as much
         let followed = s.base.share > WHITE && s.left.iter().all(|l| l.evidence < NOTICED);
-        let noise = relative(&s.last.setting.noise, &problem.full_scale);
+        let noise = held::relative(&s.last.setting.noise, &problem.full_scale);
         let plain = share.is_some_and(|share| share > 0.1) && e.total > PLAIN * noise && !followed;
         let outside = s.accepted.is_empty() && (place.is_some() || plain || s.shape.is_some());
         let verdict = match () {
@@ -218,7 +218,10 @@ impl Conclusion<'_> {
             return (closes, closes);
         }
         let without: Vec<Accepted> = (0..s.accepted.len()).filter(|k| *k != i).map(|k| s.accepted[k].clone()).collect();
-        let gap = |set: &[Accepted]| Some(self.gap(&fitted(self.problem, &s.base, set)?.0.setting, held).total);
+        let gap = |set: &[Accepted]| {
+            let (fit, _) = fitted(self.problem, &s.base, set)?;
+            Some(self.gap(&driven::simulating(self.problem, fit).setting, held).total)
+        };
         let alone = gap(&s.accepted[i..=i]).map(|g| 1.0 - g / tolerated);
         (alone, gap(&without).map(|g| (g - full) / tolerated))
     }
@@ -250,12 +253,6 @@ impl Conclusion<'_> {
         };
         self.problem.tolerances.iter().enumerate().map(drift).collect()
     }
-}
-
-/// Noise in parts of the full scales, RMS over the signals.
-fn relative(noise: &[f64], full_scale: &[f64]) -> f64 {
-    let square: f64 = noise.iter().zip(full_scale).map(|(n, f)| (n / f).powi(2)).sum();
-    (square / noise.len().max(1) as f64).sqrt()
 }
 
 fn spots(h: &Hypothesis) -> Vec<v::Spot> {

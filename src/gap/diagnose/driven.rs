@@ -2,7 +2,7 @@
 //! the colour of a disturbance. The model's errors are taken as autoregressive noise (Box, Jenkins, Time Series
 //! Analysis, 1970, ch. 7).
 
-use super::super::filter::Setting;
+use super::super::filter::{SILENT, Setting};
 use super::super::fit::{self, Fit, Prior};
 use super::super::held;
 use super::super::problem::Problem;
@@ -14,11 +14,21 @@ const ORDER: usize = 12;
 /// Turns of parameters and noise.
 const TURNS: usize = 3;
 
-/// A model fitted by what it says from the inputs alone; its sources must be silent. All its errors count as noise.
-pub(super) fn fitted(problem: &Problem<'_>, mut setting: Setting, priors: &[Prior]) -> Option<Fit> {
+/// A gap of so many times the sensors' noise is looked at again; and the part of it by which other parameters must be better.
+const PLAIN: f64 = 4.0;
+const BETTER: f64 = 0.1;
+
+/// A model fitted by what it says from the inputs alone; its sources must be silent. All its errors count as noise, as much
+/// of it independent as `share` says or as is found.
+pub(super) fn fitted(
+    problem: &Problem<'_>,
+    mut setting: Setting,
+    priors: &[Prior],
+    share: Option<f64>,
+) -> Option<Fit> {
     let mut best = None;
     for _ in 0..TURNS {
-        let found = fit::fit(setting, priors, &problem.train, None, fit::ITERATIONS)?;
+        let found = fit::fit(setting, priors, &problem.train, share, fit::ITERATIONS)?;
         setting = found.setting.clone();
         for (i, noise) in setting.noise.iter_mut().enumerate() {
             let (sum, count) =
@@ -28,6 +38,26 @@ pub(super) fn fitted(problem: &Problem<'_>, mut setting: Setting, priors: &[Prio
         best = Some(found);
     }
     best
+}
+
+/// A fit with the parameters of output error where these simulate the train recordings clearly better: where sources follow
+/// all that moves slowly, the filter cares little for how the model goes on without them.
+pub(super) fn simulating(problem: &Problem<'_>, fit: Fit) -> Fit {
+    let gap = |setting: &Setting| held::gap_of(problem, setting, &problem.train, &fit.setting.noise);
+    let before = gap(&fit.setting);
+    if before.total < PLAIN * held::relative(&fit.setting.noise, &problem.full_scale) {
+        return fit;
+    }
+    let mut setting = fit.setting.clone();
+    setting.sources = setting.sources_times(SILENT);
+    for ((noise, gap), scale) in setting.noise.iter_mut().zip(&before.signals).zip(&problem.full_scale) {
+        *noise = noise.max(gap * scale);
+    }
+    let Some(found) = fitted(problem, setting, &fit.priors, Some(1.0)) else { return fit };
+    let covariance = &found.covariance / found.own_share();
+    let setting = Setting { theta: found.setting.theta, ..fit.setting.clone() };
+    let better = gap(&setting).total < (1.0 - BETTER) * before.total;
+    if better { Fit { setting, covariance, ..fit } } else { fit }
 }
 
 /// Nats that a refined candidate gains by the course that the inputs alone bring about, over the model before and over
