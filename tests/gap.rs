@@ -185,7 +185,7 @@ fn what_no_effect_explains_is_told_by_its_shape() {
     assert_eq!(verdict.verdict, "outside_library", "{:?}", verdict.effects);
     assert!(verdict.places[0].node.iter().any(|n| n == "mass.flange"), "{:?}", verdict.places);
     let shape = &verdict.unexplained.shape.unwrap()[0];
-    assert_eq!(shape.term, "Dry friction that depends on the position");
+    assert_eq!(shape.term, "Dry friction that depends on the position, again and again along the way");
     assert!(shape.r2 > 0.5, "{}", shape.r2);
 }
 
