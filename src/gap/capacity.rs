@@ -45,7 +45,8 @@ fn capacities(problem: &Problem<'_>) -> Option<BTreeMap<Site, f64>> {
         let Site::Node(port) = site else { continue };
         let unit = &problem.circuit.ports[*port].potential.unit;
         let own = |i: &usize| model.plan.state_unit(*i).is_some_and(|u| same_kind(u, unit));
-        let answer = (0..local.rates.len()).filter(own).map(|i| local.linear.b[(i, parameter)].abs()).fold(0.0, f64::max);
+        let answer =
+            (0..local.rates.len()).filter(own).map(|i| local.linear.b[(i, parameter)].abs()).fold(0.0, f64::max);
         if answer > 0.0 && answer.is_finite() {
             found.insert(site.clone(), 1.0 / answer);
         }

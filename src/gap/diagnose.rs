@@ -439,7 +439,8 @@ impl Search {
     /// Takes parameters that simulate better, where there are such.
     fn simulate(&mut self, problem: &Problem<'_>) {
         let (last, model) = (driven::simulating(problem, self.last.clone()), self.last_model.clone());
-        self.base = if self.accepted.is_empty() { last.clone() } else { driven::simulating(problem, self.base.clone()) };
+        self.base =
+            if self.accepted.is_empty() { last.clone() } else { driven::simulating(problem, self.base.clone()) };
         self.adopt(last, model);
     }
 

@@ -20,12 +20,7 @@ const BETTER: f64 = 0.1;
 
 /// A model fitted by what it says from the inputs alone; its sources must be silent. All its errors count as noise, as much
 /// of it independent as `share` says or as is found.
-pub(super) fn fitted(
-    problem: &Problem<'_>,
-    mut setting: Setting,
-    priors: &[Prior],
-    share: Option<f64>,
-) -> Option<Fit> {
+pub(super) fn fitted(problem: &Problem<'_>, mut setting: Setting, priors: &[Prior], share: Option<f64>) -> Option<Fit> {
     let mut best = None;
     for _ in 0..TURNS {
         let found = fit::fit(setting, priors, &problem.train, share, fit::ITERATIONS)?;

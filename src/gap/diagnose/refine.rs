@@ -184,9 +184,7 @@ impl Search {
     pub(super) fn sharpen(&mut self, problem: &Problem<'_>, refined: &mut Vec<Refined>) {
         let front = refined.first().map_or(0.0, |r| r.fit.evidence);
         let far = (FAR_BEHIND * (front - self.last.evidence)).max(CLOSE);
-        let idle = |r: &Refined| {
-            self.gain(&r.fit) < PROMISING && vuong(&r.fit.blocks, &self.last.blocks) < CONSISTENT
-        };
+        let idle = |r: &Refined| self.gain(&r.fit) < PROMISING && vuong(&r.fit.blocks, &self.last.blocks) < CONSISTENT;
         let sharper = |(i, r): (usize, Refined)| {
             if i >= POLISHED || r.fit.evidence < front - far || idle(&r) {
                 return r;
