@@ -285,15 +285,14 @@ impl Newton {
         part.max(0.1)
     }
 
-    /// A search for a sign change around the guess, then bisection steered by secants; for one equation.
+    /// A search for a root around the guess, for one equation.
     fn bracket(&mut self, code: &LoopCode, scales: &Scales, values: &mut [f64]) -> bool {
         let (nominal, min, max) = scales.of(code.tearing[0]);
         let mut at = |x: f64| {
             evaluate(code, &[x], values);
             values[code.residual_slots[0]]
         };
-        let Some(bracket) = find_sign_change(&mut at, self.guess[0], nominal, min, max) else { return false };
-        let x = refine(&mut at, bracket);
+        let Some(x) = find_root(&mut at, self.guess[0], nominal, min, max) else { return false };
         self.x[0] = x;
         at(x).is_finite()
     }
@@ -335,14 +334,8 @@ fn evaluate(code: &LoopCode, x: &[f64], values: &mut [f64]) -> bool {
     code.residual_slots.iter().all(|&slot| values[slot].is_finite())
 }
 
-/// Two points with residuals of different sign, with these residuals.
-fn find_sign_change(
-    at: &mut impl FnMut(f64) -> f64,
-    guess: f64,
-    nominal: f64,
-    min: f64,
-    max: f64,
-) -> Option<[(f64, f64); 2]> {
+/// The root next to the guess that a sign change shows, bisection steered by secants.
+fn find_root(at: &mut impl FnMut(f64) -> f64, guess: f64, nominal: f64, min: f64, max: f64) -> Option<f64> {
     let size = nominal.max(guess.abs());
     let (mut below, mut above) = ((guess, at(guess)), (guess, at(guess)));
     for k in -8..24 {
@@ -353,12 +346,25 @@ fn find_sign_change(
                 continue;
             }
             if f == 0.0 || (old.1.is_finite() && f.signum() != old.1.signum()) {
-                return Some([*old, (x, f)]);
+                let root = refine(at, [*old, (x, f)]);
+                if is_root(at, root, nominal, min, max) {
+                    return Some(root);
+                }
             }
             *old = (x, f);
         }
     }
     None
+}
+
+/// Residuals shrink towards a root; at a pole or a jump, where the sign changes as well, they do not.
+fn is_root(at: &mut impl FnMut(f64) -> f64, x: f64, nominal: f64, min: f64, max: f64) -> bool {
+    let near = 1e-6 * nominal.max(x.abs());
+    let size = at(x).abs();
+    [(x - near).max(min), (x + near).min(max)].into_iter().filter(|&beside| beside != x).all(|beside| {
+        let f = at(beside);
+        !f.is_finite() || size <= 0.5 * f.abs()
+    })
 }
 
 /// Bisection, with a secant step every other time.
@@ -391,15 +397,26 @@ mod tests {
             calls += 1;
             (x - 731.25).powi(3)
         };
-        let bracket = find_sign_change(&mut f, 0.0, 1.0, f64::NEG_INFINITY, f64::INFINITY).expect("there is one");
-        assert!((refine(&mut f, bracket) - 731.25).abs() < 1e-4);
+        let root = find_root(&mut f, 0.0, 1.0, f64::NEG_INFINITY, f64::INFINITY).expect("there is one");
+        assert!((root - 731.25).abs() < 1e-4);
         assert!(calls < 300, "{calls}");
     }
 
     #[test]
     fn no_bracket_without_a_root() {
         let f = |x: f64| x * x + 1.0;
-        assert!(find_sign_change(&mut { f }, 0.0, 1.0, f64::NEG_INFINITY, f64::INFINITY).is_none());
+        assert!(find_root(&mut { f }, 0.0, 1.0, f64::NEG_INFINITY, f64::INFINITY).is_none());
+    }
+
+    #[test]
+    fn poles_and_jumps_are_no_roots() {
+        let pole = |x: f64| 1.0 / (x - 3.0);
+        assert!(find_root(&mut { pole }, 1.0, 1.0, f64::NEG_INFINITY, f64::INFINITY).is_none());
+        let jump = |x: f64| if x < 3.0 { -1.0 } else { 2.0 };
+        assert!(find_root(&mut { jump }, 1.0, 1.0, f64::NEG_INFINITY, f64::INFINITY).is_none());
+        let root_behind_pole = |x: f64| 1.0 / (x - 3.0) - 0.01;
+        let root = find_root(&mut { root_behind_pole }, 1.0, 1.0, f64::NEG_INFINITY, f64::INFINITY);
+        assert!((root.expect("there is one") - 103.0).abs() < 1e-9);
     }
 
     #[test]
@@ -409,8 +426,8 @@ mod tests {
             outside |= x < 0.0;
             x.sqrt() - 30.0
         };
-        let bracket = find_sign_change(&mut f, 1.0, 1.0, 0.0, f64::INFINITY).expect("there is one");
-        assert!((refine(&mut f, bracket) - 900.0).abs() < 1e-6);
+        let root = find_root(&mut f, 1.0, 1.0, 0.0, f64::INFINITY).expect("there is one");
+        assert!((root - 900.0).abs() < 1e-6);
         assert!(!outside);
     }
 }
