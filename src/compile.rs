@@ -1,6 +1,6 @@
 //! The pipeline: from files to a flat model, a DAE and a system ready to run. Every command and test goes this way.
 
-use crate::diag::{Checked, Code, Diagnostic, Sources};
+use crate::diag::{Checked, Code, Diagnostic, Sources, Span};
 use crate::flat::{self, FlatModel};
 use crate::instance::{self, Instance, ModelRequest, Override};
 use crate::lower::{self, System};
@@ -314,10 +314,14 @@ fn sort_messages(diagnostics: &mut [Diagnostic]) {
     diagnostics.sort_by_key(|d| d.labels.first().map(|l| (l.span.file, l.span.start)));
 }
 
-/// One mistake in a class shows in each of its instances: one message a place is enough.
+/// One mistake in a class shows in each of its instances: one message is enough where all places are the same. Two open
+/// ports of one component differ in the second place.
 fn once(diagnostics: &mut Vec<Diagnostic>) {
     let mut seen = rustc_hash::FxHashSet::default();
-    diagnostics.retain(|d| d.labels.first().is_none_or(|l| seen.insert((d.code, l.span))));
+    diagnostics.retain(|d| {
+        let places: Vec<Span> = d.labels.iter().map(|l| l.span).collect();
+        places.is_empty() || seen.insert((d.code, places))
+    });
 }
 
 /// Compiles one text held in memory; for tests and examples.

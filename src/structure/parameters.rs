@@ -97,9 +97,23 @@ pub(super) fn values(draft: &Draft, order: &[VarId]) -> Vec<f64> {
     values
 }
 
-/// Parameters whose value is no number (E217) or lies outside their range (E215).
+/// Parameters whose value is no number (E217) or lies outside their range (E215); a value that is only passed on is told
+/// where it comes from.
 pub(super) fn check(draft: &Draft, order: &[VarId], values: &[f64]) -> Vec<Diagnostic> {
-    order.iter().filter_map(|&v| check_one(draft, v, values)).collect()
+    let mut wrong = vec![false; draft.variables.len()];
+    let mut told = Vec::new();
+    for &v in order {
+        let source = draft.variables[v.index()].binding.map(|b| draft.exprs.node(b));
+        if let Some(Node::Var(u)) = source
+            && wrong[u.index()]
+        {
+            wrong[v.index()] = true;
+        } else if let Some(diagnostic) = check_one(draft, v, values) {
+            wrong[v.index()] = true;
+            told.push(diagnostic);
+        }
+    }
+    told
 }
 
 fn check_one(draft: &Draft, v: VarId, values: &[f64]) -> Option<Diagnostic> {
