@@ -134,8 +134,8 @@ fn gears_and_screws_never_give_power() {
         "connect(torque.y, drive.tau);
          connect(drive.flange, rotor.flange_a);
          connect(rotor.flange_b, gear.flange_a);
-         connect(gear.flange_b, screw.flange_R);
-         connect(screw.flange_T, table.flange_a);
+         connect(gear.flange_b, screw.flangeR);
+         connect(screw.flangeT, table.flange_a);
          connect(table.flange_b, spring.flange_a);
          connect(spring.flange_b, wall.flange);",
     );

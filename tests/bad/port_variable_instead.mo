@@ -3,5 +3,5 @@ model M
   Mechanical.Translational.Mass mass;
   Mechanical.Translational.Fixed wall;
 equation
-  connect(mass.s, wall.s_0);
+  connect(mass.s, wall.s0);
 end M;

@@ -5,9 +5,9 @@ model Brake "Friction brake against the housing, engaged by a signal, with stick
   Interfaces.RotationalFlange flange_b "Right flange, moves with the left one";
   parameter Real mu_c(unit = "1", min = 0, max = 1) = 0.4 "Coefficient of sliding friction";
   parameter Real peak(unit = "1", min = 1, max = 10) = 1 "Coefficient of holding over that of sliding";
-  parameter SI.Length c_geo(min = 1e-9) = 1 "Mean radius times number of faces";
-  parameter SI.Force f_max(min = 0) = 1 "Normal force at u = 1";
-  Interfaces.RealInput u "Normal force over f_max; not positive: open";
+  parameter SI.Length cgeo(min = 1e-9) = 1 "Mean radius times number of faces";
+  parameter SI.Force fn_max(min = 0) = 1 "Normal force at f_normalized = 1";
+  Interfaces.RealInput f_normalized "Normal force over fn_max; not positive: open";
   SI.Angle phi "Angle";
   SI.AngularVelocity w(start = 0, nominal = 10) "Angular velocity";
   SI.AngularAcceleration a "Angular acceleration";
@@ -16,17 +16,17 @@ model Brake "Friction brake against the housing, engaged by a signal, with stick
 protected
   SI.Force f_n "Normal force";
 equation
-  assert(mu_c >= 0 and peak >= 1 and c_geo > 0, "mu_c must not be negative, peak at least 1, c_geo positive");
+  assert(mu_c >= 0 and peak >= 1 and cgeo > 0, "mu_c must not be negative, peak at least 1, cgeo positive");
   flange_a.phi = phi;
   flange_b.phi = phi;
   w = der(phi);
   a = der(w);
   w_slide = w;
   a_slide = a;
-  free = u <= 0;
-  f_n = f_max*max(u, 0);
-  tau_0 = mu_c*c_geo*f_n;
-  tau_hold = peak*mu_c*c_geo*f_n;
+  free = f_normalized <= 0;
+  f_n = fn_max*max(f_normalized, 0);
+  tau_0 = mu_c*cgeo*f_n;
+  tau_hold = peak*mu_c*cgeo*f_n;
   tau_dry = tau_0;
   tau_visc = 0;
   tau = tau_fric;

@@ -1,7 +1,7 @@
 within Mechanical.Rotational;
 model Screw "Screw spindle with efficiency"
-  Interfaces.RotationalFlange flange_R "Spindle";
-  Interfaces.TranslationalFlange flange_T "Nut";
+  Interfaces.RotationalFlange flangeR "Spindle";
+  Interfaces.TranslationalFlange flangeT "Nut";
   parameter SI.Length pitch(min = 1e-6, max = 1, nominal = 1e-2) = 1e-2 "Way of the nut per revolution";
   parameter Real eta(unit = "1", min = 0.05, max = 1) = 0.9 "Efficiency when the spindle drives";
   parameter Real eta_back(unit = "1", min = 0, max = 1) = 2 - 1/eta "Efficiency when the nut drives; 0 self-locking";
@@ -15,11 +15,11 @@ protected
 equation
   assert(pitch > 0, "The pitch must be positive");
   assert(eta > 0 and eta <= 1 and eta_back >= 0 and eta_back <= 1, "The efficiencies must lie from 0 to 1");
-  flange_T.s = lead*flange_R.phi;
-  power = -flange_T.f*der(flange_T.s);
+  flangeT.s = lead*flangeR.phi;
+  power = -flangeT.f*der(flangeT.s);
   side = Smooth.sgn(power, P_0);
   k = 1 + (1/eta - 1)*noEvent(max(side, 0)) + (1 - eta_back)*noEvent(min(side, 0));
-  flange_R.tau = -lead*k*flange_T.f;
+  flangeR.tau = -lead*k*flangeT.f;
   lossPower = (k - 1)*power;
   annotation(Documentation(info = "<html><p>Ideal where <code>eta = 1</code>. The efficiency of back driving follows for equal friction from that of driving, <code>2 - 1/eta</code>. Around zero power the loss sets in over <code>P_0</code>; it is negative nowhere.</p></html>"));
 end Screw;

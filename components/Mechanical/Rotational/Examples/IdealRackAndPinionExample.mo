@@ -6,7 +6,7 @@ model IdealRackAndPinionExample "A motor moves a carriage"
   Mechanical.Translational.Mass carriage(m = 10, s(fixed = false), v(fixed = false));
 equation
   connect(drive.flange, mass.flange_a);
-  connect(mass.flange_b, rack.flange_R);
-  connect(rack.flange_T, carriage.flange_a);
+  connect(mass.flange_b, rack.flangeR);
+  connect(rack.flangeT, carriage.flange_a);
   annotation(experiment(StartTime = 0, StopTime = 1, Interval = 0.002, Tolerance = 1e-6));
 end IdealRackAndPinionExample;

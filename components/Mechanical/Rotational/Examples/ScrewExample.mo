@@ -9,8 +9,8 @@ model ScrewExample "A spindle lifts a load and lets it down"
 equation
   connect(sine.y, drive.tau);
   connect(drive.flange, mass.flange_a);
-  connect(mass.flange_b, screw.flange_R);
-  connect(screw.flange_T, load.flange_a);
+  connect(mass.flange_b, screw.flangeR);
+  connect(screw.flangeT, load.flange_a);
   connect(load.flange_b, weight.flange);
   annotation(experiment(StartTime = 0, StopTime = 2, Interval = 0.004, Tolerance = 1e-6));
 end ScrewExample;
