@@ -1,6 +1,6 @@
 within Signal;
 block Measured "A measured value: gain, offset, lag, noise and sampling on a true one"
-  extends Bases.OneToOne(y(start = 0, fixed = true));
+  extends Bases.OneToOne;
   parameter Real gain = 1 "Gain";
   parameter Real offset = 0 "Offset";
   parameter SI.Time tau(min = 1e-9) = 1e-3 "Time constant of the sensor";
@@ -8,10 +8,16 @@ block Measured "A measured value: gain, offset, lag, noise and sampling on a tru
   parameter Real std(min = 0) = 0 "Standard deviation of the noise";
   parameter Integer delay(min = 0, max = 16) = 0 "Samples that the value arrives late";
   parameter Integer seed(min = 1, max = 2147483646) = 1 "Seed of the noise";
-  Real x(start = 0, fixed = true) "Value behind the lag";
+  Real x "Value behind the lag";
 protected
   discrete Real state(start = seed, fixed = true, nominal = 1e9) "State of the noise";
-  discrete Real late[17](each start = 0, each fixed = true) "Last samples";
+  discrete Real late[17] "Last samples";
+initial equation
+  x = gain*u + offset;
+  pre(y) = x;
+  for i in 1:17 loop
+    pre(late[i]) = x;
+  end for;
 equation
   assert(tau > 0 and samplePeriod > 0, "tau and samplePeriod must be positive");
   tau*der(x) = gain*u + offset - x;
@@ -23,5 +29,5 @@ equation
     end for;
     y = late[delay + 1];
   end when;
-  annotation(Documentation(info = "<html><p>What a measuring chain makes of a value, in this order: gain and offset, a lag of first order, samples every <code>samplePeriod</code>, white noise of the standard deviation <code>std</code> (even distribution), and a delay of whole samples. The noise comes from a generator of its own and is the same in every run with the same seed.</p></html>"));
+  annotation(Documentation(info = "<html><p>What a measuring chain makes of a value, in this order: gain and offset, a lag of first order, samples every <code>samplePeriod</code>, white noise of the standard deviation <code>std</code> (even distribution), and a delay of whole samples. The noise comes from a generator of its own and is the same in every run with the same seed. The chain has been on for long when a run starts: lag and delay hold the first value.</p></html>"));
 end Measured;

@@ -12,6 +12,7 @@ protected
   discrete Real t_0(start = 0, fixed = true) "Begin of the segment, in the table's time";
   discrete Real t_next(start = -1e60, fixed = true) "Next corner, in the table's time";
   discrete Real t_round(start = 0, fixed = true) "Begin of the present round, in the table's time, less the first time of the table";
+  discrete Real t_at(start = 0, fixed = true) "Where the segment is looked for, in the table's time";
   final parameter SI.Time T = data[end, 1] - data[1, 1] "Length of a round";
   final parameter Integer n[2] = if fileName == "" then {size(table, 1), size(table, 2)} else Functions.tableSize(fileName, tableName) "Rows, columns";
   final parameter Real data[n[1], 2] = if fileName == "" then table else Functions.readTable(fileName, tableName, 0, n[1], 2) "The table in use";
@@ -26,8 +27,8 @@ equation
       elseif initial() then T*floor((time - startTime - data[1, 1])/T)
       elseif pre(t_next) >= data[end, 1] then pre(t_round) + T
       else pre(t_round);
-    (y_0, slope, t_0, t_next) = Functions.segment(data,
-      if t_round > pre(t_round) and not initial() then data[1, 1] else max(time - startTime - t_round, pre(t_next)));
+    t_at = if t_round > pre(t_round) and not initial() then data[1, 1] else max(time - startTime - t_round, pre(t_next));
+    (y_0, slope, t_0, t_next) = Functions.segment(data, t_at);
   end when;
   y = offset + y_0 + slope*(time - startTime - t_round - t_0);
   annotation(Documentation(info = "<html><p>Linear between the corners, constant outside, or repeated where it is <code>periodic</code>; every corner is an event, so that integrators pass it exactly. A table may also come from a file, see <code>Functions.readTable</code>.</p></html>"));
