@@ -63,6 +63,33 @@ fn the_sequence_valve_looks_at_its_inlet_only() {
     near(flow(&mut valve, 110e5, 105e5), 1e-3, 0.01);
 }
 
+/// The areas and the spring of a cartridge valve say where it opens, from either side, and a closed pilot line holds it.
+#[test]
+fn the_cartridge_valve_opens_as_its_areas_say() {
+    let pilot = "Hydraulic.PressureSource x(p = 50e5)";
+    let cartridge = |pilot: &str| {
+        let class = format!("CartridgeValve way(ratio = 1.5, p_crack = 2e5, p_open = 4e5); {pilot}");
+        between(&class, "connect(way.port_x, x.port);")
+    };
+    let mut valve = cartridge(pilot);
+    let shut = |q: f64| q.abs() < 1e-7;
+    // p_A + 0.5 p_B = 1.5*50 bar + 2 bar
+    assert!(shut(flow(&mut valve, 76.0e5, 1e5)) && !shut(flow(&mut valve, 77.0e5, 1e5)));
+    assert!(shut(flow(&mut valve, 26.0e5, 101e5)) && flow(&mut valve, 27.0e5, 101e5) < -1e-5);
+    // held open by the spring, but for the flow force: 2 C_d cos(alpha) A(x) |dp|, |dp| rounded over 0.1 bar
+    let mut open = cartridge("Hydraulic.Tank x(p = 1e5)");
+    let t = run(open.set("a.p", 3.0e5).expect("a parameter").set("b.p", 2.0e5).expect("a parameter"));
+    let lift = last(&t, "way.x");
+    let (d, alpha) = (16e-3, std::f64::consts::FRAC_PI_4);
+    let area = std::f64::consts::FRAC_PI_4 * d * d;
+    let window = std::f64::consts::PI * d * alpha.sin() * (lift - 0.005 * 4e-3);
+    let flow_force = 2.0 * 0.65 * alpha.cos() * window * (1e5f64.hypot(1e4) - 1e4);
+    assert!((0.5e-3..1.5e-3).contains(&lift), "{lift}");
+    near(area * (2e5 + 2e5 * lift / 4e-3) + flow_force, area * (3.0e5 + 0.5 * 2.0e5 - 1.5 * 1e5), 1e-4);
+    let mut held = cartridge("Hydraulic.Plug x");
+    assert!(shut(flow(&mut held, 300e5, 1e5)));
+}
+
 #[test]
 fn the_reducing_valve_relieves_what_is_pushed_back() {
     let t = run(&shipped("Hydraulic.Examples.PressureReducerRelievingExample"));

@@ -6,6 +6,7 @@ model AccumulatorRealGas "Bladder accumulator, real gas (Redlich and Kwong) with
   parameter SI.Pressure p_pre(min = 1e4, max = 1e8, nominal = 1e6) = 1e7 "Precharge, absolute, at T_wall";
   parameter Real fill(unit = "1", min = 0.05, max = 1) = 0.8 "Volume of the gas at the start over V_0, unless p_start is given";
   parameter SI.Pressure p_start(min = 0, max = 1e8, nominal = 1e6) = 0 "Pressure of the gas at the start; 0: as fill says";
+  parameter SI.Pressure p_max(min = 1e4, max = 2e8, nominal = 1e7) = 70e6 "Highest allowed pressure";
   parameter SI.Temperature T_wall(min = 220, max = 420) = 293.15 "Temperature of the wall";
   parameter SI.Time tau(min = 0.01, max = 1e5, nominal = 10) = 10 "Thermal time constant of the gas, 5 to 30 s";
   parameter SI.SpecificHeatCapacity R(min = 50, max = 5000) = 296.8 "Gas constant, nitrogen";
@@ -41,6 +42,8 @@ initial equation
   p_pre = R*T_wall/(v_pre - b) - a*sqrt(T_c/T_wall)/(v_pre*(v_pre + b));
 equation
   assert(V_0 > 0 and p_pre > 0, "V_0 and the precharge p_pre must be positive");
+  assert(p_pre < p_max, "The precharge p_pre must lie below p_max");
+  assert(p < 1.05*p_max, "The pressure exceeds p_max of the accumulator", AssertionLevel.warning);
   assert(p_start <= 0 or p_start >= p_pre, "The pressure at the start p_start must not lie below the precharge p_pre");
   assert(v > 1.05*b, "The gas is compressed beyond the law of Redlich and Kwong");
   der(v_pre) = 0;

@@ -21,7 +21,7 @@ equation
   v = der(flange.s);
   F_c = F_0 + k_c*(max(p_1, 0) + max(p_2, 0));
   g = F_c*(1 + (k_st - 1)*exp(-(v/v_s)^2));
-  z_dot = v - sqrt(v*v + 1e-12)*sigma_0*z/g;
+  z_dot = v - sqrt(v*v + (v_s*1e-6)^2)*sigma_0*z/g;
   der(z) = z_dot;
   f = sigma_0*z + sigma_1*exp(-(v/v_d)^2)*z_dot + B*v;
   annotation(Documentation(info = "<html><p><code>dz/dt = v - |v| sigma_0 z/g(v)</code>, <code>f = sigma_0 z + sigma_1 exp(-(v/v_d)^2) dz/dt + B v</code>; the fading damping keeps it passive.
