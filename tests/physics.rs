@@ -377,14 +377,15 @@ fn the_ripple_is_that_of_the_kinematics_and_of_the_timing() {
 #[test]
 fn machines_take_power_in_all_four_quadrants() {
     let classes = [
-        "ServoPump.BenchPump machine",
-        "Hydraulic.Pump machine(V = 1e-5)",
-        "Hydraulic.Pump machine(V = 1e-5, compression = false)",
-        "Hydraulic.AxialPistonMachine machine",
-        "Hydraulic.GearPump machine(V = 1e-5)",
-        "Hydraulic.WilsonMachine machine(V = 1e-5)",
-        "Hydraulic.EfficiencyMapMachine machine(V = 1e-5)",
-        "Hydraulic.PolynomialMachine machine(V = 1e-5)",
+        "ServoPump.BenchPump machine(useInput = true)",
+        "Hydraulic.Pump machine(V = 1e-5, useInput = true)",
+        "Hydraulic.Pump machine(V = 1e-5, useInput = true, compression = false)",
+        "Hydraulic.AxialPistonMachine machine(useInput = true)",
+        "Hydraulic.AxialPistonMachine machine(useInput = true, starvation = true)",
+        "Hydraulic.GearPump machine(V = 1e-5, useInput = true)",
+        "Hydraulic.WilsonMachine machine(V = 1e-5, useInput = true)",
+        "Hydraulic.EfficiencyMapMachine machine(V = 1e-5, useInput = true)",
+        "Hydraulic.PolynomialMachine machine(V = 1e-5, useInput = true)",
     ];
     let mut numbers = Numbers(1);
     for class in classes {
@@ -392,28 +393,38 @@ fn machines_take_power_in_all_four_quadrants() {
             &format!(
                 "inner Oil.ISOVG46 oil;
                  {class};
+                 parameter Real displacement = 1;
                  Mechanical.Rotational.ConstantSpeed shaft;
                  Hydraulic.PressureSource a;
                  Hydraulic.PressureSource b;"
             ),
             "connect(shaft.flange, machine.flange);
              connect(a.port, machine.port_a);
-             connect(b.port, machine.port_b);",
+             connect(b.port, machine.port_b);
+             machine.u = displacement;",
         );
         simulation.stop_time(1e-6);
-        for _ in 0..150 {
+        for _ in 0..200 {
             let w = if numbers.next() < 0.3 { numbers.between(-1.0, 1.0) } else { numbers.between(-300.0, 300.0) };
             let (a, b) = (10f64.powf(numbers.between(4.3, 7.5)), 10f64.powf(numbers.between(4.3, 7.5)));
-            for (name, value) in [("shaft.w_fixed", w), ("a.p", a), ("b.p", b)] {
+            let u = if numbers.next() < 0.3 { 1.0 } else { numbers.between(-1.0, 1.0) };
+            let celsius = numbers.between(-10.0, 90.0);
+            let given =
+                [("shaft.w_fixed", w), ("a.p", a), ("b.p", b), ("displacement", u), ("oil.T_0", celsius + 273.15)];
+            for (name, value) in given {
                 simulation.set(name, value).expect("a parameter");
             }
             let t = simulation.run().unwrap_or_else(|e| panic!("{class}: {e}")).trajectory;
             let loss = last(&t, "machine.lossPower");
-            assert!(loss.is_finite() && loss > -1e-6, "{class} gives {loss} W at {w} rad/s, {a} Pa and {b} Pa");
+            assert!(
+                loss.is_finite() && loss > -1e-6,
+                "{class} gives {loss} W at {w} rad/s, {a} Pa and {b} Pa, {u} of the displacement, {celsius} degC"
+            );
         }
     }
 }
 
+/// `CheckValveLinear` is left out: it never closes entirely, and its page says what that gives back.
 #[test]
 fn restrictions_take_power_in_both_directions() {
     let classes = [
@@ -429,6 +440,18 @@ fn restrictions_take_power_in_both_directions() {
         ("VariableOrifice way", "way.u = 0;"),
         ("SpoolEdge way", "way.x = -0.5;"),
         ("SpoolEdge way", "way.x = 0.5;"),
+        ("CheckValveDynamic way(x(start = 0.4))", ""),
+        ("ReliefValveLinear way", ""),
+        ("ReliefValveDynamic way(x(start = 0.4))", ""),
+        ("ReliefValvePoppet way(x(start = 1e-4))", ""),
+        ("ProportionalRelief way", "way.u = 0.5;"),
+        ("CounterbalanceValve way(x(start = 0.4))", "connect(way.port_x, b.port);"),
+        ("PilotCheckValve way(x(start = 0.4))", "connect(way.port_x, a.port);"),
+        ("PressureReducer way", ""),
+        ("SequenceValve way(x(start = 0.4))", ""),
+        ("FlowControlValve way", "way.u = 0.5;"),
+        ("Cooler way(useHeatPort = false)", "way.oilHeat.T = 313.15;"),
+        ("Valve22 way", "way.u = 1;"),
     ];
     let mut numbers = Numbers(2);
     for (class, command) in classes {
