@@ -127,9 +127,12 @@ pub fn width(e: &Expr) -> usize {
             let named: usize = named.iter().map(|(n, v)| n.name.as_str().len() + 1 + width(v)).sum();
             name_width(function) + 2 + args.iter().map(|a| width(a) + 1).sum::<usize>() + named
         }
+        // two columns: values and conditions
         ExprKind::If { branches, otherwise } => {
-            branches.iter().map(|(c, v)| width(c) + width(v) + 6).max().unwrap_or(0).max(width(otherwise))
+            let values = branches.iter().map(|(_, v)| width(v)).max().unwrap_or(0).max(width(otherwise));
+            values + 6 + branches.iter().map(|(c, _)| width(c)).max().unwrap_or(0)
         }
+        ExprKind::Integer(i) => i.to_string().len(),
         ExprKind::Array(items) => items.iter().map(|i| width(i) + 1).sum::<usize>() + 2,
         ExprKind::Tuple(items) => items.iter().flatten().map(|i| width(i) + 1).sum::<usize>() + 2,
         _ => 6,
@@ -137,7 +140,11 @@ pub fn width(e: &Expr) -> usize {
 }
 
 fn name_width(r: &Reference) -> usize {
-    r.parts.iter().map(|p| p.name.name.as_str().len() + p.subscripts.len() * 2).sum()
+    let within = |s: &Subscript| match s {
+        Subscript::All(_) => 3,
+        Subscript::Expr(e) => 2 + width(e),
+    };
+    r.parts.iter().map(|p| p.name.name.as_str().len() + p.subscripts.iter().map(within).sum::<usize>()).sum()
 }
 
 fn row(content: &str) -> String {
