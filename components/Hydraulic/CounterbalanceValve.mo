@@ -6,7 +6,7 @@ model CounterbalanceValve "Counterbalance valve: holds a load at b, opened by th
   parameter Real pilotRatio(unit = "1", min = 0, max = 20) = 4 "Area of the pilot over that of the load";
   parameter SI.VolumeFlowRate q_nom(min = 1e-8, max = 0.1, nominal = 1e-3) = 1e-3 "Flow when fully open, at p_set*(1 + override)";
   parameter Real override(unit = "1", min = 0.005, max = 1) = 0.2 "Rise of pressure from cracking to fully open, over p_set";
-  parameter SI.Pressure p_crack(min = 0, max = 5e6, nominal = 1e5) = 1e5 "Cracking pressure of the check from a to b";
+  parameter SI.Pressure p_crack(min = 100, max = 5e6, nominal = 1e5) = 1e5 "Cracking pressure of the check from a to b";
   parameter SI.Area A_check(min = 1e-10, max = 1e-2, nominal = 1e-5, displayUnit = "mm2") = 1e-5 "Cross section of the open check";
   parameter SI.Time tau(min = 1e-5, max = 1, nominal = 1e-2) = 1e-2 "Time constant of the opening";
   parameter SI.Area A_leak(min = 1e-18, max = 1e-6, nominal = 1e-12) = 1e-12 "Cross section when closed";
