@@ -450,7 +450,7 @@ fn restrictions_take_power_in_both_directions() {
         ("PressureReducer way", ""),
         ("SequenceValve way(x(start = 0.4))", ""),
         ("FlowControlValve way", "way.u = 0.5;"),
-        ("Cooler way(useHeatPort = false)", "way.oilHeat.T = 313.15;"),
+        ("Cooler way; Thermal.FixedTemperature bath", "connect(bath.port, way.oilHeat);"),
         ("Valve22 way", "way.u = 1;"),
     ];
     let mut numbers = Numbers(2);
