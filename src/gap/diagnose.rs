@@ -525,8 +525,7 @@ fn simplest(problem: &Problem<'_>, refined: &[Refined], before: f64) -> usize {
         let behind = front.fit.evidence - r.fit.evidence;
         let scatter = SCATTER * (front.fit.evidence - before);
         let whole = h(front).changes_order && !h(r).changes_order && h(r).family != h(front).family;
-        let whole = whole && (behind < scatter || near(r, front));
-        whole || behind < AS_GOOD && !certainly_worse(&r.fit, &front.fit)
+        whole && (behind < scatter || near(r, front)) || behind < AS_GOOD && !certainly_worse(&r.fit, &front.fit)
     };
     let sheet = |r: &Refined| front.fit.evidence - r.fit.evidence + r.fit.prior_cost(problem.tolerances.len());
     let simpler = |a: &usize, b: &usize| {

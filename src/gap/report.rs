@@ -7,7 +7,7 @@ use super::diagnose::Search;
 use super::held;
 use super::problem::Problem;
 use super::verdict::{Columns, Effect, Maybe, Side, Verdict};
-use super::words::{number, percent, words};
+use super::words::{distance, number, percent, words};
 use crate::compile::flatten;
 use crate::plot::network::{self, Mark};
 use crate::plot::svg::escape;
@@ -109,7 +109,7 @@ fn effects(v: &Verdict) -> Vec<Vec<String>> {
             .iter()
             .map(|a| {
                 let at: Vec<&str> = a.places.iter().map(|p| p.place.as_str()).collect();
-                escape(&format!("{} at {} ({:.1} nats behind)", a.effect, at.join(", "), a.behind))
+                escape(&format!("{} at {} ({})", a.effect, at.join(", "), distance(a.behind)))
             })
             .collect();
         let at: Vec<String> = e.places.iter().map(|p| escape(&p.place)).collect();

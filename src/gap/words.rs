@@ -98,12 +98,18 @@ fn effect(i: usize, e: &Effect) -> String {
             .iter()
             .map(|a| {
                 let places: Vec<&str> = a.places.iter().map(|p| p.place.as_str()).collect();
-                format!("{} at {} ({:.1} nats behind)", a.effect, places.join(" and "), a.behind)
+                format!("{} at {} ({})", a.effect, places.join(" and "), distance(a.behind))
             })
             .collect();
         let _ = writeln!(text, "   These data cannot tell it from {}.", others.join(", "));
     }
     text
+}
+
+/// How far an alternative is from what is named, in words. One that is ahead has more parameters or states, or cuts a
+/// connection.
+pub(super) fn distance(behind: f64) -> String {
+    if behind < 0.0 { format!("{:.1} nats ahead, less simple", -behind) } else { format!("{behind:.1} nats behind") }
 }
 
 /// Without the capital at its start.

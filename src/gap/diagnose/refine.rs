@@ -194,7 +194,7 @@ impl Search {
         let taken = std::mem::take(refined);
         let mut polished: Vec<Refined> = taken.into_par_iter().enumerate().map(sharper).collect();
         best_first(&mut polished);
-        self.level(problem, &mut polished);
+        self.share_levels(problem, &mut polished);
         let share = polished.iter().take(POLISHED).map(|r| r.fit.own_share()).fold(self.last.share, f64::max);
         refined.extend(polished.into_iter().map(|r| Refined { fit: r.fit.at_share(share), ..r }));
         self.last = self.last.clone().at_share(share);
@@ -202,24 +202,21 @@ impl Search {
 
     /// Fits those that are nearly as good as the best one from its levels, and that one from theirs: levels found on
     /// different ways differ, and with them the evidence.
-    fn level(&self, problem: &Problem<'_>, refined: &mut [Refined]) {
+    fn share_levels(&self, problem: &Problem<'_>, refined: &mut [Refined]) {
         for _ in 0..LEVELLED {
             let Some(front) = refined.first() else { return };
             let (like, index) = (front.fit.clone(), front.accepted.chosen.hypothesis);
             let least = like.evidence - SCATTER * self.gain(&like);
-            let levelled = |r: &mut Refined| {
-                if r.accepted.chosen.hypothesis == index || r.fit.evidence < least || r.is_shape(problem) {
-                    return;
-                }
+            let others = refined[1..].par_iter_mut().filter(|r| r.fit.evidence >= least && !r.is_shape(problem));
+            others.for_each(|r| {
                 let Some(fit) = at_levels_of(&like, &r.fit, problem) else { return };
                 let another = Refined::new(problem, r.accepted.clone(), r.assembled.clone(), fit);
                 if another.fit.evidence > r.fit.evidence {
                     *r = another;
                 }
-            };
-            refined.par_iter_mut().for_each(levelled);
+            });
             best_first(refined);
-            if refined.first().is_none_or(|r| r.accepted.chosen.hypothesis == index) {
+            if refined[0].accepted.chosen.hypothesis == index {
                 return;
             }
         }
