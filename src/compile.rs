@@ -143,6 +143,7 @@ pub fn inspect<T>(
     }
     all.extend(diagnostics);
     once(&mut all);
+    let all: Vec<Diagnostic> = all.into_iter().map(|d| if d.is_error() { d.advised() } else { d }).collect();
     let failed = all.iter().any(Diagnostic::is_error);
     Outcome { sources: std::mem::take(&mut library.sources), diagnostics: all, value: value.filter(|_| !failed) }
 }

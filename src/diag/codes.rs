@@ -128,3 +128,36 @@ impl std::fmt::Display for Code {
         f.write_str(self.id())
     }
 }
+
+impl Code {
+    /// What helps in general, for messages whose place has no better advice.
+    pub fn advice(self) -> Option<&'static str> {
+        Some(match self {
+            Code::WrongClassKind => "see `bramah explain CLASS` for what a class is and holds",
+            Code::UnknownFunction => "check the spelling; a function of a package is called by its full name",
+            Code::BadCall => {
+                "compare the call with the function's inputs: their order, types and numbers of dimensions count"
+            }
+            Code::Unsupported => "write it with other means of the language",
+            Code::BadConnect => "`connect` joins ports of components; values are related by equations",
+            Code::TypeMismatch => {
+                "values are converted by hand: `integer(x)` makes an Integer of a Real, `if b then 1 else 0` a number \
+                 of a Boolean, `String(x)` a text"
+            }
+            Code::SizeMismatch => {
+                "make the sizes equal: `fill(v, n)` repeats a value, `x[1:2]` takes a part, `transpose` turns a matrix; \
+                 `.+` and `.*` work element by element"
+            }
+            Code::NotConstant => "use parameters and constants here; what changes during the run belongs in equations",
+            Code::BadIndex => "indices count from 1 to the size of the array; `end` is the last one",
+            Code::OutOfRange => "give a value within the bounds",
+            Code::Evaluation => "check the values that it is computed from",
+            Code::Recursion => "a recursive function must reach a case in which it does not call itself",
+            Code::TooLarge => "check the numbers that give the sizes",
+            Code::AssertionFailed | Code::AssertionWarning => {
+                "this is a limit that the model sets: look at the values that lead there"
+            }
+            _ => return None,
+        })
+    }
+}

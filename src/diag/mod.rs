@@ -150,6 +150,15 @@ impl Diagnostic {
         self
     }
 
+    /// The same with the advice of its code, where nothing better was said.
+    #[must_use]
+    pub fn advised(mut self) -> Self {
+        if self.help.is_empty() {
+            self.help.extend(self.code.advice().map(String::from));
+        }
+        self
+    }
+
     /// Names the component instance concerned.
     #[must_use]
     pub fn instance(mut self, name: impl Into<String>) -> Self {

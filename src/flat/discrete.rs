@@ -1,6 +1,6 @@
 //! What changes at events only must be given so: a `discrete` or Integer variable by its equation, `pre` by its argument.
 
-use super::{Equation, FlatModel, Type, Variability, When};
+use super::{Equation, FlatModel, Type, Variability, When, WhenAction};
 use crate::diag::{Code, Diagnostic};
 use crate::expr::{ExprId, Node, Unary, VarId};
 use crate::instance::Instance;
@@ -10,6 +10,7 @@ use rustc_hash::FxHashSet;
 pub(super) fn check(instance: &mut Instance<'_, '_>, flat: &FlatModel) {
     let assigned: FxHashSet<VarId> = flat.whens.iter().flat_map(When::assigned).collect();
     check_equations(instance, flat, &assigned);
+    check_own_values(instance, flat);
     check_pre(instance, flat, &assigned);
 }
 
@@ -47,6 +48,23 @@ fn check_equations(instance: &mut Instance<'_, '_>, flat: &FlatModel, assigned: 
         instance.diagnostics.push(d.at(variable.origin.span, "declared here").help(
             "sample it in a `when`, round it by `integer(..)`, or declare the variable as a Real that is not `discrete`",
         ));
+    }
+}
+
+/// `n = n + 1` in a `when` asks for a whole number that is its own successor; `pre(n) + 1` was meant.
+fn check_own_values(instance: &mut Instance<'_, '_>, flat: &FlatModel) {
+    for action in flat.whens.iter().flat_map(|w| &w.branches).flat_map(|b| &b.actions) {
+        let WhenAction::Assign { variable, value, origin } = action else { continue };
+        let v = &flat.variables[variable.index()];
+        let own = |e: &ExprId| instance.exprs.node(*e) == Node::Var(*variable);
+        if v.ty == Type::Real || !instance.exprs.reachable(&[*value], |_| true).iter().any(own) {
+            continue;
+        }
+        let name = &v.name;
+        let message = format!("the new value of `{name}` is computed from itself");
+        let d =
+            Diagnostic::new(Code::TypeMismatch, message).at(origin.span, format!("`{name}` means its new value here"));
+        instance.diagnostics.push(d.help(format!("write `pre({name})` for the value before the event")));
     }
 }
 

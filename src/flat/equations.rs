@@ -46,8 +46,12 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
     fn body(&mut self, body: &'a ast::LongBody, view: View) {
         let pairs = self.equations(&body.equations, view);
         self.push(pairs, view, false);
+        let before = self.flat.asserts.len();
         let pairs = self.equations(&body.initial_equations, view);
         self.push(pairs, view, true);
+        for at in before..self.flat.asserts.len() {
+            self.flat.asserts[at].condition = self.at_start_only(self.flat.asserts[at].condition);
+        }
         for section in &body.algorithms {
             self.algorithm(section, view, false);
         }
@@ -78,8 +82,20 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
         let mut pairs = Vec::new();
         for e in equations {
             self.equation(e, view, &mut pairs);
+            self.watch(view);
         }
         pairs
+    }
+
+    /// What the equation just read needs to have a meaning, under the conditions around it.
+    fn watch(&mut self, view: View) {
+        let mut calls = self.instance.take_calls();
+        for call in &mut calls {
+            for &guard in &self.guards {
+                call.guard = self.instance.exprs.and(guard, call.guard);
+            }
+        }
+        watch(self.instance, self.flat, calls, self.numbers.of(view.scope));
     }
 
     fn equation(&mut self, e: &'a ast::Equation, view: View, out: &mut Vec<Pair>) {
@@ -243,6 +259,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
         let mut when = When { branches: Vec::new(), origin: self.origin(span, view) };
         for (condition, body) in branches {
             let Some(conditions) = self.instance.when_conditions(condition, view) else { continue };
+            self.watch(view);
             let mut actions = Vec::new();
             let was = self.instance.set_no_event(true);
             for e in body {
@@ -268,6 +285,10 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
             EquationKind::Equal(l, r) => {
                 let mut pairs = Vec::new();
                 self.equal(l, r, view, e.span, &mut pairs);
+                for mut call in self.instance.take_calls() {
+                    call.guard = self.instance.exprs.and(guard, call.guard);
+                    self.algorithm_action(call, view, out);
+                }
                 for p in pairs {
                     self.when_assign(p, view, guard, out);
                 }
@@ -401,6 +422,11 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
         }
     }
 
+    fn at_start_only(&mut self, condition: ExprId) -> ExprId {
+        let start = self.instance.exprs.intern(Node::Initial);
+        self.unless(start, condition)
+    }
+
     fn unless(&mut self, guard: ExprId, condition: ExprId) -> ExprId {
         let pool = &mut self.instance.exprs;
         let not = pool.not(guard);
@@ -497,8 +523,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
         };
         let mut condition = self.unless(call.guard, condition);
         if initial {
-            let start = self.instance.exprs.intern(Node::Initial);
-            condition = self.unless(start, condition);
+            condition = self.at_start_only(condition);
         }
         let origin = self.origin(call.span, view);
         if condition != Exprs::ONE {
@@ -596,6 +621,20 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
             made.branches.push(WhenBranch { conditions: branch.conditions, actions });
         }
         self.flat.whens.push(made);
+    }
+}
+
+/// What expressions of an instance need to have a meaning, each once.
+pub(super) fn watch(instance: &mut Instance<'_, '_>, flat: &mut FlatModel, calls: Vec<AlgorithmCall>, holder: u32) {
+    for call in calls {
+        let Some(condition) = call.condition else { continue };
+        let not = instance.exprs.not(call.guard);
+        let condition = instance.exprs.or(not, condition);
+        let origin = Origin { span: call.span, instance: holder, kind: OriginKind::Declared };
+        let known = |a: &Assert| a.condition == condition && a.origin.span == call.span;
+        if condition != Exprs::ONE && !flat.asserts.iter().rev().take(8).any(known) {
+            flat.asserts.push(Assert { condition, message: message(call.message), warning: call.warning, origin });
+        }
     }
 }
 

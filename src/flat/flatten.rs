@@ -6,7 +6,7 @@ use super::numbers::Numbers;
 use super::{
     Equation, Experiment, FlatModel, InstanceInfo, Origin, OriginKind, StateSelect, Type, Variability, Variable,
 };
-use super::{balance, discrete, ports};
+use super::{balance, discrete, equations, ports};
 use crate::diag::{Checked, Code, Diagnostic};
 use crate::expr::{ExprId, Exprs};
 use crate::instance::{Instance, ScopeId};
@@ -41,6 +41,7 @@ pub fn flatten(instance: &mut Instance<'_, '_>, network: &Network) -> Checked<Fl
         let census = Census::take(instance, network, &flat, &scopes);
         flat.doubts = balance::doubts(instance, network, &flat, &census, &scopes);
         diagnostics.extend(ports::open_lines(&flat, &census));
+        diagnostics.extend(ports::joined_outputs(instance, network, &flat, &census, &scopes));
     }
     // Bodies of functions were built in the same pool, with variables of their own.
     if !flat.exprs.functions.is_empty() {
@@ -138,9 +139,12 @@ fn binding(instance: &mut Instance<'_, '_>, i: u32, v: &mut Variable, flat: &mut
         }
         return;
     };
-    let Some(value) = instance.bound(i, &b, false) else { return };
+    let value = instance.bound(i, &b, false);
+    let watched = instance.take_calls();
+    let Some(value) = value else { return };
     let Some(value) = instance.coerce(value, v.ty, &v.name, b.expr.span) else { return };
     let Some((e, _)) = value.scalar() else { return };
+    equations::watch(instance, flat, watched, v.origin.instance);
     if parameter && instance.variability(e) > Variability::Parameter {
         instance.diagnostics.push(
             Diagnostic::new(Code::NotConstant, format!("the parameter `{}` is given a value that changes", v.name))

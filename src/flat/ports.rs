@@ -25,6 +25,20 @@ pub(super) fn signals(
     found
 }
 
+/// Outputs of blocks that `connect` joins, which is wrong whatever the equations say (MLS 9.3).
+pub(super) fn joined_outputs(
+    instance: &Instance<'_, '_>,
+    network: &Network,
+    flat: &FlatModel,
+    census: &Census,
+    scopes: &[ScopeId],
+) -> Vec<Diagnostic> {
+    let mut signals = Signals::new(instance, network, flat, census, scopes);
+    let causal = |v: &VarId| matches!(census.role[v.index()], Role::Input | Role::Own);
+    signals.groups.retain(|_, members| members.iter().all(|(v, _)| causal(v)));
+    signals.two_sources()
+}
+
 /// Hydraulic ports of components that are not connected. In other domains an open port means something: a free shaft, no
 /// heat, no current. An open hydraulic port would spill oil; whoever means a closed one says so by a plug.
 pub(super) fn open_lines(flat: &FlatModel, census: &Census) -> Vec<Diagnostic> {

@@ -1,11 +1,12 @@
 //! Statements carried out on symbolic values: what an algorithm computes, as expressions.
 
 use super::deduce::Body;
-use super::value::Val;
+use super::evaluate::{Pick, places};
+use super::value::{Val, size_text};
 use super::{Instance, View};
 use crate::diag::{Code, Span};
-use crate::expr::{ExprId, Exprs};
-use crate::flat::Type;
+use crate::expr::{ExprId, Exprs, Rel};
+use crate::flat::{Type, Variability};
 use crate::syntax::ast::{Expr, ExprKind, Reference, ReferencePart, Statement, StatementKind};
 use crate::syntax::symbol::Symbol;
 use std::rc::Rc;
@@ -19,6 +20,28 @@ pub enum Flow {
     Break,
     /// By `return`.
     Return,
+    /// By `break` where a condition holds, else at its end.
+    BreakIf(ExprId),
+}
+
+impl Flow {
+    /// When a loop is left; `None` for a `return`.
+    fn left(self) -> Option<ExprId> {
+        match self {
+            Flow::Next => Some(Exprs::ZERO),
+            Flow::Break => Some(Exprs::ONE),
+            Flow::BreakIf(condition) => Some(condition),
+            Flow::Return => None,
+        }
+    }
+
+    fn leaving(condition: ExprId) -> Flow {
+        match condition {
+            Exprs::ZERO => Flow::Next,
+            Exprs::ONE => Flow::Break,
+            condition => Flow::BreakIf(condition),
+        }
+    }
 }
 
 /// A `when` met in an algorithm section of a model: conditions of each branch with the values it assigns.
@@ -70,7 +93,7 @@ pub struct Asserted {
 impl<'a> Instance<'a, '_> {
     /// Carries out statements; `None` after a message, or when they cannot be written as expressions.
     pub fn execute(&mut self, statements: &'a [Statement], view: View) -> Option<Flow> {
-        for s in statements {
+        for (i, s) in statements.iter().enumerate() {
             self.eval.steps += 1;
             if self.eval.steps > self.eval.budget {
                 self.eval.not_inline = true;
@@ -78,10 +101,45 @@ impl<'a> Instance<'a, '_> {
             }
             match self.statement(s, view)? {
                 Flow::Next => {}
+                Flow::BreakIf(left) => {
+                    let rest = self.unless_left(left, |s| s.execute(&statements[i + 1..], view))?;
+                    let Some(later) = rest.left() else {
+                        self.eval.not_inline = true;
+                        return None;
+                    };
+                    return Some(Flow::leaving(self.exprs.or(left, later)));
+                }
                 other => return Some(other),
             }
         }
         Some(Flow::Next)
+    }
+
+    /// Carries out what is reached unless the loop around was left before.
+    fn unless_left<T>(&mut self, left: ExprId, f: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
+        if left == Exprs::ZERO {
+            return f(self);
+        }
+        let before = self.eval.locals.clone();
+        let not = self.exprs.not(left);
+        let done = self.guarded(not, f)?;
+        self.merge_locals(left, &before)?;
+        Some(done)
+    }
+
+    /// Gives locals the values they had where a condition holds.
+    fn merge_locals(&mut self, test: ExprId, before: &[(Symbol, Val)]) -> Option<()> {
+        for i in self.eval.frame..self.eval.locals.len() {
+            let (a, b) = (&before[i].1, &self.eval.locals[i].1);
+            match a.zip(b, &mut |x, y, _| self.exprs.if_(test, x, y)) {
+                Some(merged) => self.eval.locals[i].1 = merged,
+                None => {
+                    self.eval.not_inline = true;
+                    return None;
+                }
+            }
+        }
+        Some(())
     }
 
     fn statement(&mut self, s: &'a Statement, view: View) -> Option<Flow> {
@@ -98,8 +156,7 @@ impl<'a> Instance<'a, '_> {
             }
             StatementKind::Call(call) => self.statement_call(call, view),
             StatementKind::If { branches, otherwise } => self.if_statement(branches, otherwise, view),
-            StatementKind::For { iterators, body } => self.for_statement(iterators, body, view),
-            StatementKind::While(condition, body) => self.while_statement(condition, body, view),
+            StatementKind::For { .. } | StatementKind::While(..) => self.loop_statement(s, view),
             StatementKind::When(branches) => self.when_statement(branches, view, s.span),
             StatementKind::Break => Some(Flow::Break),
             StatementKind::Return => Some(Flow::Return),
@@ -169,7 +226,11 @@ impl<'a> Instance<'a, '_> {
         let Val::Array { dims, elements } = old else {
             return self.fail(Code::BadIndex, &format!("`{}` is not an array", p.name.name), span);
         };
-        let places = self.places(dims, p, view, span)?;
+        let picks = self.picks(dims, p, view, span)?;
+        if picks.iter().any(|p| matches!(p, Pick::Symbolic(_))) {
+            return self.replaced_somewhere(dims, elements, &picks, last, &value, span);
+        }
+        let (_, places) = places(dims, &picks);
         let mut elements = elements.to_vec();
         if last {
             if places.len() != value.elements().len() {
@@ -215,21 +276,55 @@ impl<'a> Instance<'a, '_> {
         Some(Val::Record(Rc::new(fields)))
     }
 
-    fn places(&mut self, dims: &[usize], p: &'a ReferencePart, view: View, span: Span) -> Option<Vec<usize>> {
-        let all: Vec<Val> = (0..dims.iter().product()).map(|i: usize| self.integer(i as f64)).collect();
-        let index = Val::array(dims.to_vec(), all);
-        let chosen = self.subscript(index, &p.subscripts, view, span)?;
-        let mut places = Vec::new();
-        for v in chosen.elements() {
-            match v.as_number(&self.exprs) {
-                Some(x) => places.push(x as usize),
-                None => {
-                    self.eval.not_inline = true;
-                    return None;
-                }
-            }
+    /// What the subscripts of a target pick, all dimensions of the array included.
+    fn picks(&mut self, dims: &[usize], p: &'a ReferencePart, view: View, span: Span) -> Option<Vec<Pick>> {
+        if p.subscripts.len() > dims.len() {
+            let message = format!("{} indices for an array of size {}", p.subscripts.len(), size_text(dims));
+            return self.fail(Code::BadIndex, &message, span);
         }
-        Some(places)
+        let mut picks = Vec::with_capacity(dims.len());
+        for (s, &n) in p.subscripts.iter().zip(dims) {
+            picks.push(self.index(s, n, view, span)?);
+        }
+        picks.extend(dims[picks.len()..].iter().map(|&n| Pick::Many((0..n).collect())));
+        Some(picks)
+    }
+
+    /// `a[k] := value` with a `k` that changes during the run: every element that `k` may mean takes the value if it
+    /// does. In functions a procedure does this.
+    fn replaced_somewhere(
+        &mut self,
+        dims: &[usize],
+        elements: &[Val],
+        picks: &[Pick],
+        last: bool,
+        value: &Val,
+        span: Span,
+    ) -> Option<Val> {
+        if self.eval.depth > 0 || !last || picks.iter().any(|p| matches!(p, Pick::Many(_))) {
+            self.eval.not_inline = true;
+            return None;
+        }
+        let mut replaced = Vec::with_capacity(elements.len());
+        for (at, old) in elements.iter().enumerate() {
+            let value = self.matching(old, value.clone(), span)?;
+            let (mut hit, mut rest) = (Exprs::ONE, at);
+            for (p, &n) in picks.iter().zip(dims).rev() {
+                let place = rest % n;
+                rest /= n;
+                let here = match p {
+                    Pick::One(i) => self.exprs.boolean(*i == place),
+                    Pick::Symbolic(e) => {
+                        let number = self.exprs.num(place as f64 + 1.0);
+                        self.exprs.rel(Rel::Eq, *e, number)
+                    }
+                    Pick::Many(_) => Exprs::ZERO,
+                };
+                hit = self.exprs.and(hit, here);
+            }
+            replaced.push(value.zip(old, &mut |new, old, _| self.exprs.if_(hit, new, old))?);
+        }
+        Some(Val::array(dims.to_vec(), replaced))
     }
 
     /// A value for a variable that holds another now: sizes and types must fit.
@@ -282,8 +377,8 @@ impl<'a> Instance<'a, '_> {
         Some(Flow::Next)
     }
 
-    /// Leaves an `assert` or `terminate` of a section to the flat model.
-    fn keep_call(
+    /// Leaves what must hold, or a `terminate`, to the flat model.
+    pub(super) fn keep_call(
         &mut self,
         condition: Option<ExprId>,
         message: Option<Val>,
@@ -329,35 +424,59 @@ impl<'a> Instance<'a, '_> {
         if let Some(known) = self.exprs.as_num(test) {
             return if known == 0.0 { self.if_statement(rest, otherwise, view) } else { self.execute(body, view) };
         }
-        let frame = self.eval.frame;
         let before = self.eval.locals.clone();
         let not = self.exprs.not(test);
         let first = self.guarded(test, |s| s.execute(body, view))?;
         let after = std::mem::replace(&mut self.eval.locals, before);
         let second = self.guarded(not, |s| s.if_statement(rest, otherwise, view))?;
-        if first != Flow::Next || second != Flow::Next {
+        let ways = if self.eval.depth == 0 { first.left().zip(second.left()) } else { None };
+        let Some((a, b)) = ways.or((first == Flow::Next && second == Flow::Next).then_some((Exprs::ZERO, Exprs::ZERO)))
+        else {
             self.eval.not_inline = true;
             return None;
-        }
-        for i in frame..self.eval.locals.len() {
-            let (a, b) = (&after[i].1, &self.eval.locals[i].1);
-            match a.zip(b, &mut |x, y, _| self.exprs.if_(test, x, y)) {
-                Some(merged) => self.eval.locals[i].1 = merged,
-                None => {
-                    self.eval.not_inline = true;
-                    return None;
-                }
-            }
-        }
-        Some(Flow::Next)
+        };
+        self.merge_locals(test, &after)?;
+        Some(Flow::leaving(self.exprs.if_(test, a, b)))
     }
 
     /// Runs statements that are reached under a condition only.
-    fn guarded<T>(&mut self, guard: ExprId, f: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
+    pub(super) fn guarded<T>(&mut self, guard: ExprId, f: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
         self.eval.guards.push(guard);
         let done = f(self);
         self.eval.guards.pop();
         done
+    }
+
+    /// A loop; in a section of a model one whose course is not known becomes a procedure.
+    fn loop_statement(&mut self, s: &'a Statement, view: View) -> Option<Flow> {
+        let before = self.eval.locals.clone();
+        let marks = (self.diagnostics.len(), self.eval.calls.len(), self.eval.whens.len());
+        let flow = match &s.kind {
+            StatementKind::For { iterators, body } => self.for_statement(iterators, body, view),
+            StatementKind::While(condition, body) => self.while_statement(condition, body, view),
+            _ => unreachable!("the caller found a loop"),
+        };
+        let refused = flow.is_none() && self.eval.not_inline && self.diagnostics.len() == marks.0;
+        if !refused || self.eval.depth > 0 {
+            return flow;
+        }
+        self.eval.not_inline = false;
+        self.eval.locals = before;
+        self.eval.calls.truncate(marks.1);
+        self.eval.whens.truncate(marks.2);
+        self.loop_as_procedure(s, view).map(|()| Flow::Next)
+    }
+
+    /// Whether the bounds of a range change during the run: then it is no list of values.
+    fn varies(&mut self, range: Option<&'a Expr>, view: View) -> Option<bool> {
+        let Some(ExprKind::Range { from, step, to }) = range.map(|r| &r.kind) else { return Some(false) };
+        for e in [Some(&**from), step.as_deref(), Some(&**to)].into_iter().flatten() {
+            let value = self.eval(e, view)?;
+            if value.scalar().is_some_and(|(e, _)| self.variability(e) > Variability::Parameter) {
+                return Some(true);
+            }
+        }
+        Some(false)
     }
 
     fn for_statement(
@@ -367,14 +486,22 @@ impl<'a> Instance<'a, '_> {
         view: View,
     ) -> Option<Flow> {
         let Some((first, rest)) = iterators.split_first() else { return self.execute(body, view) };
+        if self.eval.depth == 0 && self.varies(first.range.as_ref(), view)? {
+            self.eval.not_inline = true;
+            return None;
+        }
+        let mut left = Exprs::ZERO;
         for value in self.iterate(first, Body::Statements(body), view)? {
-            self.eval.locals.push((first.name.name, value));
-            let flow = self.for_statement(rest, body, view);
-            self.eval.locals.pop();
-            match flow? {
-                Flow::Next => {}
-                Flow::Break => break,
-                Flow::Return => return Some(Flow::Return),
+            let flow = self.unless_left(left, |s| {
+                s.eval.locals.push((first.name.name, value));
+                let flow = s.for_statement(rest, body, view);
+                s.eval.locals.pop();
+                flow
+            })?;
+            let Some(now) = flow.left() else { return Some(Flow::Return) };
+            left = self.exprs.or(left, now);
+            if left == Exprs::ONE {
+                break;
             }
         }
         Some(Flow::Next)
@@ -396,6 +523,10 @@ impl<'a> Instance<'a, '_> {
                 Flow::Next => {}
                 Flow::Break => return Some(Flow::Next),
                 Flow::Return => return Some(Flow::Return),
+                Flow::BreakIf(_) => {
+                    self.eval.not_inline = true;
+                    return None;
+                }
             }
         }
     }

@@ -4,6 +4,7 @@ use super::builtin::retyped;
 use super::lookup::{Builtin, Found};
 use super::template::{Kind, Template};
 use super::value::{Val, size_text};
+use super::vectorised::Given;
 use super::{ClassRef, Instance, ScopeId, View};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::expr::{ExprId, Exprs};
@@ -106,10 +107,11 @@ impl<'a> Instance<'a, '_> {
         if let Some(Builtin::Enumeration(i)) = template.builtin {
             return self.enumeration_of(i, args, view, span);
         }
-        let positional: Option<Vec<Val>> = args.iter().map(|a| self.argument(a, view)).collect();
+        let text = gives_text(&template);
+        let positional: Option<Vec<Val>> = args.iter().map(|a| self.argument(a, text, view)).collect();
         let mut by_name = Vec::new();
         for (name, e) in named {
-            by_name.push((*name, self.argument(e, view)?));
+            by_name.push((*name, self.argument(e, text, view)?));
         }
         let positional = positional?;
         let scope = self.package(&class);
@@ -122,7 +124,7 @@ impl<'a> Instance<'a, '_> {
                     let place = self.file_place(args.first(), view, span);
                     self.call_file_function(function, &callee, positional, by_name, place)
                 }
-                None => self.call_function(&callee, positional, by_name, span),
+                None => self.call_elementwise(&callee, Given { positional, named: by_name }, span),
             },
             _ => {
                 let message = format!("`{}` is not a function", callee.name);
@@ -131,10 +133,13 @@ impl<'a> Instance<'a, '_> {
         }
     }
 
-    /// An argument; whole numbers that parameters give are taken by value, for sizes and loops depend on them.
-    fn argument(&mut self, e: &'a Expr, view: View) -> Option<Val> {
+    /// An argument; whole numbers that parameters give are taken by value, for sizes and loops depend on them, and
+    /// whatever a text depends on.
+    fn argument(&mut self, e: &'a Expr, text: bool, view: View) -> Option<Val> {
         let value = self.eval(e, view)?;
-        if let Val::Scalar(id, Type::Integer) = value {
+        if let Val::Scalar(id, ty) = value
+            && (text || ty == Type::Integer)
+        {
             let outside = self.eval.frame == 0 && !self.eval.procedure;
             let open = self.exprs.as_num(id).is_none() && self.variability(id) <= Variability::Parameter;
             if outside && open && !self.eval.locals.iter().any(|(_, v)| v.scalar().is_some_and(|(l, _)| l == id)) {
@@ -387,7 +392,7 @@ impl<'a> Instance<'a, '_> {
             self.eval.not_inline = true;
             return None;
         }
-        let mark = self.diagnostics.len();
+        let mark = (self.diagnostics.len(), self.eval.calls.len());
         let budget = if self.eval.depth == 0 { 0 } else { self.eval.steps };
         self.eval.steps = budget;
         self.eval.depth += 1;
@@ -402,7 +407,8 @@ impl<'a> Instance<'a, '_> {
             let message = format!("`{}` does not come to an end", callee.name);
             return self.fail(Code::Recursion, &message, span);
         }
-        self.diagnostics.truncate(mark);
+        self.diagnostics.truncate(mark.0);
+        self.eval.calls.truncate(mark.1);
         self.call_procedure(callee, positional, named, span)
     }
 
@@ -595,6 +601,14 @@ impl<'a> Instance<'a, '_> {
     fn blank_field(&mut self, f: &Formal<'a>) -> Option<Val> {
         self.declared_local(f)
     }
+}
+
+/// Whether a function has a text as an output.
+fn gives_text(template: &Template<'_>) -> bool {
+    template.elements.iter().any(|e| match e.kind {
+        Kind::Component(c) => c.prefix.causality == Some(Causality::Output) && c.class.parts[0].name == "String",
+        Kind::Class(_) => false,
+    })
 }
 
 /// An attribute that is written as a number.

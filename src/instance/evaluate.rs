@@ -510,9 +510,10 @@ impl<'a> Instance<'a, '_> {
         if let Some(known) = self.exprs.as_num(test) {
             return if known == 0.0 { self.if_expression(rest, otherwise, view, span) } else { self.eval(value, view) };
         }
-        let mark = self.diagnostics.len();
-        let a = self.eval(value, view);
-        let b = self.if_expression(rest, otherwise, view, span);
+        let mark = (self.diagnostics.len(), self.eval.calls.len());
+        let not = self.exprs.not(test);
+        let a = self.guarded(test, |s| s.eval(value, view));
+        let b = self.guarded(not, |s| s.if_expression(rest, otherwise, view, span));
         let merged = match (&a, &b) {
             (Some(a), Some(b)) => a.zip(b, &mut |x, y, _| self.exprs.if_(test, x, y)),
             _ => None,
@@ -522,13 +523,18 @@ impl<'a> Instance<'a, '_> {
         }
         // A branch that has no meaning here (an absent component, another size) is allowed when a parameter decides.
         if self.variability(test) <= Variability::Parameter && !self.eval.procedure && self.eval.frame == 0 {
-            self.diagnostics.truncate(mark);
+            self.diagnostics.truncate(mark.0);
+            self.eval.calls.truncate(mark.1);
             return match self.constant_boolean(condition, view)? {
                 true => self.eval(value, view),
                 false => self.if_expression(rest, otherwise, view, span),
             };
         }
-        self.sizes_differ(&a?, &b?, span)
+        let (a, b) = (a?, b?);
+        if let (Val::Text(_), Val::Text(_)) = (&a, &b) {
+            return self.fail(Code::NotConstant, "this text must be known before the run", span);
+        }
+        self.sizes_differ(&a, &b, span)
     }
 
     fn range(&mut self, e: &'a Expr, view: View) -> Option<Val> {
@@ -741,7 +747,8 @@ impl<'a> Instance<'a, '_> {
         self.eval.ends.pop();
         let value = value?;
         match &value {
-            Val::Scalar(id, _) => match self.exprs.as_num(*id) {
+            Val::Scalar(id, Type::Boolean) if size == 2 => Some(self.boolean_index(*id)),
+            Val::Scalar(id, ty @ (Type::Integer | Type::Enumeration(_))) => match self.exprs.as_num(*id) {
                 Some(x) => Some(Pick::One(self.in_range(x, size, e.span)?)),
                 None => {
                     if self.eval.frame == 0 && !self.eval.procedure && self.variability(*id) <= Variability::Parameter {
@@ -749,6 +756,9 @@ impl<'a> Instance<'a, '_> {
                         if let Some(x) = known {
                             return Some(Pick::One(self.in_range(x, size, e.span)?));
                         }
+                    }
+                    if *ty == Type::Integer && !self.eval.procedure {
+                        self.watch_index(*id, size, e.span);
                     }
                     Some(Pick::Symbolic(*id))
                 }
@@ -771,6 +781,30 @@ impl<'a> Instance<'a, '_> {
             }
             _ => self.wrong_type("an Integer", &value, e.span),
         }
+    }
+
+    /// `false` and `true` as indices of an array declared with `[Boolean]`.
+    fn boolean_index(&mut self, e: ExprId) -> Pick {
+        match self.exprs.as_num(e) {
+            Some(x) => Pick::One(usize::from(x != 0.0)),
+            None => {
+                let two = self.exprs.num(2.0);
+                Pick::Symbolic(self.exprs.if_(e, two, Exprs::ONE))
+            }
+        }
+    }
+
+    /// An index that changes must stay inside the array during the run, wherever it is used.
+    fn watch_index(&mut self, index: ExprId, size: usize, span: Span) {
+        let last = self.exprs.num(size as f64);
+        let (low, high) = (self.exprs.rel(Rel::Ge, index, Exprs::ONE), self.exprs.rel(Rel::Le, index, last));
+        let condition = self.exprs.and(low, high);
+        let parts = vec![
+            MessagePart::Text("the index ".into()),
+            MessagePart::Value(index, Type::Integer),
+            MessagePart::Text(format!(" lies outside 1..{size}")),
+        ];
+        self.keep_call(Some(condition), Some(Val::Text(Rc::new(parts))), false, span);
     }
 
     fn in_range(&mut self, x: f64, size: usize, span: Span) -> Option<usize> {

@@ -139,16 +139,17 @@ impl<'a> Instance<'a, '_> {
         let element = &template.elements[index as usize];
         let Kind::Class(declared) = element.kind else { unreachable!("the caller found a class") };
         let own = View { scope, base: element.base };
-        let (ast, parent) = match reached.redeclare {
-            Some((ArgKind::Class(c), view, ..)) => (c, view),
-            _ => (declared, own),
+        let (ast, parent, redeclared) = match reached.redeclare {
+            Some((ArgKind::Class(c), view, ..)) => (c, view, true),
+            _ => (declared, own, false),
         };
         let textual = template.bases[element.base as usize].class;
         let class = self.library.enter(ast, Some(textual));
         let mut args = reached.args;
-        if let Some(m) = declared.constraint.as_ref().and_then(|c| c.modification.as_ref()) {
+        if let Some(m) = constraining(declared, redeclared) {
             let none: Rc<[_]> = Rc::from([]);
-            args.extend(m.arguments.iter().filter_map(|a| Arg::new(a, own, &none, false)));
+            let given = m.arguments.iter().filter_map(|a| Arg::new(a, own, &none, false));
+            args.extend(given.map(|a| Arg { default: redeclared, ..a }));
         }
         let found = ClassRef { class, parent, args: args.into() };
         self.scope_mut(scope).elements[index as usize] = ElementState::Class(found.clone());
@@ -339,7 +340,9 @@ impl<'a> Instance<'a, '_> {
         let args = s.args.clone();
         let binding = s.binding.clone();
         let mut outer: Option<Span> = None;
-        for arg in args.iter().filter(|a| a.target() == element.name) {
+        let (defaults, given): (Vec<_>, Vec<_>) =
+            args.iter().filter(|a| a.target() == element.name).partition(|a| a.default);
+        for arg in given {
             reached.take(arg);
             outer = outer.or(Some(arg.span));
         }
@@ -348,11 +351,16 @@ impl<'a> Instance<'a, '_> {
             reached.binding = Some(super::modifiers::Binding { access, ..b.clone() });
         }
         let none: Rc<[_]> = Rc::from([]);
-        for source in &element.modified {
-            let view = View { scope, base: source.base };
-            let Some(arg) = source_arg(source, view, &none) else { continue };
+        let redeclaration = |s: &&Source<'a>| s.base == 0 && template.bases[0].short;
+        let (own, inherited): (Vec<_>, Vec<_>) = element.modified.iter().partition(redeclaration);
+        let as_args = |sources: Vec<&Source<'a>>| -> Vec<Arg<'a>> {
+            let arg = |s: &Source<'a>| source_arg(s, View { scope, base: s.base }, &none);
+            sources.into_iter().filter_map(arg).collect()
+        };
+        let defaults = defaults.into_iter().cloned().collect();
+        for arg in [as_args(own), defaults, as_args(inherited)].iter().flatten() {
             self.check_final(arg.final_, outer, arg.span, element.name);
-            reached.take(&arg);
+            reached.take(arg);
             outer = outer.or(Some(arg.span));
         }
         if let Kind::Component(c) = element.kind {
@@ -397,9 +405,19 @@ impl<'a> Instance<'a, '_> {
     }
 }
 
+/// What is modified whatever class stands in the place of a declared one: the modifiers of its `constrainedby`, or, where
+/// it was redeclared and has none, those of its own short declaration (MLS 7.3.2).
+fn constraining(declared: &ast::Class, redeclared: bool) -> Option<&ast::Modification> {
+    match (&declared.constraint, &declared.body) {
+        (Some(c), _) => c.modification.as_ref(),
+        (None, ClassBody::Short { modification, .. }) if redeclared => modification.as_ref(),
+        _ => None,
+    }
+}
+
 /// A modification by a base class as an argument.
 fn source_arg<'a>(source: &Source<'a>, view: View, none: &Rc<[super::modifiers::Access]>) -> Option<Arg<'a>> {
-    let made = |kind, span| Arg { kind, view, access: none.clone(), each: false, final_: false, span };
+    let made = |kind, span| Arg { kind, view, access: none.clone(), each: false, final_: false, default: false, span };
     match source.what {
         What::Argument(a) => Arg::new(a, view, none, false),
         What::Component(c) => Some(made(ArgKind::Component(c), c.name.span)),

@@ -19,6 +19,7 @@ mod procedure;
 pub mod reference;
 pub mod template;
 pub mod value;
+mod vectorised;
 
 pub use build::{GIVEN, ModelRequest, Override, instantiate};
 

@@ -42,6 +42,8 @@ pub struct Arg<'a> {
     pub each: bool,
     /// `final`
     pub final_: bool,
+    /// Comes with the declaration of a class that was redeclared: what the redeclaration itself says counts more.
+    pub default: bool,
     /// Where it stands.
     pub span: Span,
 }
@@ -74,6 +76,7 @@ impl<'a> Arg<'a> {
             access: if argument.each { Rc::from([]) } else { access.clone() },
             each: each || argument.each,
             final_: argument.final_,
+            default: false,
             span: argument.span,
         })
     }
@@ -115,7 +118,8 @@ impl<'a> Reached<'a> {
     pub fn take(&mut self, arg: &Arg<'a>) {
         match arg.kind {
             ArgKind::Modify(path, modification) if path.len() > 1 => {
-                self.args.push(Arg { kind: ArgKind::Modify(&path[1..], modification), ..arg.clone() });
+                let kind = ArgKind::Modify(&path[1..], modification);
+                self.args.push(Arg { kind, default: false, ..arg.clone() });
             }
             ArgKind::Modify(_, Some(m)) => self.modification(m, arg.view, &arg.access, false, arg.final_, arg.span),
             ArgKind::Modify(_, None) => self.final_ |= arg.final_,

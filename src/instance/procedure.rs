@@ -4,6 +4,7 @@
 //! Expressions inside are built in the same pool, with locals standing as variables numbered from [`LOCAL`] on, and
 //! then turned into terms.
 
+use super::algorithm::assigned;
 use super::call::{Callee, is_input};
 use super::deduce::Body;
 use super::evaluate::Pick;
@@ -26,6 +27,8 @@ const ELEMENT: FunctionId = FunctionId(u32::MAX);
 pub struct Translation {
     slots: u32,
     statements: Vec<Stmt>,
+    /// What a loop of a model reads of the model, in its first slots; `None` in functions, which read their inputs only.
+    captures: Option<Vec<ExprId>>,
 }
 
 impl<'a> Instance<'a, '_> {
@@ -163,6 +166,75 @@ impl<'a> Instance<'a, '_> {
         let f = &mut self.exprs.functions[id.0 as usize];
         (f.slots, f.body) = (slots, body);
         Some((id, shapes))
+    }
+
+    /// Carries out a loop of a model's algorithm section as a procedure of what it reads, for it runs as often as
+    /// changing values say. Its relations make no events (MLS 11.2.3).
+    pub(super) fn loop_as_procedure(&mut self, s: &'a Statement, view: View) -> Option<()> {
+        let changed = self.assigned_locals(s)?;
+        let before = self.eval.locals.clone();
+        let outer = std::mem::take(&mut self.eval.translation);
+        let mut captures = Vec::new();
+        let mut made = None;
+        // Once to see what it reads, once with slots for that.
+        for _ in 0..2 {
+            self.eval.locals.clone_from(&before);
+            let slots = u32::try_from(captures.len()).expect("limited sizes");
+            self.eval.translation = Translation { slots, statements: Vec::new(), captures: Some(captures) };
+            self.eval.procedure = true;
+            made = self.translate_loop(s, &changed, view);
+            self.eval.procedure = false;
+            captures = self.eval.translation.captures.take().unwrap_or_default();
+            if made.is_none() {
+                break;
+            }
+        }
+        let done = std::mem::replace(&mut self.eval.translation, outer);
+        self.eval.locals = before;
+        let shapes = made?;
+        let mut outputs = Vec::new();
+        shapes.iter().for_each(|v| v.scalars(&mut outputs));
+        let function = self.exprs.add_function(Function {
+            name: self.library.full_name(self.scope(view.scope).template.class),
+            inputs: u32::try_from(captures.len()).expect("limited sizes"),
+            slots: done.slots,
+            outputs: outputs.iter().filter_map(|&e| self.slot(e)).collect(),
+            body: done.statements,
+        });
+        let mut number = 0;
+        for (i, shape) in changed.into_iter().zip(shapes) {
+            self.eval.locals[i].1 = shape.map(&mut |_, _| {
+                number += 1;
+                self.exprs.call(function, number - 1, &captures)
+            });
+        }
+        Some(())
+    }
+
+    /// The variables of the section that a statement assigns.
+    fn assigned_locals(&mut self, s: &'a Statement) -> Option<Vec<usize>> {
+        let (mut targets, mut in_when) = (Vec::new(), Vec::new());
+        assigned(std::slice::from_ref(s), false, &mut targets, &mut in_when);
+        if let Some(part) = in_when.first() {
+            let message = "a `when` cannot stand in a loop that runs as often as changing values say";
+            return self.fail(Code::Unsupported, message, part.name.span);
+        }
+        let mut changed: Vec<usize> = targets.iter().filter_map(|p| self.local(p.name.name)).collect();
+        changed.sort_unstable();
+        changed.dedup();
+        Some(changed)
+    }
+
+    /// The slots in which the changed variables end.
+    fn translate_loop(&mut self, s: &'a Statement, changed: &[usize], view: View) -> Option<Vec<Val>> {
+        for &i in changed {
+            let value = self.eval.locals[i].1.clone();
+            let slots = self.slots_like(&value);
+            self.store(&slots, &value);
+            self.eval.locals[i].1 = slots;
+        }
+        self.procedure_statement(s, view)?;
+        Some(changed.iter().map(|&i| self.eval.locals[i].1.clone()).collect())
     }
 
     /// Fresh slots in the shape of a value.
@@ -471,27 +543,51 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// An expression of the pool as a term over slots.
-    fn term(&self, e: ExprId) -> Term {
-        let boxed = |e: ExprId| Box::new(self.term(e));
+    fn term(&mut self, e: ExprId) -> Term {
         match self.exprs.node(e) {
             Node::Num(bits) => Term::Num(f64::from_bits(bits)),
             Node::Var(v) if v.0 >= LOCAL => Term::Slot(v.0 - LOCAL),
-            Node::Unary(op, a) => Term::Unary(op, boxed(a)),
-            Node::Binary(op, a, b) => Term::Binary(op, boxed(a), boxed(b)),
-            Node::Rel(rel, a, b) | Node::EventRel(rel, a, b) => Term::Rel(rel, boxed(a), boxed(b)),
-            Node::EventFloor(a) => Term::Unary(crate::expr::Unary::Floor, boxed(a)),
-            Node::If(c, a, b) => Term::If(boxed(c), boxed(a), boxed(b)),
+            _ if self.eval.translation.captures.is_some() && !self.uses_slots(e) => self.captured(e),
+            Node::Unary(op, a) => Term::Unary(op, self.boxed(a)),
+            Node::Binary(op, a, b) => Term::Binary(op, self.boxed(a), self.boxed(b)),
+            Node::Rel(rel, a, b) | Node::EventRel(rel, a, b) => Term::Rel(rel, self.boxed(a), self.boxed(b)),
+            Node::EventFloor(a) => Term::Unary(crate::expr::Unary::Floor, self.boxed(a)),
+            Node::If(c, a, b) => Term::If(self.boxed(c), self.boxed(a), self.boxed(b)),
             Node::Homotopy(a, _) => self.term(a),
             Node::Call(ELEMENT, base, args) => {
                 let args = self.exprs.args(args);
-                let len = self.exprs.as_num(args[1]).unwrap_or(0.0) as u32;
-                Term::At { base, len, offset: boxed(args[0]) }
+                let (offset, len) = (args[0], self.exprs.as_num(args[1]).unwrap_or(0.0) as u32);
+                Term::At { base, len, offset: self.boxed(offset) }
             }
             Node::Call(f, output, args) => {
-                Term::Call(f, output, self.exprs.args(args).iter().map(|&a| self.term(a)).collect())
+                let args = self.exprs.args(args).to_vec();
+                Term::Call(f, output, args.into_iter().map(|a| self.term(a)).collect())
             }
             // Nothing else can be named in a function; not a number makes a mistake of ours visible.
             _ => Term::Num(f64::NAN),
         }
+    }
+
+    fn boxed(&mut self, e: ExprId) -> Box<Term> {
+        Box::new(self.term(e))
+    }
+
+    fn uses_slots(&self, e: ExprId) -> bool {
+        let slot = |e: &ExprId| match self.exprs.node(*e) {
+            Node::Var(v) => v.0 >= LOCAL,
+            Node::Call(f, ..) => f == ELEMENT,
+            _ => false,
+        };
+        self.exprs.reachable(&[e], |_| true).iter().any(slot)
+    }
+
+    /// An expression of the model that a loop reads, in the slot it is handed in.
+    fn captured(&mut self, e: ExprId) -> Term {
+        let captures = self.eval.translation.captures.get_or_insert_default();
+        let at = captures.iter().position(|&c| c == e).unwrap_or_else(|| {
+            captures.push(e);
+            captures.len() - 1
+        });
+        Term::Slot(u32::try_from(at).expect("limited sizes"))
     }
 }

@@ -340,6 +340,16 @@ impl<'a> Instance<'a, '_> {
                 }
             }
         }
+        if let Found::Class(class) = &found
+            && matches!(self.library.class(class.class).kind, ClassKind::Function { .. })
+        {
+            let d = Diagnostic::new(Code::Unsupported, "a function as an argument is not supported");
+            self.report(d.at(r.span, "valid Modelica that bramah cannot use yet").help(
+                "name the function in the body instead; `replaceable function f` in a package or model makes it \
+                 exchangeable by `redeclare`",
+            ));
+            return None;
+        }
         self.fail(Code::WrongClassKind, "this is a class, and a value is needed here", r.span)
     }
 
@@ -613,6 +623,13 @@ impl<'a> Instance<'a, '_> {
         self.binding_value(&b, true)?.as_text(&self.exprs)
     }
 
+    fn type_words(&self, ty: Type) -> String {
+        match ty {
+            Type::Enumeration(i) => format!("an enumeration `{}`", short(&self.enumerations[i as usize].name)),
+            other => type_name(other).into(),
+        }
+    }
+
     /// Checks a value against the type of the variable that takes it.
     pub fn coerce(&mut self, value: Val, ty: Type, name: &str, span: Span) -> Option<Val> {
         match &value {
@@ -621,11 +638,11 @@ impl<'a> Instance<'a, '_> {
                 (a, b) if *a == b => Some(value),
                 (Type::Integer, Type::Real) => Some(Val::Scalar(*e, Type::Real)),
                 _ => {
-                    let d = Diagnostic::new(
-                        Code::TypeMismatch,
-                        format!("`{name}` is {} and cannot take {}", type_name(ty), value.describe()),
-                    )
-                    .at(span, "the value");
+                    let (wanted, given) = (self.type_words(ty), self.type_words(*own));
+                    let d =
+                        Diagnostic::new(Code::TypeMismatch, format!("`{name}` is {wanted} and cannot take {given}"))
+                            .at(span, "the value")
+                            .help(conversion(*own, ty));
                     self.report(d.instance(name.to_string()));
                     None
                 }
@@ -640,6 +657,20 @@ impl<'a> Instance<'a, '_> {
                 None
             }
         }
+    }
+}
+
+/// How a value of one type is made one of another.
+fn conversion(from: Type, to: Type) -> &'static str {
+    match (from, to) {
+        (Type::Real, Type::Integer) => {
+            "`integer(x)` is the whole number below `x`, `div(a, b)` divides whole numbers; or declare it as Real"
+        }
+        (Type::Real | Type::Integer, Type::Boolean) => "write a relation, as in `x > 0`, or `true` and `false`",
+        (Type::Boolean, Type::Real | Type::Integer) => "write `if b then 1 else 0`",
+        (Type::Enumeration(_), Type::Real | Type::Integer) => "`Integer(e)` is the number of an enumeration value",
+        (_, Type::Enumeration(_)) => "give one of the literals of its type, as in `Type.literal`",
+        _ => "declare both with the same type",
     }
 }
 
@@ -792,7 +823,7 @@ impl<'a> Instance<'a, '_> {
         self.eval.locals.split_off(at).into_iter().map(|(_, v)| v).collect()
     }
 
-    /// The `assert`s and `terminate`s met outside `when` since the last section began.
+    /// What must hold besides equations, and `terminate`s, met outside `when` since the last call.
     pub fn take_calls(&mut self) -> Vec<super::algorithm::AlgorithmCall> {
         std::mem::take(&mut self.eval.calls)
     }

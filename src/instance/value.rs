@@ -155,7 +155,7 @@ impl Val {
                 let values: Option<Vec<_>> = a.iter().zip(b.iter()).map(|(a, b)| a.zip(b, combine)).collect();
                 Val::Tuple(Rc::new(values?))
             }
-            (Val::Text(a), Val::Text(_)) => Val::Text(a.clone()),
+            (Val::Text(a), Val::Text(b)) if a == b => Val::Text(a.clone()),
             _ => return None,
         })
     }

@@ -296,7 +296,9 @@ fn end<'a>(instance: &mut Instance<'a, '_>, e: &'a Expr, view: View) -> Option<O
         // The general evaluation knows how to say what is wrong.
         instance.eval(e, view);
         if !instance.diagnostics.iter().any(Diagnostic::is_error) {
-            instance.diagnostics.push(Diagnostic::new(Code::BadConnect, "only ports can be connected").at(e.span, ""));
+            instance
+                .diagnostics
+                .push(Diagnostic::new(Code::BadConnect, "only ports can be connected").at(e.span, "this is no port"));
         }
         return None;
     };

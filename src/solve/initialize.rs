@@ -46,7 +46,7 @@ pub fn check_parameters(system: &System, settings: &Settings, values: &[f64]) ->
         Some(assert) => {
             let text = report::message_text(system, &assert.message, values);
             let text = format!("{text} (with the parameters given)");
-            Err(report::at_origin(&system.dae, Code::AssertionFailed, text, assert.origin, "does not hold"))
+            Err(report::at_origin(&system.dae, Code::AssertionFailed, text, assert.origin, "does not hold").advised())
         }
     }
 }

@@ -78,7 +78,7 @@ impl<'a> Driver<'a, '_> {
     pub(super) fn assertion(&mut self, warning: bool, first: bool, origin: crate::flat::Origin, text: &str) -> Flow {
         let code = if warning { Code::AssertionWarning } else { Code::AssertionFailed };
         let text = format!("{text} (at time {} s)", report::number(self.t));
-        let diagnostic = report::at_origin(&self.system.dae, code, text, origin, "does not hold");
+        let diagnostic = report::at_origin(&self.system.dae, code, text, origin, "does not hold").advised();
         if !warning {
             return Err(Stop::new(End::Assertion, diagnostic));
         }
