@@ -73,6 +73,7 @@ codes! {
     DomainMismatch = "E104", Error, "ports of different domains are joined";
     BadConnect = "E105", Error, "this cannot be connected";
     NoInput = "E106", Error, "an input has no value";
+    UnevenPort = "W107", Warning, "a connector has not as many flows as potentials";
     // 2xx balance, types, units
     Balance = "E201", Error, "a component has too few or too many equations";
     GlobalBalance = "E202", Error, "the model has too few or too many equations";

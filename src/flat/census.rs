@@ -44,6 +44,8 @@ pub(super) struct Census {
     pub brought: Vec<usize>,
     /// Inputs of components that a modifier gives a value.
     pub bound: FxHashSet<VarId>,
+    /// Ports without pairs of potential and flow: the connector's instance, and its potentials less its flows.
+    pub uneven: Vec<(u32, i64)>,
     /// Components that cannot be judged alone: their ports have no pairs of potential and flow.
     pub unjudged: Vec<bool>,
 }
@@ -61,6 +63,7 @@ impl Census {
             owed: vec![0; n],
             brought: vec![0; n],
             bound: FxHashSet::default(),
+            uneven: Vec::new(),
             unjudged: vec![false; n],
         };
         census.roles(instance, flat, scopes);
@@ -92,6 +95,7 @@ impl Census {
         }
         for (port, difference) in pairs {
             if difference != 0 {
+                self.uneven.push((port, difference));
                 self.doubt(self.owner[port as usize]);
             }
         }

@@ -41,6 +41,7 @@ pub fn flatten(instance: &mut Instance<'_, '_>, network: &Network) -> Checked<Fl
         let census = Census::take(instance, network, &flat, &scopes);
         flat.doubts = balance::doubts(instance, network, &flat, &census, &scopes);
         diagnostics.extend(ports::open_lines(&flat, &census));
+        diagnostics.extend(ports::uneven(instance, &flat, &census, &scopes));
         diagnostics.extend(ports::joined_outputs(instance, network, &flat, &census, &scopes));
     }
     // Bodies of functions were built in the same pool, with variables of their own.

@@ -39,6 +39,36 @@ pub(super) fn joined_outputs(
     signals.two_sources()
 }
 
+/// Connectors whose variables are no pairs of potential and flow (MLS 9.3.1), each class once.
+pub(super) fn uneven(
+    instance: &Instance<'_, '_>,
+    flat: &FlatModel,
+    census: &Census,
+    scopes: &[ScopeId],
+) -> Vec<Diagnostic> {
+    let mut told: FxHashSet<&str> = FxHashSet::default();
+    let mut found = Vec::new();
+    for &(port, difference) in &census.uneven {
+        let info = &flat.instances[port as usize];
+        if !told.insert(&info.class) {
+            continue;
+        }
+        let class = instance.scope(scopes[port as usize]).template.class;
+        let excess = match difference {
+            d if d > 0 => format!("{d} more potentials than flows"),
+            d => format!("{} more flows than potentials", -d),
+        };
+        found.push(
+            Diagnostic::new(Code::UnevenPort, format!("the connector `{}` has {excess}", info.class))
+                .at(instance.library.class(class).name.span, "declared here")
+                .at(info.span, format!("used for the port `{}`", info.name))
+                .class(info.class.clone())
+                .help("write `flow` before what sums to zero at a node; signals are `input` or `output`"),
+        );
+    }
+    found
+}
+
 /// Hydraulic ports of components that are not connected. In other domains an open port means something: a free shaft, no
 /// heat, no current. An open hydraulic port would spill oil; whoever means a closed one says so by a plug.
 pub(super) fn open_lines(flat: &FlatModel, census: &Census) -> Vec<Diagnostic> {

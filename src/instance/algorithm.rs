@@ -4,7 +4,7 @@ use super::deduce::Body;
 use super::evaluate::{Pick, places};
 use super::value::{Val, size_text};
 use super::{Instance, View};
-use crate::diag::{Code, Span};
+use crate::diag::{Code, Diagnostic, Span};
 use crate::expr::{ExprId, Exprs, Rel};
 use crate::flat::{Type, Variability};
 use crate::syntax::ast::{Expr, ExprKind, Reference, ReferencePart, Statement, StatementKind};
@@ -365,6 +365,12 @@ impl<'a> Instance<'a, '_> {
                 "assert" => {
                     let a = self.assertion(call, view)?;
                     return self.keep_call(Some(a.condition), a.message, a.warning, call.span);
+                }
+                "reinit" => {
+                    let d = Diagnostic::new(Code::BadCall, "`reinit` cannot stand in an algorithm");
+                    let d = d.at(call.span, "an equation is needed here");
+                    self.report(d.help("write it below `equation`: `when condition then reinit(x, value); end when;`"));
+                    return None;
                 }
                 "terminate" => {
                     let message = args.first().and_then(|m| self.eval(m, view));

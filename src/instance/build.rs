@@ -64,6 +64,7 @@ pub fn instantiate<'a, 'l>(library: &'l mut Library<'a>, request: &ModelRequest)
         procedures: FxHashMap::default(),
         outer_checked: FxHashMap::default(),
         variabilities: Vec::new(),
+        functions: Vec::new(),
         tables: FxHashMap::default(),
         eval: evaluate::State::default(),
     };

@@ -589,7 +589,9 @@ impl<'a> Instance<'a, '_> {
         let mut d =
             Diagnostic::new(Code::UnknownFunction, format!("there is no function `{}`", super::errors::short(&name)))
                 .at(function.span, "not found");
-        if let Some(near) = super::errors::nearest(&name, KNOWN) {
+        if name == "pow" {
+            d = d.help("write `x^y`");
+        } else if let Some(near) = super::errors::nearest(&name, KNOWN) {
             d = d.help(format!("did you mean `{near}`?"));
         }
         self.report(d);

@@ -46,6 +46,9 @@ impl<'a> Instance<'a, '_> {
         view: View,
         span: Span,
     ) -> Option<Val> {
+        if let Some((class, bound)) = self.functional_input(function) {
+            return self.call_bound(class, args, named, &bound, view, span);
+        }
         if let Some(v) = self.builtin_call(function, args, named, view, span) {
             return v;
         }
@@ -55,18 +58,31 @@ impl<'a> Instance<'a, '_> {
             span: function.span,
         };
         match self.lookup_path(view, &path) {
-            Ok(Found::Class(class)) => match self.external_builtin(&class) {
-                Some(name) => self.named_mathematics(&name, args, named, view, span),
-                None => self.call_class(class, args, named, view, span),
-            },
+            Ok(Found::Class(class)) => self.call_bound(class, args, named, &[], view, span),
             Ok(Found::Builtin(Builtin::Enumeration(i))) => self.enumeration_of(i, args, view, span),
             _ => match self.instance_function(function, view) {
-                Some(class) => self.call_class(class, args, named, view, span),
+                Some(class) => self.call_class(class, args, named, &[], view, span),
                 None => {
                     self.unknown_function(function);
                     None
                 }
             },
+        }
+    }
+
+    /// Calls a function some of whose inputs were given before.
+    fn call_bound(
+        &mut self,
+        class: ClassRef<'a>,
+        args: &'a [Expr],
+        named: &'a [(Ident, Expr)],
+        bound: &[(Ident, Val)],
+        view: View,
+        span: Span,
+    ) -> Option<Val> {
+        match self.external_builtin(&class) {
+            Some(name) => self.named_mathematics(&name, args, named, view, span),
+            None => self.call_class(class, args, named, bound, view, span),
         }
     }
 
@@ -100,6 +116,7 @@ impl<'a> Instance<'a, '_> {
         class: ClassRef<'a>,
         args: &'a [Expr],
         named: &'a [(Ident, Expr)],
+        bound: &[(Ident, Val)],
         view: View,
         span: Span,
     ) -> Option<Val> {
@@ -113,6 +130,7 @@ impl<'a> Instance<'a, '_> {
         for (name, e) in named {
             by_name.push((*name, self.argument(e, text, view)?));
         }
+        by_name.extend_from_slice(bound);
         let positional = positional?;
         let scope = self.package(&class);
         let name = self.library.full_name(class.class);
@@ -241,6 +259,7 @@ impl<'a> Instance<'a, '_> {
                 positional.next().or_else(|| named.iter().find(|(n, _)| n.name == f.name).map(|(_, v)| v.clone()));
             let given_here = given.is_some();
             let value = match given {
+                Some(v @ Val::Function(..)) if self.is_functional(f) => v,
                 Some(v) => self.fit_argument(callee, f, v, span)?,
                 None => match self.default_value(f)? {
                     Some(v) => v,
@@ -289,6 +308,15 @@ impl<'a> Instance<'a, '_> {
             Found::Builtin(b) => Some(b),
             Found::Class(c) => {
                 let t = self.template(c.class, c.parent);
+                if matches!(t.kind, ClassKind::Function { .. }) {
+                    let message = format!(
+                        "input `{}` of `{}` is a function, and this is {}",
+                        f.name,
+                        callee.name,
+                        value.describe()
+                    );
+                    return self.fail(Code::BadCall, &message, span);
+                }
                 if t.dims.is_empty() { t.builtin } else { None }
             }
             Found::Component(..) => None,

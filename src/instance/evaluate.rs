@@ -131,10 +131,7 @@ impl<'a> Instance<'a, '_> {
                 Some(&n) => Some(self.integer(n as f64)),
                 None => self.fail(Code::BadIndex, "`end` is only known inside brackets `[...]`", e.span),
             },
-            ExprKind::PartialApplication { .. } => {
-                self.unsupported(e.span, "a function as an argument");
-                None
-            }
+            ExprKind::PartialApplication { function, named } => self.partial_application(function, named, view),
             ExprKind::Error => None,
         }
     }

@@ -13,6 +13,7 @@ pub mod deduce;
 mod errors;
 pub mod evaluate;
 mod files;
+mod functional;
 pub mod lookup;
 pub mod modifiers;
 mod procedure;
@@ -217,6 +218,8 @@ pub struct Instance<'a, 'l> {
     /// Functions that were seen to keep to what functions may do.
     functions_checked: FxHashSet<ClassId>,
     procedures: FxHashMap<String, (crate::expr::FunctionId, Vec<Val>)>,
+    /// Functions that were given as arguments.
+    functions: Vec<ClassRef<'a>>,
     /// Tables read from files, by file and name.
     tables: FxHashMap<(FileId, String), Rc<Matrix>>,
     variabilities: Vec<Variability>,

@@ -82,11 +82,14 @@ impl<'a> Instance<'a, '_> {
         let mut key = format!("{}@{}", callee.name, callee.scope.0);
         for v in values {
             if self.specialised(v) {
-                key.push_str(&format!("={:?}", v.as_number(&self.exprs)));
+                key.push_str(&format!("={:?}{:?}", v.as_number(&self.exprs), v.as_text(&self.exprs)));
             } else {
                 let mut scalars = Vec::new();
                 v.scalars(&mut scalars);
                 key.push_str(&format!(",{:?}{}", v.dims(), scalars.len()));
+                if let Val::Function(f, _) = v {
+                    key.push_str(&format!("f{f}"));
+                }
             }
         }
         key

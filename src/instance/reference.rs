@@ -341,14 +341,9 @@ impl<'a> Instance<'a, '_> {
             }
         }
         if let Found::Class(class) = &found
-            && matches!(self.library.class(class.class).kind, ClassKind::Function { .. })
+            && let Some(function) = self.function_value(class, Vec::new())
         {
-            let d = Diagnostic::new(Code::Unsupported, "a function as an argument is not supported");
-            self.report(d.at(r.span, "valid Modelica that bramah cannot use yet").help(
-                "name the function in the body instead; `replaceable function f` in a package or model makes it \
-                 exchangeable by `redeclare`",
-            ));
-            return None;
+            return Some(function);
         }
         self.fail(Code::WrongClassKind, "this is a class, and a value is needed here", r.span)
     }
@@ -650,7 +645,7 @@ impl<'a> Instance<'a, '_> {
             _ => {
                 let d = Diagnostic::new(
                     Code::SizeMismatch,
-                    format!("`{name}` is a single {} and cannot take {}", type_name(ty), value.describe()),
+                    format!("`{name}` is a single value, {}, and cannot take {}", type_name(ty), value.describe()),
                 )
                 .at(span, "the value");
                 self.report(d.instance(name.to_string()));

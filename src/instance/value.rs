@@ -2,6 +2,7 @@
 
 use crate::expr::{ExprId, Exprs};
 use crate::flat::{MessagePart, Type};
+use crate::syntax::ast::Ident;
 use crate::syntax::symbol::Symbol;
 use std::rc::Rc;
 
@@ -23,6 +24,8 @@ pub enum Val {
     Record(Rc<Vec<(Symbol, Val)>>),
     /// Several outputs of a function.
     Tuple(Rc<Vec<Val>>),
+    /// A function given as an argument: its number in the instance, and inputs that it was given already.
+    Function(u32, Rc<Vec<(Ident, Val)>>),
 }
 
 impl Val {
@@ -105,6 +108,7 @@ impl Val {
             Val::Array { dims, .. } => format!("an array of size {}", size_text(dims)),
             Val::Record(_) => "a record".into(),
             Val::Tuple(_) => "several values".into(),
+            Val::Function(..) => "a function".into(),
         }
     }
 
@@ -115,6 +119,7 @@ impl Val {
             Val::Array { elements, .. } => elements.iter().for_each(|v| v.scalars(out)),
             Val::Record(fields) => fields.iter().for_each(|(_, v)| v.scalars(out)),
             Val::Tuple(values) => values.iter().for_each(|v| v.scalars(out)),
+            Val::Function(_, bound) => bound.iter().for_each(|(_, v)| v.scalars(out)),
             Val::Text(_) => {}
         }
     }
@@ -128,6 +133,9 @@ impl Val {
             }
             Val::Record(fields) => Val::Record(Rc::new(fields.iter().map(|(n, v)| (*n, v.map(change))).collect())),
             Val::Tuple(values) => Val::Tuple(Rc::new(values.iter().map(|v| v.map(change)).collect())),
+            Val::Function(f, bound) => {
+                Val::Function(*f, Rc::new(bound.iter().map(|(n, v)| (*n, v.map(change))).collect()))
+            }
             Val::Text(t) => Val::Text(t.clone()),
         }
     }
@@ -154,6 +162,11 @@ impl Val {
             (Val::Tuple(a), Val::Tuple(b)) if a.len() == b.len() => {
                 let values: Option<Vec<_>> = a.iter().zip(b.iter()).map(|(a, b)| a.zip(b, combine)).collect();
                 Val::Tuple(Rc::new(values?))
+            }
+            (Val::Function(f, a), Val::Function(g, b)) if f == g && a.len() == b.len() => {
+                let both: Option<Vec<_>> =
+                    a.iter().zip(b.iter()).map(|((n, a), (_, b))| Some((*n, a.zip(b, combine)?))).collect();
+                Val::Function(*f, Rc::new(both?))
             }
             (Val::Text(a), Val::Text(b)) if a == b => Val::Text(a.clone()),
             _ => return None,

@@ -349,7 +349,8 @@ impl<'a> Driver<'a, '_> {
         self.clocks = Clocks::new(system, &model.values, self.t).map_err(|i| {
             let sample = &system.dae.samples[i];
             let text = "the interval of `sample` is not positive";
-            Stop::new(End::StepTooSmall, report::at_origin(&system.dae, Code::EventFailed, text, sample.origin, "here"))
+            let told = report::at_origin(&system.dae, Code::EventFailed, text, sample.origin, "here");
+            Stop::new(End::StepTooSmall, told.help("give the parameters of the interval positive values, in seconds"))
         })?;
         if resumed {
             self.clocks.skip(self.t);

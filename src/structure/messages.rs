@@ -119,8 +119,11 @@ pub(super) fn initially_contradicting(draft: &Draft, extra: &Equation, group: &[
     let others: Vec<Equation> = conditions.iter().filter(|e| *e != extra).copied().collect();
     let made = with_equations(draft, made.at(extra.origin.span, "this one is too much"), &others);
     let (have, want) = (counted(conditions.len(), "condition"), conditions.len().max(1) - 1);
-    made.note(format!("there are {have} where {want} can hold"))
-        .help("remove one of these conditions, for instance by `fixed = false`")
+    let told = match want {
+        0 => format!("there is {have} where none can hold"),
+        _ => format!("there are {have} where {want} can hold"),
+    };
+    made.note(told).help("remove one of these conditions, for instance by `fixed = false`")
 }
 
 fn is_condition(draft: &Draft, equation: &Equation) -> bool {

@@ -1,5 +1,5 @@
 //! model P.M
-//! E017 at 15: "a function as an argument"
+//! E021 at 15: "input `f` of `P.twice` is a function, and this is a Real"
 package P
   partial function I
     input Real x;
@@ -12,11 +12,6 @@ package P
   algorithm
   end twice;
   model M
-    Real y = twice(half, time);
-    function half
-      input Real x;
-      output Real y = x/2;
-    algorithm
-    end half;
+    Real y = twice(time, time);
   end M;
 end P;
