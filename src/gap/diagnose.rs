@@ -332,7 +332,7 @@ impl Search {
         // a parameter that is let go always returns from its bound, and acts at all times; a second effect at the place of
         // another may mend that one's form only
         let site = |a: &Accepted| &problem.hypotheses[a.chosen.hypothesis].attachments[0].site;
-        let again = self.accepted.iter().any(|a| site(a) == &h.attachments[0].site);
+        let again = self.accepted.iter().any(|a| site(a).is_at(&h.attachments[0].site));
         let always = h.family == "parameter" || again;
         let seldom = !always && (returned > 0.5 * gain || rare(&best.fit, &self.last, gain));
         let t = vuong(&best.fit.blocks, &self.last.blocks);
@@ -356,7 +356,8 @@ impl Search {
         let h = &problem.hypotheses[best.accepted.chosen.hypothesis];
         let kin = |a: &Accepted| {
             let other = &problem.hypotheses[a.chosen.hypothesis];
-            h.family != "parameter" && (other.family == h.family || other.attachments[0].site == h.attachments[0].site)
+            let here = || other.attachments[0].site.is_at(&h.attachments[0].site);
+            h.family != "parameter" && (other.family == h.family || here())
         };
         let gains = self.accepted.iter().zip(&self.found).filter(|(a, _)| kin(a)).map(|(_, f)| f.gain);
         !h.shapes.iter().any(|s| s.order) && gains.fold(0.0, f64::max) * FORM > self.gain(&best.fit)

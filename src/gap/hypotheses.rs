@@ -99,6 +99,16 @@ pub enum Site {
     Parameter(String),
 }
 
+impl Site {
+    /// Whether two effects act at one place; which way they point does not count.
+    pub fn is_at(&self, other: &Site) -> bool {
+        match (self, other) {
+            (Site::Across(a, b), Site::Across(c, d)) => (a, b) == (c, d) || (a, b) == (d, c),
+            _ => self == other,
+        }
+    }
+}
+
 /// One effect at one place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Attachment {

@@ -302,7 +302,7 @@ pub(super) fn siblings(
     let gain = chosen.iter().find(|c| c.chosen.hypothesis == index).map_or(f64::INFINITY, |c| c.gain);
     let alike = |c: &&Candidate| {
         let other = h(&c.chosen);
-        let here = other.attachments[0].site == own.attachments[0].site;
+        let here = other.attachments[0].site.is_at(&own.attachments[0].site);
         c.gain > PROMISING && other.family == own.family && (here || c.gain > gain - LEVEL)
     };
     rest.iter().filter(|c| !own.is_shape() && alike(c)).take(SIBLINGS).cloned().collect()
