@@ -183,6 +183,12 @@ impl Exprs {
         }
     }
 
+    /// The second wherever the first holds.
+    pub fn implies(&mut self, a: ExprId, b: ExprId) -> ExprId {
+        let not = self.not(a);
+        self.or(not, b)
+    }
+
     /// Any function of two arguments, simplified.
     pub fn binary(&mut self, op: Binary, a: ExprId, b: ExprId) -> ExprId {
         match op {

@@ -1,11 +1,11 @@
 //! The balance of every component by itself: as many equations as it owes. Ports are checked before.
 
 use super::census::{Census, Role};
-use super::{Equation, FlatModel, OriginKind, ports};
+use super::ports::Signals;
+use super::{Equation, FlatModel, OriginKind};
 use crate::diag::{Code, Diagnostic};
 use crate::expr::VarId;
 use crate::instance::{Instance, ScopeId};
-use crate::network::Network;
 use rustc_hash::FxHashSet;
 
 /// So many places are shown.
@@ -14,12 +14,12 @@ const MOST_PLACES: usize = 6;
 /// What seems wrong, at the first level that shows anything: signals, then each component, then the whole.
 pub(super) fn doubts(
     instance: &Instance<'_, '_>,
-    network: &Network,
+    signals: &Signals<'_>,
     flat: &FlatModel,
     census: &Census,
     scopes: &[ScopeId],
 ) -> Vec<Diagnostic> {
-    let found = ports::signals(instance, network, flat, census, scopes);
+    let found = signals.doubts();
     if !found.is_empty() {
         return found;
     }

@@ -56,8 +56,7 @@ fn check_own_values(instance: &mut Instance<'_, '_>, flat: &FlatModel) {
     for action in flat.whens.iter().flat_map(|w| &w.branches).flat_map(|b| &b.actions) {
         let WhenAction::Assign { variable, value, origin } = action else { continue };
         let v = &flat.variables[variable.index()];
-        let own = |e: &ExprId| instance.exprs.node(*e) == Node::Var(*variable);
-        if v.ty == Type::Real || !instance.exprs.reachable(&[*value], |_| true).iter().any(own) {
+        if v.ty == Type::Real || !instance.exprs.dependencies(&[*value]).vars.contains(variable) {
             continue;
         }
         let name = &v.name;

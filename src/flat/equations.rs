@@ -410,7 +410,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
             }
             "assert" => {
                 if let Some(mut a) = self.assertion(call, view, span) {
-                    a.condition = self.unless(guard, a.condition);
+                    a.condition = self.instance.exprs.implies(guard, a.condition);
                     out.push(WhenAction::Assert(a));
                 }
             }
@@ -424,13 +424,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
 
     fn at_start_only(&mut self, condition: ExprId) -> ExprId {
         let start = self.instance.exprs.intern(Node::Initial);
-        self.unless(start, condition)
-    }
-
-    fn unless(&mut self, guard: ExprId, condition: ExprId) -> ExprId {
-        let pool = &mut self.instance.exprs;
-        let not = pool.not(guard);
-        pool.or(not, condition)
+        self.instance.exprs.implies(start, condition)
     }
 
     fn bad_call(&mut self, span: Span, message: &str) {
@@ -443,7 +437,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
             "assert" => {
                 if let Some(mut a) = self.assertion(call, view, span) {
                     for guard in self.guards.clone().into_iter().rev() {
-                        a.condition = self.unless(guard, a.condition);
+                        a.condition = self.instance.exprs.implies(guard, a.condition);
                     }
                     if a.condition != Exprs::ONE {
                         self.flat.asserts.push(a);
@@ -521,7 +515,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
             self.bad_call(call.span, "`terminate` can only stand inside a `when`");
             return;
         };
-        let mut condition = self.unless(call.guard, condition);
+        let mut condition = self.instance.exprs.implies(call.guard, condition);
         if initial {
             condition = self.at_start_only(condition);
         }
@@ -537,7 +531,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
         let message = message(call.message);
         match call.condition {
             Some(condition) => {
-                let condition = self.unless(call.guard, condition);
+                let condition = self.instance.exprs.implies(call.guard, condition);
                 out.push(WhenAction::Assert(Assert { condition, message, warning: call.warning, origin }));
             }
             None => out.push(WhenAction::Terminate { message, guard: call.guard, origin }),
@@ -628,8 +622,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
 pub(super) fn watch(instance: &mut Instance<'_, '_>, flat: &mut FlatModel, calls: Vec<AlgorithmCall>, holder: u32) {
     for call in calls {
         let Some(condition) = call.condition else { continue };
-        let not = instance.exprs.not(call.guard);
-        let condition = instance.exprs.or(not, condition);
+        let condition = instance.exprs.implies(call.guard, condition);
         let origin = Origin { span: call.span, instance: holder, kind: OriginKind::Declared };
         let known = |a: &Assert| a.condition == condition && a.origin.span == call.span;
         if condition != Exprs::ONE && !flat.asserts.iter().rev().take(8).any(known) {

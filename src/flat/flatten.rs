@@ -39,10 +39,12 @@ pub fn flatten(instance: &mut Instance<'_, '_>, network: &Network) -> Checked<Fl
     let mut diagnostics = std::mem::take(&mut instance.diagnostics);
     if !diagnostics.iter().any(Diagnostic::is_error) {
         let census = Census::take(instance, network, &flat, &scopes);
-        flat.doubts = balance::doubts(instance, network, &flat, &census, &scopes);
+        let signals = ports::Signals::new(instance, network, &flat, &census, &scopes);
+        let doubts = balance::doubts(instance, &signals, &flat, &census, &scopes);
         diagnostics.extend(ports::open_lines(&flat, &census));
         diagnostics.extend(ports::uneven(instance, &flat, &census, &scopes));
-        diagnostics.extend(ports::joined_outputs(instance, network, &flat, &census, &scopes));
+        diagnostics.extend(signals.joined_outputs());
+        flat.doubts = doubts;
     }
     // Bodies of functions were built in the same pool, with variables of their own.
     if !flat.exprs.functions.is_empty() {

@@ -11,34 +11,6 @@ use crate::units::Unit;
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeMap;
 
-/// Signals that cannot work: inputs without a value, or with two.
-pub(super) fn signals(
-    instance: &Instance<'_, '_>,
-    network: &Network,
-    flat: &FlatModel,
-    census: &Census,
-    scopes: &[ScopeId],
-) -> Vec<Diagnostic> {
-    let signals = Signals::new(instance, network, flat, census, scopes);
-    let mut found = signals.two_sources();
-    found.extend(signals.without_source());
-    found
-}
-
-/// Outputs of blocks that `connect` joins, which is wrong whatever the equations say (MLS 9.3).
-pub(super) fn joined_outputs(
-    instance: &Instance<'_, '_>,
-    network: &Network,
-    flat: &FlatModel,
-    census: &Census,
-    scopes: &[ScopeId],
-) -> Vec<Diagnostic> {
-    let mut signals = Signals::new(instance, network, flat, census, scopes);
-    let causal = |v: &VarId| matches!(census.role[v.index()], Role::Input | Role::Own);
-    signals.groups.retain(|_, members| members.iter().all(|(v, _)| causal(v)));
-    signals.two_sources()
-}
-
 /// Connectors whose variables are no pairs of potential and flow (MLS 9.3.1), each class once.
 pub(super) fn uneven(
     instance: &Instance<'_, '_>,
@@ -108,7 +80,7 @@ fn open_port(flat: &FlatModel, flow: VarId, component: u32) -> Diagnostic {
 }
 
 /// The signals joined at each level.
-struct Signals<'s> {
+pub(super) struct Signals<'s> {
     flat: &'s FlatModel,
     census: &'s Census,
     /// Members of each group with the `connect` that brought them; the key is the level and the first variable.
@@ -120,7 +92,7 @@ struct Signals<'s> {
 }
 
 impl<'s> Signals<'s> {
-    fn new(
+    pub(super) fn new(
         instance: &Instance<'_, '_>,
         network: &Network,
         flat: &'s FlatModel,
@@ -153,6 +125,19 @@ impl<'s> Signals<'s> {
         Signals { flat, census, groups, outer, mentioned: mentioned(flat, census) }
     }
 
+    /// Signals that cannot work: inputs without a value, or with two.
+    pub(super) fn doubts(&self) -> Vec<Diagnostic> {
+        let mut found = self.two_sources(|_| true);
+        found.extend(self.without_source());
+        found
+    }
+
+    /// Outputs of blocks that `connect` joins, which is wrong whatever the equations say (MLS 9.3).
+    pub(super) fn joined_outputs(&self) -> Vec<Diagnostic> {
+        let causal = |v: VarId| matches!(self.census.role[v.index()], Role::Input | Role::Own);
+        self.two_sources(|members| members.iter().all(|(v, _)| causal(*v)))
+    }
+
     fn name(&self, v: VarId) -> &str {
         &self.flat.variables[v.index()].name
     }
@@ -168,9 +153,10 @@ impl<'s> Signals<'s> {
         }
     }
 
-    fn two_sources(&self) -> Vec<Diagnostic> {
+    /// Groups of those wanted that have two sources.
+    fn two_sources(&self, wanted: impl Fn(&[(VarId, Span)]) -> bool) -> Vec<Diagnostic> {
         let mut found = Vec::new();
-        for (&(level, _), members) in &self.groups {
+        for (&(level, _), members) in self.groups.iter().filter(|(_, members)| wanted(members)) {
             let sources: Vec<_> = members.iter().filter(|(v, _)| self.is_source(level, *v)).collect();
             let [(a, at_a), .., (b, at_b)] = sources.as_slice() else { continue };
             let fed = members.iter().find(|(v, _)| !self.is_source(level, *v));

@@ -514,7 +514,8 @@ fn won_and_lost(with: &Fit, without: &Fit) -> (f64, f64) {
 
 /// Among the candidates that are practically as good as the first, the one with the fewest parameters and states, at the
 /// fewest places, that leaves the machine nearest to its data sheet. An effect that cuts a connection is named only where
-/// the data tell it from all others that leave the network as it is: slip of a pump's shaft is a leak across the pump, but for the inertia in between.
+/// the data tell it from all others that leave the network as it is: slip of a pump's shaft is a leak across the pump, but
+/// for the inertia in between.
 fn simplest(problem: &Problem<'_>, refined: &[Refined], before: f64) -> usize {
     let h = |r: &Refined| &problem.hypotheses[r.accepted.chosen.hypothesis];
     let size = |r: &Refined| {
@@ -522,13 +523,14 @@ fn simplest(problem: &Problem<'_>, refined: &[Refined], before: f64) -> usize {
         (h(r).changes_order, h(r).coefficients.len() + h(r).shapes.len() + states, h(r).attachments.len())
     };
     let front = &refined[0];
+    let behind = |r: &Refined| front.fit.evidence - r.fit.evidence;
     let as_good = |r: &Refined| {
-        let behind = front.fit.evidence - r.fit.evidence;
+        let behind = behind(r);
         let scatter = SCATTER * (front.fit.evidence - before);
         let whole = h(front).changes_order && !h(r).changes_order && h(r).family != h(front).family;
         whole && (behind < scatter || near(r, front)) || behind < AS_GOOD && !certainly_worse(&r.fit, &front.fit)
     };
-    let sheet = |r: &Refined| front.fit.evidence - r.fit.evidence + r.fit.prior_cost(problem.tolerances.len());
+    let sheet = |r: &Refined| behind(r) + r.fit.prior_cost(problem.tolerances.len());
     let simpler = |a: &usize, b: &usize| {
         let (a, b) = (&refined[*a], &refined[*b]);
         size(a).cmp(&size(b)).then(sheet(a).total_cmp(&sheet(b)))

@@ -35,7 +35,16 @@ pub struct Gap {
     pub error: f64,
 }
 
+/// A gap of so many times the sensors' noise is one, located or not.
+const PLAIN: f64 = 4.0;
+
 impl Gap {
+    /// Whether it is so much more than noise that something is missing, be it a better value of a parameter.
+    pub fn is_plain(&self, noise: &[f64], full_scale: &[f64]) -> bool {
+        let parts: Vec<f64> = noise.iter().zip(full_scale).map(|(n, f)| n / f).collect();
+        self.total > PLAIN * rms(&parts)
+    }
+
     /// RMS over the signals of what this gap is more than another: what nothing closes (disturbances that make a signal
     /// drift) does not count.
     pub fn beyond(&self, other: &Gap) -> f64 {
@@ -157,12 +166,6 @@ pub fn gap(runs: &[Option<Residuals>], recordings: &[Recording], noise: &[f64], 
 /// The gap of a model on these recordings.
 pub fn gap_of(problem: &Problem<'_>, setting: &Setting, recordings: &[Recording], noise: &[f64]) -> Gap {
     gap(&simulate_all(setting, recordings), recordings, noise, &problem.full_scale)
-}
-
-/// Noise in parts of the full scales, RMS over the signals.
-pub fn relative(noise: &[f64], full_scale: &[f64]) -> f64 {
-    let parts: Vec<f64> = noise.iter().zip(full_scale).map(|(n, f)| n / f).collect();
-    rms(&parts)
 }
 
 /// Standard error of the total from the spread of the mean squares of blocks.

@@ -20,6 +20,10 @@ pub(super) struct Given {
 impl<'a> Instance<'a, '_> {
     /// Calls a function, element by element where arguments have more dimensions than their inputs.
     pub(super) fn call_elementwise(&mut self, callee: &Callee<'a>, given: Given, span: Span) -> Option<Val> {
+        let mut values = given.positional.iter().chain(given.named.iter().map(|(_, v)| v));
+        if values.all(|v| v.dims().is_empty()) {
+            return self.call_function(callee, given.positional, given.named, span);
+        }
         let inputs = self.formals(callee, is_input);
         let Some(dims) = self.shared_dims(callee, &inputs, &given, span)? else {
             return self.call_function(callee, given.positional, given.named, span);
@@ -28,15 +32,15 @@ impl<'a> Instance<'a, '_> {
         if count == 0 {
             return Some(Val::array(dims, Vec::new()));
         }
+        let mut extra = |f: Option<&Formal<'a>>, v: &Val| f.map_or(0, |f| self.extra_dims(f, v));
+        let by_place: Vec<usize> = given.positional.iter().enumerate().map(|(k, v)| extra(inputs.get(k), v)).collect();
+        let by_name: Vec<usize> =
+            given.named.iter().map(|(n, v)| extra(inputs.iter().find(|f| f.name == n.name), v)).collect();
         let mut results = Vec::with_capacity(count);
         for i in 0..count {
-            let one = |f: Option<&Formal<'a>>, v: &Val, s: &mut Self| match f.map(|f| s.extra_dims(f, v)) {
-                Some(extra) if extra > 0 => block(v, extra, i),
-                _ => v.clone(),
-            };
-            let positional = given.positional.iter().enumerate().map(|(k, v)| one(inputs.get(k), v, self)).collect();
-            let by_name = |n: &Ident| inputs.iter().find(|f| f.name == n.name);
-            let named = given.named.iter().map(|(n, v)| (*n, one(by_name(n), v, self))).collect();
+            let one = |v: &Val, extra: usize| if extra > 0 { block(v, extra, i) } else { v.clone() };
+            let positional = given.positional.iter().zip(&by_place).map(|(v, &n)| one(v, n)).collect();
+            let named = given.named.iter().zip(&by_name).map(|((name, v), &n)| (*name, one(v, n))).collect();
             results.push(self.call_function(callee, positional, named, span)?);
         }
         self.gathered(dims, results, span)

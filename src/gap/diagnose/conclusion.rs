@@ -13,8 +13,6 @@ use super::refine::fitted;
 use super::{Search, Shaped, driven};
 use std::collections::BTreeMap;
 
-/// A gap of so many times the sensors' noise is one, located or not.
-const PLAIN: f64 = 4.0;
 /// Evidence for any place from which something is left, nats.
 const NOTICED: f64 = 30.0;
 /// Share of independent samples from which the filter's innovations are white.
@@ -50,8 +48,9 @@ impl Conclusion<'_> {
         // what several times the noise leaves open is something, even where no place stands out; disturbances that the
         // filter follows as it should leave as much
         let followed = s.base.share > WHITE && s.left.iter().all(|l| l.evidence < NOTICED);
-        let noise = held::relative(&s.last.setting.noise, &problem.full_scale);
-        let plain = share.is_some_and(|share| share > 0.1) && e.total > PLAIN * noise && !followed;
+        let plain = share.is_some_and(|share| share > 0.1)
+            && e.is_plain(&s.last.setting.noise, &problem.full_scale)
+            && !followed;
         let outside = s.accepted.is_empty() && (place.is_some() || plain || s.shape.is_some());
         let verdict = match () {
             () if !s.gross.is_empty() => "recording_error",
@@ -174,9 +173,10 @@ impl Conclusion<'_> {
     fn effects(&self, held: &[Recording], tolerated: f64) -> Vec<v::Effect> {
         let s = self.search;
         let full = self.gap(&s.last.setting, held).total;
+        let mut gaps = BTreeMap::new();
         (0..s.accepted.len())
             .map(|i| {
-                let (alone, last) = self.closing(i, held, tolerated, full);
+                let (alone, last) = self.closing(i, held, tolerated, full, &mut gaps);
                 let h = self.hypothesis(&s.accepted[i].chosen);
                 let found = &s.found[i];
                 v::Effect {
@@ -207,8 +207,16 @@ impl Conclusion<'_> {
         v::Alternative { effect: h.effect.clone(), family: h.family.clone(), places: spots(h), behind }
     }
 
-    /// What an effect closes alone, and what opens again without it, of the gap within tolerances.
-    fn closing(&self, i: usize, held: &[Recording], tolerated: f64, full: f64) -> (v::Maybe, v::Maybe) {
+    /// What an effect closes alone, and what opens again without it, of the gap within tolerances. `gaps` keeps those of sets
+    /// of effects: of two, each alone is the other one left out.
+    fn closing(
+        &self,
+        i: usize,
+        held: &[Recording],
+        tolerated: f64,
+        full: f64,
+        gaps: &mut BTreeMap<Vec<usize>, Option<f64>>,
+    ) -> (v::Maybe, v::Maybe) {
         let s = self.search;
         if tolerated <= 0.0 {
             return (None, None);
@@ -217,13 +225,15 @@ impl Conclusion<'_> {
             let closes = Some(1.0 - full / tolerated);
             return (closes, closes);
         }
-        let without: Vec<Accepted> = (0..s.accepted.len()).filter(|k| *k != i).map(|k| s.accepted[k].clone()).collect();
-        let gap = |set: &[Accepted]| {
-            let (fit, _) = fitted(self.problem, &s.base, set)?;
+        let found = |set: &[usize]| {
+            let accepted: Vec<Accepted> = set.iter().map(|&k| s.accepted[k].clone()).collect();
+            let (fit, _) = fitted(self.problem, &s.base, &accepted)?;
             Some(self.gap(&driven::simulating(self.problem, fit).setting, held).total)
         };
-        let alone = gap(&s.accepted[i..=i]).map(|g| 1.0 - g / tolerated);
-        (alone, gap(&without).map(|g| (g - full) / tolerated))
+        let mut gap = |set: Vec<usize>| *gaps.entry(set.clone()).or_insert_with(|| found(&set));
+        let alone = gap(vec![i]).map(|g| 1.0 - g / tolerated);
+        let without = gap((0..s.accepted.len()).filter(|k| *k != i).collect());
+        (alone, without.map(|g| (g - full) / tolerated))
     }
 
     fn estimates(&self, i: usize, h: &Hypothesis) -> BTreeMap<String, v::Estimate> {

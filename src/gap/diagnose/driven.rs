@@ -14,8 +14,7 @@ const ORDER: usize = 12;
 /// Turns of parameters and noise.
 const TURNS: usize = 3;
 
-/// A gap of so many times the sensors' noise is looked at again; and the part of it by which other parameters must be better.
-const PLAIN: f64 = 4.0;
+/// Part of a plain gap by which other parameters must be better to be taken.
 const BETTER: f64 = 0.1;
 
 /// A model fitted by what it says from the inputs alone; its sources must be silent. All its errors count as noise, as much
@@ -40,7 +39,7 @@ pub(super) fn fitted(problem: &Problem<'_>, mut setting: Setting, priors: &[Prio
 pub(super) fn simulating(problem: &Problem<'_>, fit: Fit) -> Fit {
     let gap = |setting: &Setting| held::gap_of(problem, setting, &problem.train, &fit.setting.noise);
     let before = gap(&fit.setting);
-    if before.total < PLAIN * held::relative(&fit.setting.noise, &problem.full_scale) {
+    if !before.is_plain(&fit.setting.noise, &problem.full_scale) {
         return fit;
     }
     let mut setting = fit.setting.clone();
