@@ -247,6 +247,7 @@ fn picture(
             held: t.signals[i].kind.is_discrete(),
             colour: usize::from(second),
             dashed: second,
+            crosses: false,
         };
         let (x, low, high) = tube(reference, a, s.tolerance, s.time_tolerance);
         let unit = if s.unit.is_empty() { String::new() } else { format!(" in {}", s.unit) };

@@ -100,6 +100,13 @@ fn linear_model(args: &LinearizeArgs, model: &Model, messages: &Messages) -> Res
         plot::write(figure, &[("model".to_owned(), linear.class.clone())], path, messages)
     };
     if let Some(path) = &args.bode {
+        if linear.inputs.is_empty() {
+            let d = Diagnostic::new(
+                Code::BadArgument,
+                format!("`{}` has no input whose responses --bode could draw", linear.class),
+            );
+            return Err(d.help("name one: `--inputs NAME`, a top-level input or a parameter").into());
+        }
         picture(&linear::bode(&linear, &poles), path)?;
     }
     if let Some(path) = &args.poles {

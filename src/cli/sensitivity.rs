@@ -169,10 +169,14 @@ fn picture(found: &Sensitivity, class: &str) -> Figure {
         let unit = if signal.unit.is_empty() { String::new() } else { format!(" in {}", signal.unit) };
         Panel {
             x_label: "time in s".to_owned(),
-            y_label: format!("{} per relative change{unit}", signal.name),
+            y_label: format!("{}{unit}", signal.name),
             series: curves.collect(),
             ..Panel::default()
         }
     });
-    Figure { title: format!("Sensitivities of {class}"), panels: panels.collect(), shared_x: true }
+    Figure {
+        title: format!("{class}: change for a relative change of a parameter"),
+        panels: panels.collect(),
+        shared_x: true,
+    }
 }

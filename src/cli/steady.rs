@@ -211,9 +211,9 @@ fn power(
     let flows: Vec<sankey::Flow> = streams
         .into_iter()
         .filter(|s| s.power > 1e-4 * most)
-        .map(|s| sankey::Flow { label: watts(s.power), from: s.from, to: s.to, size: s.power })
+        .map(|s| sankey::Flow { from: s.from, to: s.to, size: s.power })
         .collect();
-    draw(&sankey::svg(&format!("{}: power", model.dae.class), &flows), path, messages)
+    draw(&sankey::svg(&format!("{}: power", model.dae.class), &flows, watts), path, messages)
 }
 
 fn draw(svg: &str, path: &Path, messages: &Messages) -> Result<(), Failure> {

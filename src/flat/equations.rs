@@ -6,7 +6,7 @@ use super::{
     WhenBranch,
 };
 use crate::diag::{Code, Diagnostic, Span};
-use crate::expr::{ExprId, Exprs, Node};
+use crate::expr::{ExprId, Exprs, Node, VarId};
 use crate::instance::algorithm::{AlgorithmCall, AlgorithmWhen, Asserted, assigned};
 use crate::instance::value::Val;
 use crate::instance::{Instance, ScopeId, View};
@@ -26,11 +26,13 @@ pub(super) struct Walker<'w, 'a, 'l> {
     flat: &'w mut FlatModel,
     /// Assertions met inside the equations of an `if` with their conditions.
     guards: Vec<ExprId>,
+    /// Variables determined so far by the branch of a `when` that is being walked.
+    determined: Vec<VarId>,
 }
 
 impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
     pub(super) fn new(instance: &'w mut Instance<'a, 'l>, numbers: &'w Numbers, flat: &'w mut FlatModel) -> Self {
-        Walker { instance, numbers, flat, guards: Vec::new() }
+        Walker { instance, numbers, flat, guards: Vec::new(), determined: Vec::new() }
     }
 
     pub(super) fn walk(&mut self, scopes: &[ScopeId]) {
@@ -257,6 +259,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
 
     fn when_equation(&mut self, branches: &'a [(Expr, Vec<ast::Equation>)], view: View, span: Span) {
         let mut when = When { branches: Vec::new(), origin: self.origin(span, view) };
+        let mut first: Option<Vec<VarId>> = None;
         for (condition, body) in branches {
             let Some(conditions) = self.instance.when_conditions(condition, view) else { continue };
             self.watch(view);
@@ -267,8 +270,31 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
             }
             self.instance.set_no_event(was);
             when.branches.push(WhenBranch { conditions, actions });
+            let here = std::mem::take(&mut self.determined);
+            match &first {
+                Some(first) => self.same_variables(first, &here, "when", condition.span),
+                None => first = Some(here),
+            }
         }
         self.flat.whens.push(when);
+    }
+
+    /// The branches of a `when`, and of an `if` in it, must determine the same variables (MLS 8.3.5.2).
+    fn same_variables(&mut self, a: &[VarId], b: &[VarId], of: &str, span: Span) {
+        let alone = |a: &[VarId], b: &[VarId]| a.iter().find(|v| !b.contains(v)).copied();
+        let (where_, variable) = match (alone(a, b), alone(b, a)) {
+            (Some(v), _) if of == "when" => ("is not determined here", v),
+            (Some(v), _) | (None, Some(v)) => ("is determined only here", v),
+            (None, None) => return,
+        };
+        let name = &self.flat.variables[variable.index()].name;
+        let message = format!("the branches of this `{of}` determine different variables");
+        let help = match of {
+            "if" => format!("give it a value in each branch, `else` too: `{name} = pre({name})` keeps the one it has"),
+            _ => format!("give it a value in each branch: `{name} = pre({name})` keeps the one it has"),
+        };
+        let d = Diagnostic::new(Code::Balance, message).at(span, format!("`{name}` {where_}")).help(help);
+        self.instance.diagnostics.push(d);
     }
 
     fn when_under_if(&mut self, span: Span) {
@@ -350,10 +376,38 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
         let yes = pool.and(guard, test);
         let no = pool.not(test);
         let no = pool.and(guard, no);
+        // known before the run: which branch remains is for the parameter to say, so only what all determine counts
+        let chosen = self.instance.variability(test) <= Variability::Parameter;
+        let before = std::mem::take(&mut self.determined);
         for e in body {
             self.when_body(e, view, yes, out);
         }
+        let first = std::mem::take(&mut self.determined);
         self.when_if(rest, otherwise, view, no, out);
+        let second = std::mem::replace(&mut self.determined, before);
+        if !chosen {
+            self.same_variables(&first, &second, "if", condition.span);
+        }
+        for &v in first.iter().filter(|v| second.contains(v)) {
+            self.determine(v, condition.span);
+        }
+    }
+
+    /// Notes what a branch of a `when` determines; false, with a message, if it already does.
+    fn determine(&mut self, variable: VarId, span: Span) -> bool {
+        let again = self.determined.contains(&variable);
+        if again {
+            self.twice(variable, "is determined twice by one branch of a `when`", span);
+        } else {
+            self.determined.push(variable);
+        }
+        !again
+    }
+
+    fn twice(&mut self, variable: VarId, how: &str, span: Span) {
+        let name = &self.flat.variables[variable.index()].name;
+        let d = Diagnostic::new(Code::Overdetermined, format!("`{name}` {how}"));
+        self.instance.diagnostics.push(d.at(span, "here again").help("remove one of the two"));
     }
 
     /// An assignment; under a guard the variable keeps what it would otherwise get.
@@ -370,6 +424,9 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
                 return;
             }
         };
+        if !self.determine(variable, p.span) {
+            return;
+        }
         let origin = self.origin(p.span, view);
         let earlier = out.iter_mut().find_map(|a| match a {
             WhenAction::Assign { variable: v, value, .. } if *v == variable => Some(value),
@@ -405,6 +462,16 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
                         self.bad_call(span, "`reinit` needs a variable as its first argument");
                         return;
                     };
+                    // under conditions of their own they may exclude each other
+                    let meets = |earlier: ExprId| earlier == guard || earlier == Exprs::ONE || guard == Exprs::ONE;
+                    let again = |a: &WhenAction| match a {
+                        WhenAction::Reinit { variable: v, guard, .. } => *v == variable && meets(*guard),
+                        _ => false,
+                    };
+                    if out.iter().any(again) {
+                        self.twice(variable, "gets a new value twice from one branch of a `when`", p.span);
+                        return;
+                    }
                     out.push(WhenAction::Reinit { variable, value: p.rhs, guard, origin });
                 }
             }

@@ -278,6 +278,7 @@ impl<'a> Instance<'a, '_> {
         let plan = Plan {
             name: joined(&self.scope(scope).name, element.name),
             scope,
+            index: Some(index),
             declared,
             prefix: self.prefixes(scope, element.protected, component, declared),
             span: declared.name.span,
@@ -342,6 +343,7 @@ impl<'a> Instance<'a, '_> {
         let plan = Plan {
             name: name.as_str().to_string(),
             scope: root,
+            index: None,
             declared,
             prefix: Inherited::default(),
             span: declared.name.span,
@@ -557,6 +559,10 @@ impl<'a> Instance<'a, '_> {
             None => {}
         }
         let node = self.add_node(Node::Object(scope));
+        if let Some(index) = plan.index.filter(|_| name == plan.name) {
+            // a modifier may ask for sizes of the component that it modifies: its elements are built when asked for
+            self.scope_mut(plan.scope).elements[index as usize] = ElementState::Node(node);
+        }
         self.build_elements(scope, plan.depth + 1);
         Some(node)
     }
@@ -775,6 +781,8 @@ impl<'a> Instance<'a, '_> {
 struct Plan<'a> {
     name: String,
     scope: ScopeId,
+    /// Which element of the scope; none for what was added.
+    index: Option<u32>,
     declared: &'a ast::Component,
     prefix: Inherited,
     span: Span,

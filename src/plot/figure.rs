@@ -41,6 +41,8 @@ pub struct Series {
     pub colour: usize,
     /// Drawn with dashes: the second of two compared curves.
     pub dashed: bool,
+    /// A cross at each point instead of a line through them.
+    pub crosses: bool,
 }
 
 /// An area between two curves.

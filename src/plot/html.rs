@@ -25,6 +25,7 @@ struct PanelHead<'a> {
     names: Vec<&'a str>,
     colours: Vec<&'a str>,
     dashed: Vec<bool>,
+    crosses: Vec<bool>,
 }
 
 /// Writes the page. `facts` are pairs of name and value shown below the picture: model, command, statistics.
@@ -82,6 +83,7 @@ fn head(figure: &Figure) -> String {
             names: p.series.iter().map(|s| s.name.as_str()).collect(),
             colours: p.series.iter().map(|s| colour(s.colour)).collect(),
             dashed: p.series.iter().map(|s| s.dashed).collect(),
+            crosses: p.series.iter().map(|s| s.crosses).collect(),
         })
         .expect("texts always serialize")
     };
@@ -105,8 +107,9 @@ fn curves(figure: &Figure) -> String {
             } else {
                 series.x.iter().copied().zip(series.y.iter().copied()).collect()
             };
+            let points = if series.crosses { points } else { decimate(points, COLUMNS) };
             out.push_str(if k > 0 { ",\n[" } else { "[" });
-            for (n, (x, y)) in decimate(points, COLUMNS).into_iter().enumerate() {
+            for (n, (x, y)) in points.into_iter().enumerate() {
                 let separator = if n > 0 { "," } else { "" };
                 let _ = write!(out, "{separator}{},{}", json_number(x, 12), json_number(y, DIGITS));
             }

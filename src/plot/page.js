@@ -104,6 +104,15 @@ function curve(g, p, f, c, k) {
   g.strokeStyle = p.head.colours[k];
   g.setLineDash(p.head.dashed[k] ? [6, 4] : []);
   g.beginPath();
+  if (p.head.crosses[k]) {
+    for (let i = 0; i < c.length; i += 2) {
+      if (c[i] === null || c[i + 1] === null) continue;
+      const x = px(p, f, c[i]), y = py(p, f, c[i + 1]), a = 4.5;
+      g.moveTo(x - a, y - a); g.lineTo(x + a, y + a); g.moveTo(x - a, y + a); g.lineTo(x + a, y - a);
+    }
+    g.stroke();
+    return;
+  }
   let pen = false;
   for (let i = 0; i < c.length; i += 2) {
     if (c[i] === null || c[i + 1] === null) { pen = false; continue; }

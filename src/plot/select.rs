@@ -148,6 +148,7 @@ fn panel(runs: &[Run<'_>], signals: &[&Signal], x: Option<&str>) -> Result<Panel
                 held: signal.kind.is_discrete() && x.is_none(),
                 colour: s * runs.len() + r,
                 dashed: r > 0,
+                crosses: false,
             });
         }
     }

@@ -178,10 +178,11 @@ impl<'a> Prepared<'a> {
                 line += LINE;
             }
             let dash = if series.dashed { " stroke-dasharray=\"6 4\"" } else { "" };
+            let sample =
+                if series.crosses { cross(x + 13.0, line - 4.5) } else { format!("M{x:.1} {:.1}h26", line - 4.5) };
             let _ = writeln!(
                 out,
-                "<path d=\"M{x:.1} {:.1}h26\" stroke=\"{}\" stroke-width=\"2.4\"{dash}/><text x=\"{:.1}\" y=\"{line:.1}\">{}</text>",
-                line - 4.5,
+                "<path d=\"{sample}\" stroke=\"{}\" stroke-width=\"2.4\"{dash}/><text x=\"{:.1}\" y=\"{line:.1}\">{}</text>",
                 colour(series.colour),
                 x + 34.0,
                 escape(&series.name)
@@ -220,10 +221,12 @@ impl<'a> Prepared<'a> {
              <rect x=\"{l:.1}\" y=\"{t:.1}\" width=\"{w:.1}\" height=\"{h:.1}\" fill=\"none\" stroke=\"#777777\"/>"
         );
         let middle = t + h / 2.0;
+        let label = with_power(&self.panel.y_label, self.y_ticks.power);
         let _ = writeln!(
             out,
-            "<text transform=\"translate(18 {middle:.1}) rotate(-90)\" text-anchor=\"middle\">{}</text>",
-            escape(&with_power(&self.panel.y_label, self.y_ticks.power))
+            "<text transform=\"translate(18 {middle:.1}) rotate(-90)\" text-anchor=\"middle\"{}>{}</text>",
+            smaller(&label, h),
+            escape(&label)
         );
         if with_x_label {
             let _ = writeln!(
@@ -265,7 +268,32 @@ fn widened(range: (f64, f64), part: f64) -> (f64, f64) {
     (low - part * width, high + part * width)
 }
 
+/// Smaller letters for a text that would be longer than its room and run into its neighbour's.
+fn smaller(text: &str, room: f64) -> String {
+    let length = text.chars().count() as f64 * CHARACTER;
+    if length <= room { String::new() } else { format!(" font-size=\"{:.1}\"", (TEXT * room / length).max(6.0)) }
+}
+
+/// Half the size of a cross.
+const ARM: f64 = 4.5;
+
+fn cross(x: f64, y: f64) -> String {
+    let size = 2.0 * ARM;
+    format!("M{:.1} {:.1}l{size} {size}m-{size} 0l{size} -{size}", x - ARM, y - ARM)
+}
+
 fn curve(out: &mut String, series: &Series, frame: &Frame) {
+    if series.crosses {
+        let finite = series.x.iter().zip(&series.y).filter(|(x, y)| x.is_finite() && y.is_finite());
+        let data: String = finite.map(|(&x, &y)| cross(frame.px(x), frame.py(y))).collect();
+        let _ = writeln!(
+            out,
+            "<path stroke=\"{}\" d=\"{data}\"><title>{}</title></path>",
+            colour(series.colour),
+            escape(&series.name)
+        );
+        return;
+    }
     let points: Points = if series.held {
         staircase(&series.x, &series.y)
     } else {

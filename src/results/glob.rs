@@ -1,6 +1,6 @@
 //! Patterns that choose variables by name: `*` for any text, `?` for one character, everything else as it stands.
 //!
-//! Brackets are literal, since names contain them: `v[1].p`, `v[*].p`.
+//! Brackets are literal, since names contain them: `v[1].p`, `v[*].p`. The name of an array means all its elements.
 
 /// Patterns of which at least one must match.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -24,9 +24,9 @@ impl Globs {
         self.patterns.iter().any(|p| matches(p, name))
     }
 
-    /// True when a pattern without `*` and `?` is this name.
+    /// True when a pattern without `*` and `?` is this name, or that of its array.
     pub fn names(&self, name: &str) -> bool {
-        self.patterns.iter().any(|p| p == name)
+        self.patterns.iter().any(|p| p == name || array(name) == Some(p.as_str()))
     }
 
     /// The patterns that match none of these names: probably spelling mistakes.
@@ -55,8 +55,17 @@ pub fn split_list(text: &str) -> Vec<String> {
     items.into_iter().map(|i| i.trim().to_owned()).filter(|i| !i.is_empty()).collect()
 }
 
-/// Walks both texts and, after a mismatch, returns to the last `*` and lets it take one character more.
 fn matches(pattern: &str, name: &str) -> bool {
+    whole(pattern, name) || array(name).is_some_and(|array| whole(pattern, array))
+}
+
+/// The array of which a name is an element: `v` of `v[1]`, `A` of `A[1,2]`.
+fn array(name: &str) -> Option<&str> {
+    name.strip_suffix(']')?.rsplit_once('[').map(|(array, _)| array)
+}
+
+/// Walks both texts and, after a mismatch, returns to the last `*` and lets it take one character more.
+fn whole(pattern: &str, name: &str) -> bool {
     let (p, n): (Vec<char>, Vec<char>) = (pattern.chars().collect(), name.chars().collect());
     let (mut i, mut k) = (0, 0);
     let mut star: Option<(usize, usize)> = None;
@@ -102,6 +111,12 @@ mod tests {
         yes("\"A[1,2]\"", "A[1,2]");
         yes("A[1,*]", "A[1,7]");
         no("", "x");
+        yes("A", "A[1,7]");
+        yes("cyl.v*", "cyl.v[2]");
+        yes("*.p", "a[1].p[2]");
+        no("v", "v[1].p");
+        no("v[1]", "v[12]");
+        assert!(Globs::new(&["A"]).names("A[1,2]"));
     }
 
     #[test]

@@ -87,15 +87,11 @@ fn pairs(fit: &Fit) -> Vec<(usize, usize)> {
 
 fn pair(problem: &Problem<'_>, fit: &Fit, i: usize, j: usize) -> Option<Panel> {
     let (x, y) = fit.ellipse(problem, i, j)?;
-    let arm = |values: &[f64]| {
-        let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
-        0.03 * (high - low)
-    };
-    let (a, b, wide, high) = (fit.values[i], fit.values[j], arm(&x), arm(&y));
     let centre = Series {
         name: "estimate".to_owned(),
-        x: vec![a - wide, a + wide, f64::NAN, a, a],
-        y: vec![b, b, f64::NAN, b - high, b + high],
+        x: vec![fit.values[i]],
+        y: vec![fit.values[j]],
+        crosses: true,
         colour: 1,
         ..Series::default()
     };

@@ -87,30 +87,50 @@ fn unwrapped(values: &[Option<Complex<f64>>]) -> Vec<f64> {
     values.iter().map(one).collect()
 }
 
-/// Poles in the plane as crosses.
+/// How much nearer to the origin the next panel of poles goes.
+const CLOSER: f64 = 8.0;
+/// Panels of poles at most.
+const PLANES: usize = 4;
+
+/// Poles in the plane as crosses; further panels show those that crowd around the origin in the one before.
 pub fn plane(model: &StateSpace, poles: &[Pole]) -> Figure {
-    let size = poles.iter().map(|p| p.re.abs().max(p.im)).fold(1e-3, f64::max);
-    let arm = 0.012 * size;
-    let mut cross = Series { name: "poles".to_owned(), ..Series::default() };
+    let sizes = || poles.iter().map(|p| p.re.hypot(p.im));
+    let mut panels = Vec::new();
+    let mut size = sizes().fold(0.0, f64::max);
+    loop {
+        let near: Vec<&Pole> = poles.iter().filter(|p| p.re.hypot(p.im) <= size).collect();
+        panels.push(panel_of_poles(&near, if size > 0.0 { size } else { 1.0 }));
+        let next = sizes().filter(|s| *s < size / CLOSER).fold(0.0, f64::max);
+        if next == 0.0 || panels.len() == PLANES {
+            break;
+        }
+        size = next;
+    }
+    Figure { title: format!("Poles of {}", model.class), panels, shared_x: false }
+}
+
+fn panel_of_poles(poles: &[&Pole], size: f64) -> Panel {
+    let mut crosses = Series { name: "poles".to_owned(), crosses: true, ..Series::default() };
     for pole in poles {
-        for im in [pole.im, -pole.im] {
-            cross.x.extend([pole.re - arm, pole.re + arm, f64::NAN, pole.re - arm, pole.re + arm, f64::NAN]);
-            cross.y.extend([im - arm, im + arm, f64::NAN, im + arm, im - arm, f64::NAN]);
+        crosses.x.push(pole.re);
+        crosses.y.push(pole.im);
+        if pole.im > 0.0 {
+            crosses.x.push(pole.re);
+            crosses.y.push(-pole.im);
         }
     }
     let axis = Series {
-        name: "0".to_owned(),
+        name: "imaginary axis".to_owned(),
         x: vec![0.0, 0.0],
         y: vec![-size, size],
         colour: 6,
         dashed: true,
         ..Series::default()
     };
-    let panel = Panel {
+    Panel {
         x_label: "real part in 1/s".to_owned(),
         y_label: "imaginary part in 1/s".to_owned(),
-        series: vec![cross, axis],
+        series: vec![crosses, axis],
         ..Panel::default()
-    };
-    Figure { title: format!("Poles of {}", model.class), panels: vec![panel], shared_x: false }
+    }
 }
