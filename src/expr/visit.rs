@@ -4,7 +4,7 @@
 //! reachable nodes in the order of their ids are in an order of evaluation.
 
 use super::{ExprId, Exprs, Node, VarId};
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::{FxBuildHasher, FxHashMap, FxHashSet};
 
 /// The arguments of one node.
 #[derive(Clone, Copy, Debug)]
@@ -107,9 +107,11 @@ impl Exprs {
     /// All nodes reachable from `roots` for which `enter` says true, in an order of evaluation (arguments first).
     /// A node that is not entered is left out, and so is what only it leads to.
     pub fn reachable(&self, roots: &[ExprId], mut enter: impl FnMut(ExprId) -> bool) -> Vec<ExprId> {
-        let mut seen = FxHashSet::default();
-        let mut stack = roots.to_vec();
-        let mut found = Vec::new();
+        // most expressions are small: one allocation is enough for them
+        let mut seen = FxHashSet::with_capacity_and_hasher(28, FxBuildHasher);
+        let mut stack = Vec::with_capacity(28);
+        stack.extend_from_slice(roots);
+        let mut found = Vec::with_capacity(28);
         while let Some(e) = stack.pop() {
             if seen.insert(e) && enter(e) {
                 found.push(e);

@@ -33,7 +33,7 @@ use eliminate::Plan;
 use jacobian::Differentials;
 use layout::slot;
 use parameters::Bindings;
-use program::{Assembler, Compile, Defs, Order};
+use program::{Assembler, Defs, Order};
 use rustc_hash::FxHashMap;
 use shape::{Kernels, Shaper};
 use std::sync::Arc;
@@ -42,7 +42,8 @@ use system::Programs;
 /// How to lower.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
-    /// Compile to machine code; else everything is interpreted. Both give the same bits.
+    /// Compile to machine code what runs often enough to pay for it; else everything is interpreted. Both give the same
+    /// bits.
     pub native: bool,
 }
 
@@ -256,29 +257,29 @@ impl Drafts {
         programs.late = late_parameters(&dae);
         programs.bindings = Bindings::new(&self.bindings.0, &self.bindings.1, &kernels, &layout);
 
-        let mut assembler = Assembler::new(&kernels, &layout);
+        let mut assembler = Assembler::new(&kernels, &layout, options.native);
         let by_need = Order::Dependency;
-        assembler.set_native(if options.native { Compile::All } else { Compile::Nothing });
+        assembler.often(true);
         programs.residual = assembler.assemble(&self.continuous.residual, by_need, None);
-        let Differentials { defs, products, .. } = self.continuous.jacobian;
-        programs.jacobian = assembler.assemble(&defs, by_need, Some(products));
         let with_observables = self.observables.before(&kernels, &self.crossings.defs);
         programs.crossings = assembler.assemble(&with_observables, by_need, None);
+        assembler.often(false);
+        let Differentials { defs, products, .. } = self.continuous.jacobian;
+        programs.jacobian = assembler.assemble(&defs, by_need, Some(products));
         // a model with samples spends much of its time at events
-        let often = options.native && !dae.samples.is_empty();
-        let rarely = if options.native { Compile::LongLoops } else { Compile::Nothing };
-        assembler.set_native(if often { Compile::All } else { rarely });
+        assembler.often(!dae.samples.is_empty());
         programs.crossings_alone = assembler.assemble(&self.crossings.defs, by_need, None);
         programs.observe = assembler.assemble(&self.observables.defs, by_need, None);
         let actions = self.actions.assemble(None, &mut assembler);
         let asserts = self.asserts.assemble(Some(&self.observables), &mut assembler);
         let event = blocks::assemble(self.event, &mut assembler);
-        assembler.set_native(rarely);
+        assembler.often(false);
         programs.observables = self.observables;
         programs.hoisted = assembler.assemble(&self.hoisted, by_need, None);
         let initial = blocks::assemble(self.initial, &mut assembler);
         let (entries, loops) = assembler.compile(&programs.functions);
         programs.loops = Arc::new(loops);
+        programs.native = options.native;
 
         let standing_asserts = conditions::standing(&dae);
         let mut system = System {

@@ -119,6 +119,11 @@ impl Compiler {
         self.order(Job::Loop { code, inputs })
     }
 
+    /// True when nothing was ordered.
+    pub fn is_empty(&self) -> bool {
+        self.jobs.is_empty()
+    }
+
     fn order(&mut self, job: Job) -> Ticket {
         self.jobs.push(job);
         Ticket(self.jobs.len() - 1)
@@ -126,11 +131,11 @@ impl Compiler {
 
     /// Machine code for everything that was ordered, in that order; nothing where the machine is not supported, and
     /// all is then interpreted.
-    pub fn compile(self, functions: &[Function]) -> Vec<Entry> {
+    pub fn compile(&self, functions: &[Function]) -> Vec<Entry> {
         self.try_compile(functions).unwrap_or_default()
     }
 
-    fn try_compile(self, functions: &[Function]) -> Built<Vec<Entry>> {
+    fn try_compile(&self, functions: &[Function]) -> Built<Vec<Entry>> {
         if self.jobs.is_empty() || !SUPPORTED {
             return Ok(Vec::new());
         }

@@ -12,7 +12,8 @@ use crate::expr::function::Function;
 use crate::expr::{ExprId, Exprs, Node, VarId};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Arc, OnceLock};
 
 /// Straight code is cut when it has this many nodes; machine code is slow to make beyond.
 const STRAIGHT_SIZE: usize = 1200;
@@ -30,8 +31,15 @@ const LOOP_INSTANCES: usize = 4;
 /// ... and they have at least this many nodes together.
 const LOOP_SIZE: usize = 240;
 
-/// Loops of this many rows are compiled even in programs that run rarely.
+/// Loops of this many rows are compiled before the first run.
 const ALWAYS_COMPILED: usize = 64;
+
+/// All else is compiled when its program has run this often: interpreting it has then cost about as much as making
+/// machine code would have, so that at most twice is spent of what the better choice would have cost.
+const WORTH_COMPILING: u32 = 1000;
+
+/// The same for what runs at every step or sample: it will go on doing so.
+const SOON_COMPILED: u32 = 100;
 
 /// Definitions to be computed: each a kernel with the slots it reads and writes.
 #[derive(Clone, Debug, Default)]
@@ -112,6 +120,7 @@ impl Products {
 #[derive(Clone, Debug, Default)]
 pub struct Program {
     steps: Arc<Vec<Step>>,
+    late: Option<Arc<Late>>,
     functions: Arc<Vec<Function>>,
     len: usize,
 }
@@ -140,6 +149,8 @@ enum Native {
     None,
     Ordered(Ticket),
     Ready(Entry),
+    /// Among the [`Late`] ones.
+    Late(Ticket),
 }
 
 impl Native {
@@ -148,20 +159,66 @@ impl Native {
             *self = entries.get(ticket.index()).map_or(Native::None, |entry| Native::Ready(entry.clone()));
         }
     }
+
+    /// The machine code, if it has been made.
+    fn entry<'a>(&'a self, late: &'a [Entry]) -> Option<&'a Entry> {
+        match self {
+            Native::Ready(entry) => Some(entry),
+            Native::Late(ticket) => late.get(ticket.index()),
+            Native::None | Native::Ordered(_) => None,
+        }
+    }
+}
+
+/// Machine code that is made when its program has run often, by whichever thread comes to it first. Results do not
+/// depend on when that is, for interpreter and machine code agree to the bit.
+#[derive(Debug)]
+struct Late {
+    compiler: Compiler,
+    runs: AtomicU32,
+    /// Runs before it is made.
+    limit: u32,
+    entries: OnceLock<Vec<Entry>>,
+}
+
+impl Late {
+    fn new(compiler: Compiler, limit: u32) -> Arc<Late> {
+        Arc::new(Late { compiler, runs: AtomicU32::new(0), limit, entries: OnceLock::new() })
+    }
+
+    /// Counts a run.
+    fn entries(&self, functions: &[Function]) -> &[Entry] {
+        if let Some(entries) = self.entries.get() {
+            return entries;
+        }
+        if self.runs.fetch_add(1, Ordering::Relaxed) < self.limit {
+            return &[];
+        }
+        self.entries.get_or_init(|| self.compiler.compile(functions))
+    }
 }
 
 impl Program {
     /// Computes. `values` is an array of the layout the program was made for.
     pub fn run(&self, values: &mut [f64]) {
         assert!(values.len() >= self.len, "the array of values belongs to another system");
+        let late = self.late.as_ref().map_or(&[] as &[Entry], |late| late.entries(&self.functions));
         for step in self.steps.iter() {
             match step {
-                Step::Straight { native: Native::Ready(entry), .. } => entry.run(values, &self.functions),
-                Step::Straight { bytecode, .. } => bytecode.run(&self.functions, values),
-                Step::Loop(l) => l.run(&self.functions, values),
+                Step::Straight { bytecode, native } => match native.entry(late) {
+                    Some(entry) => entry.run(values, &self.functions),
+                    None => bytecode.run(&self.functions, values),
+                },
+                Step::Loop(l) => l.run(late, &self.functions, values),
                 Step::Products(products) => products.run(values),
             }
         }
+    }
+
+    /// From now on machine code is run, as after many runs.
+    #[cfg(test)]
+    pub fn hurry(&self) {
+        self.late.iter().for_each(|late| _ = late.runs.fetch_max(late.limit, Ordering::Relaxed));
     }
 
     /// True when there is nothing to compute.
@@ -221,8 +278,8 @@ impl Loop {
         self.table.len() / (self.inputs + self.outputs)
     }
 
-    fn run(&self, functions: &[Function], v: &mut [f64]) {
-        if let Native::Ready(entry) = &self.native {
+    fn run(&self, late: &[Entry], functions: &[Function], v: &mut [f64]) {
+        if let Some(entry) = self.native.entry(late) {
             return entry.run_table(v, &self.table, self.inputs + self.outputs, functions);
         }
         for row in self.table.chunks_exact(self.inputs + self.outputs) {
@@ -261,35 +318,32 @@ pub struct Assembler<'a> {
     codes: FxHashMap<KernelId, Arc<Code>>,
     tickets: BTreeMap<KernelId, Ticket>,
     compiler: Compiler,
-    native: Compile,
+    /// Whether anything is compiled to machine code.
+    native: bool,
+    /// What the program that is being made compiles when it has run often.
+    late: Compiler,
+    late_loops: BTreeMap<KernelId, Ticket>,
+    limit: u32,
     ready: Option<&'a CompiledLoops>,
     straight_size: usize,
-}
-
-/// What is compiled to machine code.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Compile {
-    /// Nothing.
-    Nothing,
-    /// Long loops.
-    LongLoops,
-    /// Everything.
-    All,
 }
 
 /// Loops in machine code, for programs that are made later.
 pub type CompiledLoops = FxHashMap<KernelId, Entry>;
 
 impl<'a> Assembler<'a> {
-    /// Programs of `kernels` over `layout`, interpreted unless told otherwise.
-    pub fn new(kernels: &'a Kernels, layout: &'a Layout) -> Self {
+    /// Programs of `kernels` over `layout`; `native`: in machine code where that pays, else interpreted.
+    pub fn new(kernels: &'a Kernels, layout: &'a Layout, native: bool) -> Self {
         Assembler {
             kernels,
             layout,
             codes: FxHashMap::default(),
             tickets: BTreeMap::new(),
             compiler: Compiler::default(),
-            native: Compile::Nothing,
+            native,
+            late: Compiler::default(),
+            late_loops: BTreeMap::new(),
+            limit: WORTH_COMPILING,
             ready: None,
             straight_size: STRAIGHT_SIZE,
         }
@@ -297,8 +351,8 @@ impl<'a> Assembler<'a> {
 
     /// For programs that are made after all others: with loops that are compiled already, and with pieces of straight
     /// code so short that [`late_scratch`] suffices.
-    pub fn with_loops(kernels: &'a Kernels, layout: &'a Layout, ready: &'a CompiledLoops) -> Self {
-        Assembler { ready: Some(ready), straight_size: LATE_STRAIGHT_SIZE, ..Assembler::new(kernels, layout) }
+    pub fn with_loops(kernels: &'a Kernels, layout: &'a Layout, native: bool, ready: &'a CompiledLoops) -> Self {
+        Assembler { ready: Some(ready), straight_size: LATE_STRAIGHT_SIZE, ..Assembler::new(kernels, layout, native) }
     }
 
     /// Compiles what was to be compiled: all of it in the order of tickets, and loops by kernel.
@@ -314,9 +368,9 @@ impl<'a> Assembler<'a> {
         self.kernels
     }
 
-    /// How programs made from here on are compiled.
-    pub fn set_native(&mut self, native: Compile) {
-        self.native = native;
+    /// Whether programs made from here on are known to run often.
+    pub fn often(&mut self, often: bool) {
+        self.limit = if often { SOON_COMPILED } else { WORTH_COMPILING };
     }
 
     /// The program that computes `defs`, then `products`.
@@ -343,7 +397,10 @@ impl<'a> Assembler<'a> {
             }
         }
         steps.extend(products.filter(|p| !p.sums.is_empty()).map(Step::Products));
-        Program { steps: Arc::new(steps), ..Program::default() }
+        self.late_loops.clear();
+        let late = std::mem::take(&mut self.late);
+        let late = (!late.is_empty()).then(|| Late::new(late, self.limit));
+        Program { steps: Arc::new(steps), late, ..Program::default() }
     }
 
     fn code(&mut self, kernel: KernelId) -> Arc<Code> {
@@ -415,16 +472,15 @@ impl<'a> Assembler<'a> {
             return Native::Ready(entry.clone());
         }
         let code = self.code(l.kernel);
-        let worth_it = match self.native {
-            Compile::Nothing => false,
-            Compile::LongLoops => l.rows() >= ALWAYS_COMPILED || self.tickets.contains_key(&l.kernel),
-            Compile::All => true,
-        };
-        if !worth_it || code.size > 2 * STRAIGHT_SIZE {
+        if !self.native || code.size > 2 * STRAIGHT_SIZE {
             return Native::None;
         }
-        let compiler = &mut self.compiler;
-        let order = || compiler.order_loop(code, slot(l.inputs));
+        let inputs = slot(l.inputs);
+        if l.rows() < ALWAYS_COMPILED && !self.tickets.contains_key(&l.kernel) {
+            let order = || self.late.order_loop(code, inputs);
+            return Native::Late(*self.late_loops.entry(l.kernel).or_insert_with(order));
+        }
+        let order = || self.compiler.order_loop(code, inputs);
         Native::Ordered(*self.tickets.entry(l.kernel).or_insert_with(order))
     }
 
@@ -435,8 +491,8 @@ impl<'a> Assembler<'a> {
         }
         let code = Code::new(&pool, &outputs);
         let bytecode = Bytecode::straight(&code, &targets, self.layout);
-        let native = if self.native == Compile::All && code.size <= 2 * STRAIGHT_SIZE {
-            Native::Ordered(self.compiler.order_straight(Arc::new(code), targets))
+        let native = if self.native && code.size <= 2 * STRAIGHT_SIZE {
+            Native::Late(self.late.order_straight(Arc::new(code), targets))
         } else {
             Native::None
         };

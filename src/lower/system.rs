@@ -67,6 +67,8 @@ pub(super) struct Programs {
     pub crossings_alone: Program,
     pub crossing_slots: Vec<Slot>,
     pub loops: Arc<CompiledLoops>,
+    /// Whether programs that are made later are compiled when they run often.
+    pub native: bool,
     pub observables: Observables,
     pub observe: Program,
     /// Alias, target, negated.
@@ -204,8 +206,8 @@ impl System {
         let p = &self.programs;
         let slots = wanted.iter().filter_map(|&v| self.layout.leaf(Node::Var(v)));
         let defs = p.observables.needed(&p.kernels, slots);
-        let mut program =
-            Assembler::with_loops(&p.kernels, &self.layout, &p.loops).assemble(&defs, Order::Dependency, None);
+        let mut assembler = Assembler::with_loops(&p.kernels, &self.layout, p.native, &p.loops);
+        let mut program = assembler.assemble(&defs, Order::Dependency, None);
         let room = self.layout.len() - p.scratch as usize;
         assert!(program.scratch() as usize <= room, "`late_scratch` is an upper bound");
         program.finish(p.scratch, p.scratch as usize + program.scratch() as usize, &p.functions, &[]);
@@ -240,6 +242,12 @@ impl System {
         self.programs.scratch = base;
         self.programs.bindings.relocate(base);
         self.each_program(&mut |program| program.finish(base, len, &functions, entries));
+    }
+
+    /// From now on machine code is run, as after many runs.
+    #[cfg(test)]
+    pub(super) fn hurry(&mut self) {
+        self.each_program(&mut |program| program.hurry());
     }
 
     fn each_program(&mut self, visit: &mut impl FnMut(&mut Program)) {

@@ -57,7 +57,9 @@ impl Model {
     }
 
     pub fn lower(self, native: bool) -> System {
-        lower(Arc::new(self.dae), &Options { native })
+        let mut system = lower(Arc::new(self.dae), &Options { native });
+        system.hurry();
+        system
     }
 }
 
