@@ -24,7 +24,7 @@ partial model Machine "Displacement machine in four quadrants: delivery and torq
   SI.VolumeFlowRate Q_leak(nominal = 1e-7) "Internal leakage from A to B, at the density of the high side";
   SI.Torque T_sh(nominal = 1) "Torque that the shaft gives to the machine";
   SI.Torque T_loss(nominal = 0.1) "Part of it that is lost";
-  SI.Power lossPower(nominal = 10) "Power lost: shaft power less dp times the flow of the high side";
+  SI.Power lossPower(nominal = 10) "Power lost: shaft power less the power that the oil takes along";
 protected
   constant Real pi = Modelica.Constants.pi;
   parameter Real D(unit = "m3/rad") = V/(2*pi) "Displacement per radian";
@@ -81,7 +81,7 @@ equation
   rho_a*port_a.q + rho_b*port_b.q = 0;
   T_sh = fill*u_used*D*dp + T_loss;
   flange.tau = T_sh;
-  lossPower = T_sh*w - dp*Q_A*rho_a/rho_high;
+  lossPower = T_sh*w - dp*Q_A*rho_a/((rho_a + rho_b)/2);
   annotation(Documentation(info = "<html>
 <p>Positive speed pushes oil from B to A. With <code>dp = p_A - p_B</code>, dp and speed of equal sign are pumping, of opposite sign motoring; a motor is the same machine.</p>
 <p><b>Delivery.</b> A chamber closes at the inlet with the density there and its dead volume returns what it holds at the outlet, so that a revolution carries the mass
@@ -89,5 +89,6 @@ equation
 <code>n (V + V_d) dp/beta</code>, motoring <code>n V_d dp/beta</code>; mass is conserved exactly. Without <code>compression</code> the displacement counts at the high side.</p>
 <p><b>Variable displacement</b>: u scales the displacement; half the swept volume and the dead volume together, which compression sees, do not change with it.</p>
 <p><b>Starvation</b>: delivery falls smoothly between <code>p_cav + p_fill</code> and <code>p_cav</code> of inlet pressure, and the torque with it.</p>
+<p><b>Power lost</b>: <code>T_sh w - m_flow dp/rho_mean</code>. Brought from one side to the other without loss, oil takes <code>m_flow (h_A - h_B)</code>, h being the integral of dp/rho and <code>dp/rho_mean</code> its trapezoidal form: what valves count as lost and volumes store, so that the powers of a circuit add up. Compression costs <code>V n (1/2 + V_d/V) dp^2/beta</code>, just what opening the chambers to the ports dissipates. Without <code>compression</code> the shaft does not pay for compressing the oil, and <code>V n dp^2/(2 beta)</code> is missing in the loss.</p>
 <p>Sources: J. Ivantysyn and M. Ivantysynova, Hydrostatic Pumps and Motors, 2001; compression: D. McCandlish and R. E. Dorey, Proc. IMechE B 198 (1984) 165.</p></html>"));
 end Machine;
