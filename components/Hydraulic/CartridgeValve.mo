@@ -30,25 +30,27 @@ protected
   SI.Force F(nominal = 100) "Spring, flow force and stops, closing";
   SI.Density rho_a(nominal = 1000) "Density at A";
   SI.Density rho_b(nominal = 1000) "Density at B";
+  SI.Density rho_x(nominal = 1000) "Density at X";
   SI.Density rho(nominal = 1000) "Mean density";
 equation
   assert(p_open > p_crack, "p_open must lie above p_crack");
   dp = port_a.p - port_b.p;
   rho_a = oil.density(port_a.p);
   rho_b = oil.density(port_b.p);
+  rho_x = oil.density(port_x.p);
   rho = (rho_a + rho_b)/2;
   A = pi*d*sin(alpha)*x_max*Smooth.ramp(min(x/x_max, 1), 0.01);
   q = Functions.orificeFlow(dp, A_leak + A, C_d, rho, oil.mu, Re_cr);
   F = A_A*(p_crack + (p_open - p_crack)*x/x_max) + 2*C_d*cos(alpha)*A*Smooth.mag(dp, 1e4) + k_s*(max(x - x_max, 0) + min(x, 0));
   A_A*port_a.p + A_B*port_b.p = A_X*p_spring + F;
   v = der(x);
-  A_X*v = Functions.orificeFlow(p_spring - port_x.p, pi*d_x^2/4, C_d, oil.density(port_x.p), oil.mu, Re_cr);
-  rho_a*port_a.q = rho*q + rho_a*A_A*v;
-  rho_b*port_b.q = -rho*q + rho_b*A_B*v;
+  A_X*v = Functions.orificeFlow(p_spring - port_x.p, pi*d_x^2/4, C_d, rho_x, oil.mu, Re_cr);
+  rho_a*port_a.q = rho*q + rho_x*A_A*v;
+  rho_b*port_b.q = -rho*q + rho_x*A_B*v;
   port_x.q = -A_X*v;
   lossPower = dp*q;
   annotation(Documentation(info = "<html>
 <p>Balance of the poppet <code>p_A A_A + p_B A_B = p_spring A_X + F_0 + c x + F_flow</code>, <code>A_B = (ratio - 1) A_A</code>; cross section <code>pi d sin(alpha) x</code>, flow force <code>2 C_d cos(alpha) A |dp|</code>, closing. The poppet has no mass: what it displaces must pass the throttle <code>d_x</code> to X, <code>A_X dx/dt = q_x(p_spring - p_X)</code>, and that takes far longer than its mass would.</p>
 <p>What joins X makes the function: A or B a check valve, a way valve between pressure and tank a switch, a small relief valve behind a throttle a pressure valve. <code>ratio</code> 1 to 1.1 for pressure valves, 1.5 to 2 where oil also passes from B to A.</p>
-<p>The oil displaced counts at the density of each port. Sources: ISO 7368 (sizes); H. E. Merritt, Hydraulic Control Systems, Wiley 1967, sections 5.6 and 9.2; the values are assumed for size 16.</p></html>"));
+<p>The oil displaced counts at the density of X at all three ports, so that its mass is kept. Sources: ISO 7368 (sizes); H. E. Merritt, Hydraulic Control Systems, Wiley 1967, sections 5.6 and 9.2; the values are assumed for size 16.</p></html>"));
 end CartridgeValve;

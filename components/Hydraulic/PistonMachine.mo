@@ -37,6 +37,8 @@ model PistonMachine "Axial piston machine, chamber by chamber: port timing, comp
   SI.VolumeFlowRate q_l[z](each nominal = 1e-8) "Leakages of the chambers to the case";
   SI.Torque T_sh(nominal = 1) "Torque that the shaft gives to the machine";
   SI.Torque T_loss "Friction torque";
+  SI.Mass mass(nominal = 1e-3) "Mass of the oil in the chambers";
+  SI.Power lossPower(nominal = 10) "Power lost in ports, bores and by friction";
 protected
   constant Real pi = Modelica.Constants.pi;
   parameter SI.Area A_p = pi*d^2/4 "Area of a piston";
@@ -78,6 +80,8 @@ equation
   T_loss = (T_c + k_p*z*A_p*H/(2*pi)*Smooth.mag(dp, 1e4))*Smooth.sgn(w, w_s) + b*w;
   T_sh = sum((p[i] - port_case.p)*A_p*(H/2)*u_used*sin(phi[i]) for i in 1:z) + T_loss;
   flange.tau = T_sh;
+  mass = sum(rho[i]*V[i] for i in 1:z);
+  lossPower = sum(q_a[i]*(p[i] - port_a.p) + q_b[i]*(port_b.p - p[i]) + q_l[i]*(p[i] - port_case.p) for i in 1:z) + T_loss*w;
   annotation(Documentation(info = "<html>
 <p>Piston i at <code>phi_i = theta + 2 pi i/z</code>, chamber <code>V_d + A_p H/2 (1 + cos phi_i)</code>; <code>V_i/beta dp_i/dt = A_p v_i - q_leak - q_A + q_B</code> in masses. The ports open over the angle <code>opening</code> from the dead centres on, with flow in both directions,
 so that compression, backflow at opening and the ripple of flow and torque come out of the equations: averaged, the loss per stroke is <code>(V_s + V_d) dp/beta</code>. The kinematic ripple for an odd number of pistons is <code>pi/(2 z) tan(pi/(4 z))</code> of the mean, peak to peak; 2.5 % for seven.</p>
