@@ -172,11 +172,11 @@ impl<'a> Writer<'a> {
         let inside = matches!(h.attachments[0].site, Site::Node(_) | Site::Across(..) | Site::Into(_));
         let body = if inside { &mut self.plant } else { &mut self.around };
         let given = |name: &str| a.values.iter().find(|(n, _)| n == name).map(|(_, v)| *v);
-        let coefficients = h.coefficients.iter().map(|c| (&c.name, &c.unit, c.off));
-        let shapes = h.shapes.iter().map(|s| (&s.name, &s.unit, s.grid[0]));
+        let coefficients = h.coefficients.iter().map(|c| (c.label(), &c.unit, c.off));
+        let shapes = h.shapes.iter().map(|s| (s.name.clone(), &s.unit, s.grid[0]));
         let mut names = Vec::new();
         for (name, unit, usual) in coefficients.chain(shapes) {
-            let value = given(name).unwrap_or(usual);
+            let value = given(&name).unwrap_or(usual);
             let full = format!("{}_{name}", a.name);
             let _ = writeln!(body.declarations, "    parameter Real {full}{} = {value:e};", unit_of(unit));
             names.push(if inside { format!("{PLANT}.{full}") } else { full });
@@ -187,9 +187,14 @@ impl<'a> Writer<'a> {
     /// An instance of an effect, its coefficients and shapes bound to those of the hypothesis.
     fn declaration(a: &Attached<'_>, i: usize, effect: &Effect, base: &[(String, String)]) -> (String, String) {
         let instance = format!("{}_{}", a.name, i + 1);
-        let own = effect.coefficients.iter().map(|c| &c.name).chain(effect.shapes.iter().map(|s| &s.name));
-        let bound = own.map(|n| format!("{n} = {}_{n}", a.name));
-        let bound: Vec<String> = bound.chain(base.iter().map(|(n, from)| format!("{n} = {from}"))).collect();
+        let of_all = |name: &str| {
+            let own = a.hypothesis.coefficients.iter().filter(|c| c.name == name);
+            own.map(|c| format!("{}_{}", a.name, c.label())).collect::<Vec<_>>().join(" + ")
+        };
+        let coefficients = effect.coefficients.iter().map(|c| format!("{} = {}", c.name, of_all(&c.name)));
+        let shapes = effect.shapes.iter().map(|s| format!("{n} = {}_{n}", a.name, n = s.name));
+        let bound: Vec<String> =
+            coefficients.chain(shapes).chain(base.iter().map(|(n, from)| format!("{n} = {from}"))).collect();
         let text = format!("    .{} {instance}({});\n", effect.class, bound.join(", "));
         (instance, text)
     }

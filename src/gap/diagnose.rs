@@ -350,17 +350,20 @@ impl Search {
         refine::bounded(h) && h.coefficients.iter().enumerate().any(at_bound)
     }
 
-    /// Whether an effect is a small remainder of an accepted one of its family or at its place, from whose form the
-    /// machine's may differ.
+    /// Whether an effect is the remainder of an accepted one of its family at its place, or a small one of its family or at
+    /// its place: the machine's form may differ from that one's.
     fn mends_form(&self, problem: &Problem<'_>, best: &Refined) -> bool {
         let h = &problem.hypotheses[best.accepted.chosen.hypothesis];
-        let kin = |a: &Accepted| {
+        let least = |a: &Accepted, gain: f64| {
             let other = &problem.hypotheses[a.chosen.hypothesis];
-            let here = || other.attachments[0].site.is_at(&h.attachments[0].site);
-            h.family != "parameter" && (other.family == h.family || here())
+            match (other.family == h.family, other.attachments[0].site.is_at(&h.attachments[0].site)) {
+                (true, true) => f64::INFINITY,
+                (true, false) | (false, true) => FORM * gain,
+                (false, false) => 0.0,
+            }
         };
-        let gains = self.accepted.iter().zip(&self.found).filter(|(a, _)| kin(a)).map(|(_, f)| f.gain);
-        !h.shapes.iter().any(|s| s.order) && gains.fold(0.0, f64::max) * FORM > self.gain(&best.fit)
+        let least = self.accepted.iter().zip(&self.found).map(|(a, f)| least(a, f.gain)).fold(0.0, f64::max);
+        h.family != "parameter" && !h.shapes.iter().any(|s| s.order) && self.gain(&best.fit) < least
     }
 
     fn accept(&mut self, best: Refined, found: Found) {

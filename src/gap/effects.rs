@@ -69,6 +69,15 @@ pub struct Coefficient {
     pub relative: bool,
     /// At most what its nodes have of it already.
     pub part: bool,
+    /// Each recording has one of its own, this the one of that number: a phase that follows no variable.
+    pub recording: Option<usize>,
+}
+
+impl Coefficient {
+    /// Its name among those of a hypothesis.
+    pub fn label(&self) -> String {
+        self.recording.map_or_else(|| self.name.clone(), |k| format!("{}_{}", self.name, k + 1))
+    }
 }
 
 /// A parameter that enters nonlinearly.
@@ -475,6 +484,7 @@ fn coefficients(
             nominal,
             relative: relative.contains(&name),
             part: texts(own, "part").contains(&name),
+            recording: texts(own, "own").contains(&name).then_some(0),
             name,
         })
     };

@@ -14,6 +14,7 @@ use super::passive::{Passive, passive_states};
 use super::step::Exponential;
 use crate::analysis::local::{Local, LocalError, Plan};
 use nalgebra::{DMatrix, DVector};
+use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -28,6 +29,12 @@ const START_KELVIN: f64 = 10.0;
 /// Iterations of the first update at most, and the part of the states' sizes below which they have settled.
 const FIRST: usize = 10;
 const SETTLED: f64 = 1e-6;
+/// Part of a pressure that nothing measures below which no correction takes it: where oil evaporates, the linear model of a
+/// stiff volume says nothing of the void.
+const LEAST_PRESSURE: f64 = 0.1;
+/// A state of the nominal model is not known worse than by so many of its sizes, or times what is known of it at the start:
+/// where the linear model runs away (a cavity that fills), the true state has long come to rest elsewhere.
+const WORST_KNOWN: f64 = 10.0;
 /// A variance may be below zero by rounding, by so much of the noise's.
 const ROUNDING: f64 = 1e-6;
 /// What drives the model beside its inputs.
@@ -48,6 +55,8 @@ pub struct Setting {
     pub plan: Arc<Plan>,
     /// Values of all parameters of the plan; those of sources are not read.
     pub theta: Vec<f64>,
+    /// Parameters that act in one recording only, and its number: they are 0 in the others.
+    pub own: Vec<(usize, usize)>,
     /// The sources.
     pub sources: Vec<Source>,
     /// Per signal the standard deviation of its noise.
@@ -79,6 +88,21 @@ impl Setting {
     pub fn alone(&self) -> Setting {
         let (columns, groups, cuts, starts) = Default::default();
         Setting { columns, common: 0, groups, cuts, starts, ..self.clone() }
+    }
+
+    /// The setting of one recording.
+    pub fn of_recording(&self, number: usize) -> Cow<'_, Setting> {
+        if self.own.iter().all(|own| own.1 == number) {
+            return Cow::Borrowed(self);
+        }
+        let mut setting = self.clone();
+        setting.foreign(number).for_each(|p| setting.theta[p] = 0.0);
+        Cow::Owned(setting)
+    }
+
+    /// Parameters that do not act in a recording.
+    pub fn foreign(&self, number: usize) -> impl Iterator<Item = usize> + use<> {
+        self.own.clone().into_iter().filter(move |own| own.1 != number).map(|own| own.0)
     }
 
     /// The sources with their levels times a factor.
@@ -226,12 +250,16 @@ pub(super) struct Filter<'a> {
     active: Vec<usize>,
     passive: Passive,
     x: Vec<f64>,
+    /// Pressures of the nominal model among them that nothing measures.
+    unseen: Vec<usize>,
     /// Active states and sources, scaled.
     z: DVector<f64>,
     /// Where the model had values last.
     safe: DVector<f64>,
     scale: DVector<f64>,
     p: DMatrix<f64>,
+    /// Greatest variances of the active states; endless where nothing is known of how far they move.
+    most: Vec<f64>,
     /// Transposed d z / d parameters wanted: a row for each of them, because there may be hundreds.
     s: DMatrix<f64>,
     work: Work,
@@ -274,8 +302,12 @@ impl<'a> Filter<'a> {
         let mut z = DVector::zeros(nz);
         active.iter().enumerate().for_each(|(i, &x)| z[i] = start[x] / scale[i]);
         let mut p = DMatrix::identity(nz, nz);
+        let mut unseen = Vec::new();
         for (i, &x) in active.iter().enumerate() {
             let measured = local.linear.c.column(x).iter().any(|c| *c != 0.0);
+            if !measured && setting.travel[x] > 0.0 && local.plan().state_unit(x) == Some("Pa") {
+                unseen.push(i);
+            }
             let deviation = match local.plan().state_unit(x) {
                 Some("K") => START_KELVIN / scale[i],
                 _ if measured => 1.0,
@@ -283,6 +315,11 @@ impl<'a> Filter<'a> {
             };
             p[(i, i)] = deviation * deviation;
         }
+        let worst = |(i, &x): (usize, &usize)| {
+            let most = WORST_KNOWN.powi(2) * p[(i, i)].max(1.0);
+            if setting.travel[x] > 0.0 { most } else { f64::INFINITY }
+        };
+        let most = active.iter().enumerate().map(worst).collect();
         let columns = setting.columns.len();
         let (samples, signals) = (recording.len(), setting.noise.len());
         let pass = Pass {
@@ -306,12 +343,14 @@ impl<'a> Filter<'a> {
             inputs: Inputs::new(recording),
             between: vec![0.0; recording.inputs.len()],
             active,
+            unseen,
             passive,
             x: start,
             safe: z.clone(),
             z,
             scale,
             p,
+            most,
             s: DMatrix::zeros(columns, nz),
             work: Work {
                 a: DMatrix::zeros(nz, nz),
@@ -372,6 +411,9 @@ impl<'a> Filter<'a> {
         self.safe.copy_from(&before);
         let point = if k == 0 { self.first_point(t) } else { before };
         let (here, innovation, output) = self.update(k, &point)?;
+        for &i in self.unseen.iter().filter(|&&i| point[i] > 0.0) {
+            self.z[i] = self.z[i].max(LEAST_PRESSURE * point[i]);
+        }
         let mut correction = &self.z - &point;
         if (k + 1) * BLOCKS / samples > k * BLOCKS / samples {
             self.close_block();

@@ -6,7 +6,7 @@ use super::evidence::{self, Explained};
 use super::filter::{self, Pass, Setting, Source, Tape};
 use super::levels;
 use super::problem::{Assembled, Problem};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 /// Iterations at most of a fit that counts.
@@ -20,6 +20,9 @@ const WORTHWHILE: f64 = 0.3;
 /// Levels that stay so far below the greatest growth of a round are settled.
 const SETTLED: f64 = 3.0;
 
+/// Standard deviations within which every prior is Gaussian.
+const OPEN: f64 = 5.0;
+
 /// Prior of a parameter of the plan.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prior {
@@ -29,10 +32,27 @@ pub struct Prior {
     pub mean: f64,
     /// Standard deviation.
     pub sigma: f64,
+    /// How large it is is not known: beyond [`OPEN`] standard deviations the prior falls with the inverse of the distance
+    /// only. A Gaussian would charge what is strongest with a fixed part of all that it explains.
+    pub open: bool,
     /// Least value.
     pub min: f64,
     /// Greatest value.
     pub max: f64,
+}
+
+impl Prior {
+    /// Standard deviation of the Gaussian that stands for the prior about a value.
+    pub fn deviation_at(&self, value: f64) -> f64 {
+        let beyond = ((value - self.mean) / self.sigma).abs();
+        if self.open { self.sigma * (beyond / OPEN).max(1.0) } else { self.sigma }
+    }
+
+    /// Log density at a value, relative to that at the mean.
+    fn log_density(&self, value: f64) -> f64 {
+        let deviation = self.deviation_at(value);
+        -0.5 * ((value - self.mean) / deviation).powi(2) - (deviation / self.sigma).ln()
+    }
 }
 
 /// A fitted model.
@@ -60,7 +80,17 @@ pub struct Fit {
 
 /// Runs the filter over all recordings, in parallel.
 pub fn passes(setting: &Setting, train: &[Recording], samples: usize, tape: Tape) -> Option<Vec<Pass>> {
-    train.par_iter().enumerate().map(|(i, r)| filter::run(setting, r, i, samples, tape).ok()).collect()
+    let one = |(i, r): (usize, &Recording)| {
+        let mut pass = filter::run(&setting.of_recording(i), r, i, samples, tape).ok()?;
+        for foreign in setting.foreign(i) {
+            for k in (0..setting.columns.len()).filter(|k| setting.columns[*k] == foreign) {
+                pass.gram.row_mut(k).fill(0.0);
+                pass.gram.column_mut(k).fill(0.0);
+            }
+        }
+        Some(pass)
+    };
+    train.par_iter().enumerate().map(one).collect()
 }
 
 fn total(passes: &[Pass]) -> (f64, DMatrix<f64>) {
@@ -79,6 +109,7 @@ pub fn tolerance_priors(problem: &Problem<'_>) -> Vec<Prior> {
         parameter,
         mean: t.nominal,
         sigma: t.sigma,
+        open: false,
         min: t.min.max(t.nominal - WITHIN * t.sigma),
         max: t.max.min(t.nominal + WITHIN * t.sigma),
     };
@@ -145,7 +176,6 @@ pub fn fit(
     setting.columns = priors.iter().map(|p| p.parameter).collect();
     setting.common = setting.columns.len();
     let set: Vec<usize> = (0..priors.len()).collect();
-    let sigmas: Vec<f64> = priors.iter().map(|p| p.sigma).collect();
     let mut found = passes(&setting, train, usize::MAX, Tape::Nothing)?;
     setting.starts = found.iter().map(|p| p.start.clone()).collect();
     let share =
@@ -153,9 +183,8 @@ pub fn fit(
     for _ in 0..iterations {
         let (likelihood, gram) = total(&found);
         let (gram, before) = (gram * share, objective(&setting, priors, likelihood * share));
-        let step = explain(&setting, &gram, priors, &set, &sigmas)?;
-        let change: Vec<f64> = step.estimate.iter().copied().collect();
-        let promise = 0.5 * quadratic(&gram, &change, &sigmas);
+        let sigmas = deviations(&setting, priors);
+        let (change, promise) = step(&setting, &gram, priors, &sigmas)?;
         if promise < WORTHWHILE {
             break;
         }
@@ -188,6 +217,7 @@ pub fn fit(
     }
     let (likelihood, gram) = total(&found);
     let gram = gram * share;
+    let sigmas = deviations(&setting, priors);
     let local = explain(&setting, &gram, priors, &set, &sigmas)?;
     // what another step promises has not been reached: a bound may be in the way, or the model bend
     let promise = 0.5 * quadratic(&gram, local.estimate.as_slice(), &sigmas);
@@ -230,6 +260,38 @@ pub fn polish(mut best: Fit, train: &[Recording], share: Option<f64>) -> Fit {
     best
 }
 
+/// The step of Gauss and Newton within the bounds, and what it promises, nats: parameters that it would take beyond a bound
+/// go there, and the others make the best of that.
+fn step(setting: &Setting, gram: &DMatrix<f64>, priors: &[Prior], sigmas: &[f64]) -> Option<(Vec<f64>, f64)> {
+    let n = priors.len();
+    let value = |i: usize| setting.theta[priors[i].parameter];
+    // in units of the priors' deviations
+    let curvature = DMatrix::from_fn(n, n, |i, j| sigmas[i] * gram[(i, j)] * sigmas[j] + f64::from(u8::from(i == j)));
+    let slope = DVector::from_fn(n, |i, _| sigmas[i] * gram[(i, n)] + (priors[i].mean - value(i)) / sigmas[i]);
+    let mut change = DVector::zeros(n);
+    let mut free: Vec<usize> = (0..n).collect();
+    loop {
+        let matrix = DMatrix::from_fn(free.len(), free.len(), |i, j| curvature[(free[i], free[j])]);
+        let rest = &slope - &curvature * &change;
+        let right = DVector::from_fn(free.len(), |i, _| rest[free[i]]);
+        let best = matrix.cholesky()?.solve(&right);
+        let end = |i: usize, k: usize| {
+            let wanted = value(i) + sigmas[i] * (change[i] + best[k]);
+            (wanted < priors[i].min || wanted > priors[i].max)
+                .then(|| (wanted.clamp(priors[i].min, priors[i].max) - value(i)) / sigmas[i])
+        };
+        let ends: Vec<(usize, f64)> = free.iter().enumerate().filter_map(|(k, &i)| Some((i, end(i, k)?))).collect();
+        if ends.is_empty() {
+            free.iter().enumerate().for_each(|(k, &i)| change[i] += best[k]);
+            break;
+        }
+        ends.iter().for_each(|&(i, d)| change[i] = d);
+        free.retain(|i| ends.iter().all(|e| e.0 != *i));
+    }
+    let promise = slope.dot(&change) - 0.5 * change.dot(&(&curvature * &change));
+    Some((change.iter().zip(sigmas).map(|(d, s)| d * s).collect(), promise))
+}
+
 fn explain(
     setting: &Setting,
     gram: &DMatrix<f64>,
@@ -242,8 +304,11 @@ fn explain(
 }
 
 fn objective(setting: &Setting, priors: &[Prior], likelihood: f64) -> f64 {
-    let square = |p: &Prior| ((setting.theta[p.parameter] - p.mean) / p.sigma).powi(2);
-    likelihood - 0.5 * priors.iter().map(square).sum::<f64>()
+    likelihood + priors.iter().map(|p| p.log_density(setting.theta[p.parameter])).sum::<f64>()
+}
+
+fn deviations(setting: &Setting, priors: &[Prior]) -> Vec<f64> {
+    priors.iter().map(|p| p.deviation_at(setting.theta[p.parameter])).collect()
 }
 
 fn quadratic(gram: &DMatrix<f64>, d: &[f64], sigmas: &[f64]) -> f64 {

@@ -151,7 +151,7 @@ impl Stepper<'_> {
 
 /// Simulates all recordings.
 pub fn simulate_all(setting: &Setting, recordings: &[Recording]) -> Vec<Option<Residuals>> {
-    recordings.par_iter().map(|r| simulate(setting, r)).collect()
+    recordings.par_iter().enumerate().map(|(i, r)| simulate(&setting.of_recording(i), r)).collect()
 }
 
 /// The gap by its definition: per signal sqrt(max(0, mean square - noise variance)) over full scale. A run that does not

@@ -556,6 +556,7 @@ fn drift(free: &Free) -> Hypothesis {
     let site = Site::Parameter(free.name.clone());
     let attachment = Attachment { effect: None, site, sense: vec![], base: vec![], temperature: None, place };
     let coefficient = Coefficient {
+        recording: None,
         name: free.name.clone(),
         unit: String::new(),
         off: free.nominal,

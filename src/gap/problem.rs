@@ -92,6 +92,8 @@ pub struct Assembled {
     pub sources: Range<usize>,
     /// Per attached hypothesis its coefficients and shapes.
     pub attached: Vec<Vec<usize>>,
+    /// Parameters that act in one recording only, and its number.
+    pub own: Vec<(usize, usize)>,
     /// Usual size of each state.
     pub sizes: Vec<f64>,
     /// How far each state moves in the nominal model, SI; 0 where that is not known.
@@ -163,7 +165,12 @@ impl Problem<'_> {
             if i < shaped { usize::MAX } else { count }
         };
         let counts: Vec<usize> = chosen.iter().enumerate().map(still).collect();
-        self.lifted(flat, augmented, &counts)
+        let mut model = self.lifted(flat, augmented, &counts)?;
+        for (places, c) in model.attached.iter().zip(chosen) {
+            let coefficients = &self.hypotheses[c.hypothesis].coefficients;
+            model.own.extend(places.iter().zip(coefficients).filter_map(|(&place, c)| Some((place, c.recording?))));
+        }
+        Ok(model)
     }
 
     /// Puts what the nominal model says of the signals into the train recordings; `None` where it does not reach the end.
@@ -224,8 +231,9 @@ impl Problem<'_> {
     /// A choice as the augmenter takes it.
     pub fn attached(&self, chosen: &Chosen, name: &str) -> Attached<'_> {
         let hypothesis = &self.hypotheses[chosen.hypothesis];
-        let names = hypothesis.coefficients.iter().map(|c| &c.name).chain(hypothesis.shapes.iter().map(|s| &s.name));
-        let values = names.cloned().zip(chosen.values.iter().copied()).collect();
+        let coefficients = hypothesis.coefficients.iter().map(super::effects::Coefficient::label);
+        let names = coefficients.chain(hypothesis.shapes.iter().map(|s| s.name.clone()));
+        let values = names.zip(chosen.values.iter().copied()).collect();
         Attached { name: name.into(), hypothesis, values }
     }
 
@@ -285,6 +293,7 @@ impl Problem<'_> {
             free,
             sources,
             attached,
+            own: Vec::new(),
             sizes,
             travel,
             starts: Vec::new(),
@@ -302,6 +311,7 @@ impl Assembled {
         Setting {
             plan: self.plan.clone(),
             theta: self.theta.clone(),
+            own: self.own.clone(),
             sources: self.sources.clone().zip(like).map(source).collect(),
             noise: noise.to_vec(),
             most_noise: self.most_noise.clone(),

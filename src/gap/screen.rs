@@ -94,23 +94,39 @@ pub fn screen(problem: &Problem<'_>, base: &Fit, accepted: &[Accepted]) -> Scree
     let drifts: Vec<usize> = drifts.into_iter().filter(open).collect();
     let before: Vec<Chosen> = accepted.iter().map(|a| a.chosen.clone()).collect();
     let Some((chosen, assembled)) = attachable(problem, &before, chosen) else { return Screened::default() };
-    let joint = |b: Background| Joint::new(problem, base, accepted, &assembled, &chosen, &b);
-    let (full, reduced) = rayon::join(|| joint(Background::of(base, FULL)), || joint(Background::of(base, REDUCED)));
-    let Some(full) = full else { return Screened::default() };
-    let mut followed = full.weigh(&drifts, None);
-    if let Some(reduced) = reduced {
-        for c in reduced.weigh(&drifts, Some(full.floor)) {
-            match followed.iter_mut().find(|f| f.chosen.hypothesis == c.chosen.hypothesis) {
-                Some(f) if f.gain < c.gain => *f = c,
-                _ => {}
-            }
-        }
+    let joints = |b: Background| {
+        let own = Joint::new(problem, base, accepted, &assembled, &chosen, &b);
+        own.map_or_else(|| Joint::halves(problem, base, accepted, &chosen, &b), |joint| vec![joint])
+    };
+    let (full, reduced) = rayon::join(|| joints(Background::of(base, FULL)), || joints(Background::of(base, REDUCED)));
+    let floor = full.iter().map(|joint| joint.floor).reduce(f64::max);
+    let mut followed = weighed(&full, &drifts, None);
+    if floor.is_some() {
+        merge(&mut followed, weighed(&reduced, &drifts, floor));
     }
     followed.sort_by(|a, b| b.gain.total_cmp(&a.gain));
     let hidden = followed.first().is_none_or(|c| c.gain < HIDING);
-    let silent = if hidden { Background::silent(problem, base).and_then(joint) } else { None };
-    let driven = silent.map_or_else(Vec::new, |silent| silent.weigh(&drifts, None));
-    Screened { followed, driven }
+    let silent = if hidden { Background::silent(problem, base).map_or_else(Vec::new, joints) } else { Vec::new() };
+    Screened { followed, driven: weighed(&silent, &drifts, None) }
+}
+
+/// What joint models say of their hypotheses and of all drifts, best first.
+fn weighed(joints: &[Joint<'_>], drifts: &[usize], floor: Option<f64>) -> Vec<Candidate> {
+    let mut found = Vec::new();
+    joints.iter().for_each(|joint| merge(&mut found, joint.weigh(drifts, floor)));
+    found.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    found
+}
+
+/// Adds what was weighed in another joint model: of each hypothesis the best.
+fn merge(found: &mut Vec<Candidate>, others: Vec<Candidate>) {
+    for c in others {
+        match found.iter_mut().find(|f| f.chosen.hypothesis == c.chosen.hypothesis) {
+            Some(f) if f.gain < c.gain => *f = c,
+            Some(_) => {}
+            None => found.push(c),
+        }
+    }
 }
 
 /// Levels of the sources and of the noise under which hypotheses are weighed, and the share of samples that count.
@@ -180,7 +196,7 @@ pub fn attachable(problem: &Problem<'_>, before: &[Chosen], chosen: Vec<Chosen>)
 
 /// Those of which halves of halves can be attached.
 fn fitting(joins: &dyn Fn(&[Chosen]) -> bool, mut chosen: Vec<Chosen>) -> Vec<Chosen> {
-    if chosen.len() == 1 {
+    if chosen.len() <= 1 {
         return Vec::new();
     }
     let right = chosen.split_off(chosen.len() / 2);
@@ -252,6 +268,31 @@ impl<'a> Joint<'a> {
         let (base, means, sigmas) = joint.base();
         joint.floor = likelihood + evidence::explain(&joint.gram, &base, &means, &sigmas)?.evidence;
         Some(joint)
+    }
+
+    /// Several where one joint model has no values somewhere on the way: halves of halves, without those that fail alone.
+    fn halves(
+        problem: &'a Problem<'a>,
+        base: &Fit,
+        accepted: &[Accepted],
+        chosen: &[Chosen],
+        background: &Background,
+    ) -> Vec<Self> {
+        let before: Vec<Chosen> = accepted.iter().map(|a| a.chosen.clone()).collect();
+        let own = |chosen: &[Chosen]| {
+            let (chosen, assembled) = attachable(problem, &before, chosen.to_vec())?;
+            Joint::new(problem, base, accepted, &assembled, &chosen, background)
+        };
+        let half = |chosen: &[Chosen]| match own(chosen) {
+            Some(joint) => vec![joint],
+            None if chosen.len() > 1 => Joint::halves(problem, base, accepted, chosen, background),
+            None => Vec::new(),
+        };
+        let (left, right) = chosen.split_at(chosen.len() / 2);
+        if left.is_empty() || own(&[]).is_none() {
+            return Vec::new();
+        }
+        [half(left), half(right)].into_iter().flatten().collect()
     }
 
     /// Columns, means and deviations of what is always free.
@@ -362,7 +403,7 @@ impl<'a> Joint<'a> {
         let value = t.nominal - means[index] + found.estimate[index];
         let (min, max) = (t.min.max(t.nominal - AT_MOST * broad), t.max.min(t.nominal + AT_MOST * broad));
         let value = value.clamp(min, max);
-        let prior = Prior { parameter: index, mean: t.nominal, sigma: broad, min, max };
+        let prior = Prior { parameter: index, mean: t.nominal, sigma: broad, open: true, min, max };
         let visible = 0.5 * (10.0 * t.sigma).powi(2) * info;
         let chosen = Chosen { hypothesis, values: vec![value] };
         Some(Candidate { chosen, gain: found.evidence, priors: vec![prior], visible })
@@ -381,6 +422,7 @@ pub fn priors(h: &Hypothesis, values: &[f64], sigmas: &[f64]) -> Vec<Prior> {
         parameter: 0,
         mean: c.off,
         sigma: *sigma,
+        open: true,
         min: c.min.unwrap_or(f64::NEG_INFINITY),
         max: c.max.unwrap_or(f64::INFINITY),
     };
@@ -395,6 +437,7 @@ pub fn shape_prior(s: &Shape, value: f64) -> Prior {
         parameter: 0,
         mean: value,
         sigma: 0.5 * value.abs().max(1e-300),
+        open: false,
         min: (0.1 * value).min(10.0 * value).max(s.min.unwrap_or(f64::NEG_INFINITY)),
         max: (0.1 * value).max(10.0 * value).min(s.max.unwrap_or(f64::INFINITY)),
     }

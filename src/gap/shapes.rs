@@ -2,7 +2,7 @@
 //! occur, forms over a potential to its range, frequencies to the lines that the nominal model has not.
 
 use super::data::Recording;
-use super::effects::Shape;
+use super::effects::{Coefficient, Shape};
 use super::hypotheses::{Attachment, Hypothesis, Signal, Site};
 use super::lines;
 use super::problem::Problem;
@@ -38,7 +38,9 @@ pub fn fit(problem: &mut Problem<'_>) {
     let mut hypotheses = std::mem::take(&mut problem.hypotheses);
     hypotheses.retain_mut(|h| h.attachments.iter_mut().all(ranged));
     problem.hypotheses = hypotheses;
+    let recordings = problem.train.len();
     for h in &mut problem.hypotheses {
+        each_its_own(&mut h.coefficients, recordings);
         let site = h.attachments[0].site.clone();
         let size = size(&site, &sizes);
         for shape in &mut h.shapes {
@@ -60,6 +62,14 @@ pub fn fit(problem: &mut Problem<'_>) {
         }
     }
     problem.hypotheses.retain(|h| h.shapes.iter().all(|s| !s.grid.is_empty()));
+}
+
+/// Coefficients that differ from recording to recording, one for each.
+fn each_its_own(coefficients: &mut Vec<Coefficient>, recordings: usize) {
+    let (own, mut all): (Vec<_>, Vec<_>) = coefficients.drain(..).partition(|c| c.recording.is_some());
+    let numbered = |k: usize| own.iter().map(move |c| Coefficient { recording: Some(k), ..c.clone() });
+    all.extend((0..recordings).flat_map(numbered));
+    *coefficients = all;
 }
 
 /// A time within what the recordings show: what takes longer than a part of them to fade is not seen to fade at all.

@@ -6,5 +6,5 @@ model PeriodicForce "A periodic force that follows no variable"
   parameter SI.Frequency nu(min = 1e-9) = 10 "Its frequency";
 equation
   f = a_s*sin(6.283185307179586*nu*time) + a_c*cos(6.283185307179586*nu*time);
-  annotation(__bramah(family = "shape", coefficients = {"a_s", "a_c"}, shapes(nu = {10}), line = {"nu"}));
+  annotation(__bramah(family = "shape", coefficients = {"a_s", "a_c"}, own = {"a_s", "a_c"}, shapes(nu = {10}), line = {"nu"}));
 end PeriodicForce;

@@ -339,7 +339,7 @@ pub(super) fn make_whole(h: &Hypothesis, candidate: &mut Candidate) {
         let Some(max) = share(c) else { continue };
         candidate.chosen.values[i] = max;
         let prior = &mut candidate.priors[i];
-        (prior.mean, prior.sigma, prior.min) = (max, WHOLE * max, 0.5 * max);
+        (prior.mean, prior.sigma, prior.open, prior.min) = (max, WHOLE * max, false, 0.5 * max);
     }
 }
 

@@ -13,15 +13,30 @@ const PARTS: usize = 8;
 const BEND: f64 = 0.2;
 const LEAST_BEND: f64 = 1e-4;
 /// A part is halved when the model bends so many times more than that within it, and so often at most; more often only
-/// where the model has no values at its end.
+/// where the linear model is lost (a valve open far below the pressure at which it closes): the model has no values at its
+/// end, or bends by this part of a state's size too. Where it is lost still, the state waits.
 const FAR: f64 = 5.0;
 const FINEST: u32 = 2;
-const DEEPEST: u32 = 5;
+const LOST: f64 = 0.3;
+const DEEPEST: u32 = 9;
+/// A step in which a state would run away by this factor is cut even where another model did without.
+const RUNAWAY: f64 = 10.0;
 /// Parts for each sample on the average, beyond which no part is halved any more.
 const MOST_PARTS: usize = 8;
 /// A corrected state counts as out of the model's reach when its rates differ by so many sizes of the states over a step
 /// from what was expected.
 const STRANGE: f64 = 10.0;
+
+/// How far the model is from linear over a step: in parts of what is allowed, and whether it is nothing like it.
+struct Bend {
+    times: f64,
+    lost: bool,
+}
+
+impl Bend {
+    /// Where the model has no values.
+    const UNKNOWN: Bend = Bend { times: f64::INFINITY, lost: true };
+}
 
 impl Filter<'_> {
     /// From the filtered state at sample `k` to the predicted one at the next: one step where the model is nearly linear
@@ -47,14 +62,16 @@ impl Filter<'_> {
         rate.rows_mut(0, n).axpy(0.5 * h, &ramp, 1.0);
         self.inputs.at(0.5 * h, &mut self.between);
         let finite = change.iter().all(|v| v.is_finite());
-        let along = if finite { &change + 2.0 * &*correction } else { 2.0 * &*correction };
-        let moved: Vec<f64> = (0..self.active.len()).map(|i| along[i] * self.scale[i]).collect();
-        self.passive.step(&self.local, &self.active, &moved, &mut self.x, h);
+        let carried = self.x.clone();
+        if finite {
+            self.carry(&change, correction, h);
+        }
         let nearly_linear = match self.setting.cuts.get(self.number) {
             Some(cut) => !cut.get(k).copied().unwrap_or(false),
-            None => self.bend(t + h, &rate, &change, h, 1.0),
+            None => self.bend(t + h, &rate, &change, h).times <= 1.0,
         };
-        let nearly_linear = nearly_linear && finite;
+        let m = &self.work.exponential.transition;
+        let nearly_linear = nearly_linear && finite && m.diagonal().iter().all(|m| m.abs() < RUNAWAY);
         self.pass.cut[k] = !nearly_linear;
         if nearly_linear {
             self.propagate(h);
@@ -62,10 +79,20 @@ impl Filter<'_> {
             return;
         }
         self.z = start;
+        self.x = carried;
         self.temper(t, &rate, correction, h);
         self.work.total.fill_with_identity();
-        let part = h / PARTS as f64;
+        let (start, part) = (self.z.clone(), h / PARTS as f64);
         (0..PARTS).for_each(|i| self.advance(t, i as f64 * part, part, 0));
+        let change = &self.z - start;
+        self.carry(&change, correction, h);
+    }
+
+    /// Takes the passive states over a step in which the active ones changed so much behind a correction.
+    fn carry(&mut self, change: &DVector<f64>, correction: &DVector<f64>, h: f64) {
+        let moved: Vec<f64> =
+            (0..self.active.len()).map(|i| (change[i] + 2.0 * correction[i]) * self.scale[i]).collect();
+        self.passive.step(&self.local, &self.active, &moved, &mut self.x, h);
     }
 
     /// Takes back part of a correction that leads to where the model is nothing like what it was linearised as (an
@@ -106,16 +133,16 @@ impl Filter<'_> {
         self.work.exponential.compute(&self.work.a, h, None);
         let change = &self.work.exponential.integral * &rate;
         self.z += &change;
-        let possible = self.possible(t + h);
+        let bend = if self.possible(t + h) { self.bend(t + h, &rate, &change, h) } else { Bend::UNKNOWN };
         self.parts += 1;
         let deepest = if self.parts > MOST_PARTS * self.recording.len() { 0 } else { DEEPEST };
-        if depth < deepest && (!possible || depth < FINEST && !self.bend(t + h, &rate, &change, h, FAR)) {
+        if depth < deepest && (bend.lost || depth < FINEST && bend.times > FAR) {
             self.z = start;
             self.advance(sampled, after, 0.5 * h, depth + 1);
             self.advance(sampled, after + 0.5 * h, 0.5 * h, depth + 1);
             return;
         }
-        if !possible {
+        if bend.lost {
             self.z = start;
             return;
         }
@@ -129,18 +156,24 @@ impl Filter<'_> {
         self.local.linearize(t, &self.x, &self.theta, &self.between).is_ok()
     }
 
-    /// Whether x' at the end of a step is what the linear model says, within so many times the uncertainty of the state.
-    fn bend(&mut self, t: f64, rate: &DVector<f64>, change: &DVector<f64>, h: f64, times: f64) -> bool {
+    /// How far x' at the end of a step is from what the linear model says.
+    fn bend(&mut self, t: f64, rate: &DVector<f64>, change: &DVector<f64>, h: f64) -> Bend {
         let expected = rate + &self.work.a * change;
         self.load();
         if self.local.evaluate(t, &self.x, &self.theta, &self.between).is_err() {
-            return false;
+            return Bend::UNKNOWN;
         }
-        self.active.iter().enumerate().all(|(i, &xi)| {
+        let mut bend = Bend { times: 0.0, lost: false };
+        for (i, &xi) in self.active.iter().enumerate() {
             let found = self.local.rates[xi] / self.scale[i];
-            let allowed = (BEND * self.p[(i, i)].max(0.0).sqrt()).max(LEAST_BEND);
-            0.5 * h * (found - expected[i]).abs() <= times * allowed
-        })
+            let moved = 0.5 * h * (found - expected[i]).abs();
+            // states of an effect may have no size that says anything
+            let most = if self.most[i].is_finite() { LOST } else { f64::INFINITY };
+            let allowed = (BEND * self.p[(i, i)].max(0.0).sqrt()).max(LEAST_BEND).min(most);
+            bend.times = bend.times.max(moved / allowed);
+            bend.lost |= moved.is_nan() || moved > most;
+        }
+        bend
     }
 
     fn source_rates(&self, correction: &DVector<f64>, rate: &mut DVector<f64>) {
@@ -194,6 +227,21 @@ impl Filter<'_> {
             self.p[(n + j, n + j)] += 0.5 * q;
         }
         symmetrize(&mut self.p);
+        self.forget();
+    }
+
+    /// Scales down what is carried along of states that run away.
+    fn forget(&mut self) {
+        for (i, &most) in self.most.iter().enumerate() {
+            let variance = self.p[(i, i)];
+            if variance > most {
+                let part = (most / variance).sqrt();
+                self.p.row_mut(i).scale_mut(part);
+                self.p.column_mut(i).scale_mut(part);
+                self.s.column_mut(i).scale_mut(part);
+                self.work.exponential.transition.row_mut(i).scale_mut(part);
+            }
+        }
     }
 }
 
