@@ -84,6 +84,7 @@ pub(super) fn run(args: &IdentifyArgs, messages: &mut Messages) -> Result<Ending
     let problem = Problem::new(&model, &bound, &train).map_err(|d| opened.failure(d, messages))?;
     let fail = |d, opened: &Opened, messages: &mut Messages| opened.failure(vec![d], messages);
     let found = Identification::new(&problem, &train, args.method.method()).map_err(|d| fail(d, &opened, messages))?;
+    messages.say(&found.suspicions);
     messages.remark(separation_words(&problem, &found).trim_end());
     let fit = found.fit_from(args.starts.into(), args.seed).map_err(|d| fail(d, &opened, messages))?;
     let held = if bound.has(Role::Held) { opened.load(Role::Held, messages)? } else { Vec::new() };

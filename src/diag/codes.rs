@@ -118,6 +118,7 @@ codes! {
     BadCheckpoint = "E606", Error, "a run cannot go on from a checkpoint";
     WorseThanConstant = "W607", Warning, "a fitted signal is met worse than by a constant";
     SteppingInput = "W608", Warning, "an input that steps is joined by straight lines";
+    ForeignColumn = "W609", Warning, "a column seems to have another sign or unit than the study says";
     // 9xx command line
     BadArgument = "E901", Error, "an argument cannot be used";
     FileAccess = "E902", Error, "a file cannot be read or written";

@@ -186,13 +186,13 @@ impl Head {
         let known: Vec<String> = self.names.iter().map(|n| format!("`{n}`")).collect();
         let shown = known.iter().take(10).cloned().collect::<Vec<_>>().join(", ");
         let more = if known.len() > 10 { format!(" and {} more", known.len() - 10) } else { String::new() };
-        let mut problem = self
+        let problem = self
             .error(place, format!("there is no column `{name}`"), "the names of the columns")
             .note(format!("the file has {shown}{more}"));
         if let Some(near) = crate::diag::nearest(name, self.names.iter().map(String::as_str)) {
-            problem = problem.help(format!("did you mean `{near}`?"));
+            return problem.help(format!("did you mean `{near}`?"));
         }
-        problem
+        problem.help("name one of these")
     }
 
     /// Takes the row as units when it holds words only, also in the time column.

@@ -208,7 +208,9 @@ impl<'a> Binder<'a> {
             Ok(_) => Some(()),
             Err(()) => {
                 let column = column.unwrap_or("");
-                self.report(span, format!("the column is in `{column}`, `{name}` in `{unit}`"), "cannot be converted");
+                let text = format!("the column is in `{column}`, `{name}` in `{unit}`");
+                let help = "give a `unit` of the same kind, or tie the column to another variable";
+                self.diagnostics.push(at(span, text, "cannot be converted").help(help));
                 None
             }
         }

@@ -1,4 +1,4 @@
-//! Doubts about a fit that a user should hear first: signals met worse than a constant would meet them.
+//! Doubts that a user should hear first: columns of another sign or unit, signals met worse than by a constant.
 
 use super::{Course, Fit, Method, Problem, SignalFit};
 use crate::diag::{Code, Diagnostic};
@@ -9,6 +9,33 @@ use crate::results::number::rounded;
 const CONSTANT: f64 = 1.05;
 /// From this part of the measured variation on that a multiple of the model explains, the multiple is told.
 const EXPLAINED: f64 = 0.5;
+
+/// Measured values that are so many times those of the model, or its part, are in another unit.
+const FAR: f64 = 300.0;
+
+/// Warnings ([`Code::ForeignColumn`]) about signals that follow the run with the model's own values, but with another
+/// sign or size.
+pub(super) fn foreign(problem: &Problem<'_>, courses: &[Course]) -> Vec<Diagnostic> {
+    let strange = |f: &f64| *f < 0.0 || !(1.0 / FAR..FAR).contains(f);
+    let found = courses.iter().filter_map(|c| Some((c, multiple(c).filter(strange)?)));
+    found.map(|(course, factor)| suspicion(problem, course, factor)).collect()
+}
+
+fn suspicion(problem: &Problem<'_>, course: &Course, factor: f64) -> Diagnostic {
+    let times = rounded(factor, 3);
+    let text = format!("`{}` goes {times} times as in a run with the values of the model", course.name);
+    let d = Diagnostic::new(Code::ForeignColumn, text);
+    let d = match problem.bound.signals.iter().find(|s| s.name == course.name) {
+        Some(signal) => d.at(signal.entry.span, "compared here"),
+        None => d,
+    };
+    let cause = match (factor < 0.0, (1.0 / FAR..FAR).contains(&factor.abs())) {
+        (true, true) => "a `sign`, of this column or of an input",
+        (true, false) => "a `sign` and a `unit`, of this column or of an input",
+        _ => "a `unit`, of this column or of an input",
+    };
+    d.help(format!("likely causes: {cause}; a parameter of the model that is far off"))
+}
 
 /// Warnings ([`Code::WorseThanConstant`]) about signals whose errors are larger than their own deviation, on the train
 /// recordings or on held ones.

@@ -38,6 +38,7 @@ use crate::Model;
 use crate::analysis::noise;
 use crate::diag::{Code, Diagnostic};
 use crate::study::{Bound, Recording, full_scales};
+use doubts::foreign;
 use exact::Exact;
 use fit::signal_fits;
 use inverse::{Inverse, InverseModel};
@@ -193,6 +194,8 @@ pub struct Identification<'a> {
     pub separation: Separation,
     /// Variables whose measurement would tell the members of each blind group apart, best first.
     pub advice: Vec<Vec<String>>,
+    /// Warnings about columns that seem to have another sign or unit than the study says.
+    pub suspicions: Vec<Diagnostic>,
 }
 
 impl<'a> Identification<'a> {
@@ -216,6 +219,7 @@ impl<'a> Identification<'a> {
             exact: OnceLock::new(),
             separation: Separation { rank: 0, condition: 1.0, blind: Vec::new(), deviation: Vec::new() },
             advice: Vec::new(),
+            suspicions: Vec::new(),
         };
         found.judge()?;
         Ok(found)
@@ -228,11 +232,19 @@ impl<'a> Identification<'a> {
 
     fn judge(&mut self) -> Result<(), Diagnostic> {
         let z = vec![0.0; self.problem.free.len()];
+        let mut suspicions = Vec::new();
         let information = match self.inverse_model()? {
             Some(mut model) => information(&mut model, z.len()),
-            None => information(&mut self.output_error()?, z.len()),
+            None => {
+                let mut model = self.output_error()?;
+                if let Some(residual) = model.residual(&vec![0.0; model.unknowns()]) {
+                    suspicions = foreign(self.problem, &model.courses(self.train, residual.as_slice()));
+                }
+                information(&mut model, z.len())
+            }
         };
         let information = information.map_err(|broken| cannot_follow(broken.as_ref()))?;
+        self.suspicions = suspicions;
         self.separation = separate(&information);
         self.advice = self.separation.blind.iter().map(|b| self.what_separates(b)).collect();
         Ok(())
@@ -258,6 +270,8 @@ impl<'a> Identification<'a> {
         let shown = (0..).map(crate::expr::VarId).zip(&flat.variables).filter(|(_, v)| {
             !v.hidden && v.ty == crate::flat::Type::Real && v.variability == crate::flat::Variability::Continuous
         });
+        let measured = |v: &crate::expr::VarId| self.problem.bound.signals.iter().any(|s| s.variable == *v);
+        let shown = shown.filter(|(v, _)| !measured(v));
         let (wanted, names): (Vec<_>, Vec<_>) = shown.map(|(v, variable)| (v, &variable.name)).unzip();
         let mut z = vec![0.0; runs.unknowns()];
         let Ok(base) = runs.simulate(0, &z, &wanted) else { return Vec::new() };

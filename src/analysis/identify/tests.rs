@@ -361,3 +361,25 @@ fn a_derivative_without_a_value_is_left_to_differences() {
         assert!(fit.values[0].is_finite() && fit.deviations[0] > 0.0, "{:?}", fit.values);
     });
 }
+
+#[test]
+fn columns_of_another_sign_or_unit_are_suspected() {
+    let text = study("T = { min = 0.01 }\nk = { sigma = \"80 %\" }\n");
+    let times = |factor: f64| {
+        let line = |l: &str| match l.rsplit_once(',').map(|(rest, x)| (rest, x.parse::<f64>())) {
+            Some((rest, Ok(x))) => format!("{rest},{}\n", factor * x),
+            _ => format!("{l}\n"),
+        };
+        lag_recording(1, 0.02).lines().map(line).collect::<String>()
+    };
+    for (factor, cause) in [(1.0, None), (-1.0, Some("a `sign`, of")), (1000.0, Some("a `unit`, of"))] {
+        let world = world(LAG, &text, times(factor), times(factor));
+        with_fit(&world, Method::Output, |_, found, _| {
+            let said: Vec<&String> = found.suspicions.iter().flat_map(|d| &d.help).collect();
+            match cause {
+                Some(cause) => assert!(said.len() == 1 && said[0].contains(cause), "{factor}: {said:?}"),
+                None => assert!(said.is_empty(), "{said:?}"),
+            }
+        });
+    }
+}
