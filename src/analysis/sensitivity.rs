@@ -68,8 +68,9 @@ pub fn sensitivity(
 /// How far what was carried along may be from a difference, as a part of its largest value.
 const AGREE: f64 = 1e-3;
 
-/// Step of that difference, as a part of the parameters: long, so that the error of the runs does not show.
-const CHECK: f64 = 1e-3;
+/// Steps of that difference, as a part of the parameters: long, so that the error of the runs does not show, and where
+/// that meets something strongly curved a shorter one. Wrong derivatives agree with neither.
+const CHECKS: [f64; 2] = [1e-3, 1e-4];
 /// The part of the rows that may lie between the moved times of an event.
 const BETWEEN: f64 = 0.02;
 
@@ -115,9 +116,22 @@ fn agrees(
     };
     let share = |(k, m): (usize, &Moved)| if follows(m) { 0.0 } else { (1.0 + k as f64).cos() };
     let share: Vec<f64> = moved.iter().enumerate().map(share).collect();
+    let over = |step: f64| agrees_over(model, settings, moved, (&share, step), columns, interrupt);
+    over(CHECKS[0]).or_else(|why| over(CHECKS[1]).map_err(|_| why))
+}
+
+/// Compares with the difference over one step, in which each parameter takes its share.
+fn agrees_over(
+    model: &Model,
+    settings: &Settings,
+    moved: &[Moved],
+    (share, step): (&[f64], f64),
+    columns: &[Vec<Vec<f64>>],
+    interrupt: &AtomicBool,
+) -> Result<(), String> {
     let at = |sign: f64| {
-        let movers = moved.iter().zip(&share).filter(|(_, s)| **s != 0.0);
-        let changes = movers.map(|(m, s)| (m.variable, m.value + sign * CHECK * s * m.size));
+        let movers = moved.iter().zip(share).filter(|(_, s)| **s != 0.0);
+        let changes = movers.map(|(m, s)| (m.variable, m.value + sign * step * s * m.size));
         run(model, settings, changes, interrupt)
     };
     let (up, down) = rayon::join(|| at(1.0), || at(-1.0));
@@ -127,8 +141,8 @@ fn agrees(
         return Err("moved runs end elsewhere".to_owned());
     }
     for v in 0..settings.wanted.len() {
-        let difference = |row: usize| (up.columns[v][row] - down.columns[v][row]) / (2.0 * CHECK);
-        let sum = |row: usize| columns.iter().zip(&share).map(|(c, s)| s * c[v][row]).sum::<f64>();
+        let difference = |row: usize| (up.columns[v][row] - down.columns[v][row]) / (2.0 * step);
+        let sum = |row: usize| columns.iter().zip(share).map(|(c, s)| s * c[v][row]).sum::<f64>();
         let most = (0..rows).map(|row| sum(row).abs()).fold(0.0, f64::max);
         let size = up.columns[v].iter().fold(0.0f64, |m, x| m.max(x.abs()));
         let apart = |row: &usize| (difference(*row) - sum(*row)).abs() > AGREE * most + 1e-6 * size;
