@@ -32,6 +32,8 @@ pub(super) struct Reduction {
     pub derivative: Vec<u32>,
     /// The row of which a row is the derivative, or [`NONE`].
     pub integral: Vec<u32>,
+    /// How often a row has been differentiated.
+    order: Vec<usize>,
     incidence: Incidence,
     scanner: Scanner,
     time_derivative: TimeDerivative,
@@ -145,6 +147,7 @@ impl Reduction {
         self.equations.push(equation);
         self.derivative.push(NONE);
         self.integral.push(integral);
+        self.order.push(if integral == NONE { 0 } else { self.order[integral as usize] + 1 });
         if integral != NONE {
             self.derivative[integral as usize] = row;
         }
@@ -155,8 +158,11 @@ impl Reduction {
     ///
     /// The system must be structurally regular when a variable and its derivatives count as one unknown, else this
     /// would not end. Unknowns may cancel when an equation is differentiated (`der(x) - der(x)`), so what was regular
-    /// is looked at again where that happens.
+    /// is looked at again where that happens. Where they cancel only beyond what can be seen, orders would grow for
+    /// ever: no order of a regular system is above the number of its unknowns, derivatives among them, since each
+    /// equation is differentiated by at most the sum of the orders of an assignment (Pryce, BIT 41, 2001).
     pub fn reduce(&mut self, draft: &mut Draft) -> Result<(), Diagnostic> {
+        let most = self.columns.len();
         let mut matching = self.first_matching();
         let mut augmenter = Augmenter::default();
         for first in 0..self.equations.len() as u32 {
@@ -170,6 +176,9 @@ impl Reduction {
                 let (mut rows, mut seen) = (augmenter.rows_seen.clone(), augmenter.columns_seen.clone());
                 rows.sort_unstable();
                 seen.sort_unstable();
+                if let Some(&row) = rows.iter().find(|&&r| self.order[r as usize] > most) {
+                    return Err(self.determines_nothing(draft, row));
+                }
                 self.differentiate_all(draft, &rows, &seen, &mut matching)?;
                 row = self.derivative[row as usize];
             }
@@ -235,11 +244,15 @@ impl Reduction {
         }
         let matching = super::matching::maximum(&chains, self.columns.len());
         let Some(lone) = matching.column_of.iter().position(|&c| c == NONE) else { return Ok(()) };
-        let mut row = rows[lone];
+        Err(self.determines_nothing(draft, rows[lone]))
+    }
+
+    /// About the equation of which a row is a derivative.
+    fn determines_nothing(&self, draft: &Draft, mut row: u32) -> Diagnostic {
         while self.integral[row as usize] != NONE {
             row = self.integral[row as usize];
         }
-        Err(messages::cancelling(draft, &draft.equations[self.equations[row as usize] as usize]))
+        messages::cancelling(draft, &draft.equations[self.equations[row as usize] as usize])
     }
 
     fn first_of_chain(&self, mut column: u32) -> u32 {
