@@ -25,7 +25,7 @@ def build_c(folder):
     if not sources or not shutil.which('cc') or not shutil.which('cmake'):
         return None
     os.makedirs(folder, exist_ok=True)
-    program, inst = os.path.join(folder, 'stiff_ida'), os.path.join(folder, 'inst')
+    inst = os.path.join(folder, 'inst')
     with open(os.path.join(folder, 'build.log'), 'w') as log:
         if not glob.glob(inst + '/lib*/libsundials_idas.a'):
             off = ['ARKODE', 'CVODE', 'CVODES', 'IDA', 'KINSOL', 'TESTING', 'SHARED_LIBS']
@@ -39,8 +39,12 @@ def build_c(folder):
         lib = os.path.dirname(glob.glob(inst + '/lib*/libsundials_idas.a')[0])
         names = ['idas', 'nvecserial', 'sunmatrixdense', 'sunlinsoldense', 'sunmatrixband', 'sunlinsolband', 'sunnonlinsolnewton', 'core']
         link = [f'{lib}/libsundials_{n}.a' for n in names]
-        command = ['cc', '-O3', '-march=native', f'-I{inst}/include', HERE + '/peers/stiff_ida.c', '-o', program, *link, '-lm']
-        return program if subprocess.run(command, stdout=log, stderr=log).returncode == 0 else None
+        for program in ('stiff_ida', 'stiff_set'):
+            command = ['cc', '-O3', '-march=native', f'-I{inst}/include', f'{HERE}/peers/{program}.c', '-o',
+                       os.path.join(folder, program), *link, '-lm']
+            if subprocess.run(command, stdout=log, stderr=log).returncode:
+                return None
+    return os.path.join(folder, 'stiff_ida')
 
 def bramah_run(binary, model, tolerance, end, names, extra=()):
     with tempfile.TemporaryDirectory() as d:
@@ -283,6 +287,38 @@ def picture(rows, model, path):
         svg.append(f'<path d="M605 {60 + 20*i}h20" stroke="{c}" stroke-width="2"/><text x="632" y="{64 + 20*i}">{peer}</text>')
     open(path, 'w').write('\n'.join(svg + ['</svg>\n']))
 
+# --- the stiff set ----------------------------------------------------------------------------------------------------
+
+IN_C = ['Robertson', 'HiRes', 'VanDerPol', 'Pollution', 'E5', 'RingModulator', 'AkzoNobel', 'TransistorAmplifier', 'MedicalAkzo',
+        'Brusselator']
+
+def stiff_set(binary, program, full):
+    """Steps and errors of the problems that are written in C too: medians over tolerances around each, the same for both,
+    for the error of a single run is a matter of luck within a factor of ten."""
+    around = [10**(k/26) for k in (range(-4, 5) if full else (-4, 0, 4))]
+    table = tomllib.load(open(ROOT + '/tests/stiff/references.toml', 'rb'))['problem']
+    rows = []
+    for p in table:
+        for tolerance in (1e-4, 1e-6, 1e-8) if p['model'] in IN_C else ():
+            runs = [r for factor in around if (r := beside_c(binary, program, p, tolerance*factor))]
+            if runs:
+                rows.append((p['model'], tolerance, *(statistics.median(column) for column in zip(*runs))))
+    return rows
+
+def beside_c(binary, program, p, tolerance):
+    """Steps of both, errors of both; None where one fails."""
+    with tempfile.TemporaryDirectory() as d:
+        open(d + '/run.mo', 'w').write(f"model Run\n  extends {p['model']}({p.get('modify', '')});\nend Run;\n")
+        own = bramah_run(binary, d + '/run.mo', tolerance, p['end'], list(p['values']))
+    run = subprocess.run([program, p['model'], repr(tolerance)], capture_output=True, text=True)
+    if own is None or run.returncode:
+        return None
+    c = json.loads(run.stdout)
+    if p['model'] == 'E5':
+        c['values']['y_3'] = c['values']['y_2'] - c['values']['y_4']
+    error = lambda values: max(abs(a - b)/abs(b) for a, b in zip(values, p['values'].values()))
+    return own[0]['steps'], c['steps'], error(own[1]), error([c['values'][n] for n in p['values']])
+
 # --- growth -----------------------------------------------------------------------------------------------------------
 
 def growth(binary, full):
@@ -342,6 +378,10 @@ def main():
         picture(rows, model, f'{a.out}/{model}.svg')
     text += ['', '## All runs', '', '| problem | solver | tolerance | error | milliseconds | steps |', '|---|---|---|---|---|---|']
     text += [f'| {m} | {p} | {tol:.0e} | {e:.1e} | {1e3*t:.3g} | {s} |' for m, p, tol, e, t, s in rows]
+    if 'C on IDA' in peers:
+        text += ['', '## The stiff set beside C', '', '| problem | tolerance | steps | of C | ratio | error | of C | ratio |', '|---|---|---|---|---|---|---|---|']
+        text += [f'| {m} | {tol:.0e} | {own:.0f} | {c:.0f} | {own/c:.2f} | {e:.1e} | {f:.1e} | {e/f:.2g} |'
+                 for m, tol, own, c, e, f in stiff_set(a.bramah, os.path.join(folder, 'stiff_set'), a.full)]
     text += ['', '## Growth', '', '| network | unknowns | compile, s | solve, s | steps | events | memory, MB |', '|---|---|---|---|---|---|---|']
     text += [f'| {n} | {u} | {c:.3g} | {s:.3g} | {st} | {e} | {mb:.0f} |' for n, u, c, s, st, e, mb in growth(a.bramah, a.full)]
     text += ['', '## Skipped', ''] + [f'- {name}: {how}' for name, how in skipped]
