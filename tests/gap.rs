@@ -4,6 +4,7 @@
 
 use bramah::diag::Sources;
 use bramah::gap::diagnose::search;
+use bramah::gap::filter::{Tape, run as run_filter};
 use bramah::gap::fixed::corrected;
 use bramah::gap::held::from_start;
 use bramah::gap::plan::{Pair, plan};
@@ -91,9 +92,6 @@ time = \"t\"
 \"spring.c\" = { sigma = \"2 %\" }
 \"spring.d\" = { sigma = \"10 %\" }
 ";
-
-/// Block-wise statistic of what acts at all times.
-const CERTAIN: f64 = 5.0;
 
 /// Numbers of a normal distribution, the same for the same seed.
 struct Normal(u64);
@@ -407,67 +405,55 @@ fn a_start_far_from_the_models_is_found_through_an_output_that_bends() {
     assert!(left < 3e-3, "{left}");
 }
 
-/// A volume of oil with air behind a check valve, recorded coarsely from a pressure at which the valve is wide open: there
-/// the oil is soft, its pressure runs away from any linear model, and the filter would follow into nowhere.
+/// A pump that presses oil with air against a closed port: below the pressure at which its check valve closes the oil is so
+/// soft that its pressure runs away from any linear model. A coarse first reading leads there, and no further.
 #[test]
-fn a_soft_volume_behind_a_check_valve_does_not_lead_the_filter_astray() {
-    let model = "
-        model Press
-          parameter Real V(unit = \"m3\") = 5e-5;
-          parameter Real G(unit = \"m3/(s.Pa)\") = 3e-14;
-          parameter Real p_0(unit = \"Pa\") = 5e5;
-          parameter Real k(unit = \"1\") = 1;
-          input Real u(unit = \"m3/s\");
-          Real p(unit = \"Pa\", start = p_0, fixed = true, nominal = 1e6);
-          Real dp(unit = \"Pa\", nominal = 1e5);
-          Real x(unit = \"1\");
-          Real beta(unit = \"Pa\", nominal = 1e9);
+fn soft_oil_behind_a_check_valve_does_not_lead_the_filter_astray() {
+    let rig = "
+        model Rig
+          extends ServoPump.DeadZone(break speed, break connect(speed.y, motor.w_ref));
+          Interfaces.RealInput w_ref(unit = \"rad/s\", nominal = 3);
         equation
-          dp = 4.7e5 - p;
-          x = 0.5*(1 + tanh((dp - 1e5)/4e4));
-          beta = 1.2e9/(1 + 1.2e9*2e3/(p^2 + 1e8));
-          V/beta*der(p) = k*u - G*p + 3e-7*x*dp/(dp^2 + 1e8)^0.25;
-        end Press;";
-    let world = MemoryWorld::single("Press.mo", model);
-    let recorded = |seed: u64, start: f64| {
-        let request = Request { source: "Press.mo".into(), model: Some("Press".into()), ..Request::default() };
-        let mut press = Simulation::compile(&world, &request).unwrap();
-        press.set("p_0", start).unwrap();
-        press.set("k", 1.3).unwrap();
-        let mut random = Normal(seed);
-        let times: Vec<f64> = (0..400).map(|k| f64::from(k) * 0.1).collect();
-        let mut level = 0.0;
-        let u: Vec<f64> = (0..400)
-            .map(|k| {
-                if k % 25 == 0 {
-                    level = 2e-7 + 1e-7 * random.next().clamp(-1.9, 1.9);
-                }
-                level
-            })
-            .collect();
-        press.input("u", &times, &u, Interpolation::Held).unwrap();
-        press.stop_time(times[399]);
-        let settings = press.settings();
-        (settings.interval, settings.event_rows) = (0.1, false);
-        let run = press.run().unwrap().trajectory;
-        let p = run.column("p").unwrap();
-        let mut text = String::from("t,u,p\n");
-        for k in 0..400 {
-            let shown = (p[k] + 2e5 * random.next()) / 2.5e5;
-            writeln!(text, "{},{},{}", times[k], u[k], shown.round() * 2.5e5).unwrap();
+          connect(w_ref, motor.w_ref);
+        end Rig;";
+    let mut world = MemoryWorld::single("Rig.mo", rig);
+    let request = Request { source: "Rig.mo".into(), model: Some("Rig".into()), ..Request::default() };
+    let mut plant = Simulation::compile(&world, &request).unwrap();
+    let times: Vec<f64> = (0..120).map(|k| f64::from(k) * 0.1).collect();
+    let speed: Vec<f64> = (0..120).map(|k| [3.2, 2.4, 4.0, 2.8][k / 30]).collect();
+    plant.input("w_ref", &times, &speed, Interpolation::Held).unwrap();
+    plant.stop_time(times[119]);
+    let settings = plant.settings();
+    (settings.interval, settings.event_rows) = (0.1, false);
+    let run = plant.run().unwrap().trajectory;
+    let columns = ["p_A", "p_B", "T_sh"].map(|name| run.column(name).unwrap());
+    let mut random = Normal(3);
+    let mut text = String::from("t,w_ref,p_A,p_B,T_sh\n");
+    for k in 0..120 {
+        let mut shown = [3e5, 5e4, 0.03].map(|deviation| deviation * random.next());
+        shown.iter_mut().zip(&columns).for_each(|(shown, column)| *shown += column[k]);
+        if k == 0 {
+            shown[0] = 0.0;
         }
-        text
-    };
-    let (train, held) = (recorded(5, 6e4), recorded(6, 5e5));
-    let study = "version = 1\nmodel = \"Press.mo\"\nclass = \"Press\"\n\
-        [inputs]\nu = { column = \"u\", unit = \"m3/s\", hold = true }\n\
-        [signals]\np = { variable = \"p\", column = \"p\", unit = \"Pa\", full_scale = \"2e7 Pa\" }\n\
-        [[recordings]]\nfile = \"train.csv\"\nrole = \"train\"\ntime = \"t\"\n\
-        [[recordings]]\nfile = \"held.csv\"\nrole = \"held\"\ntime = \"t\"\n\
-        [parameters]\n\"V\" = { sigma = \"5 %\" }\n\"G\" = { sigma = \"10 %\" }\n\"p_0\" = \"exact\"\n\"k\" = \"exact\"\n";
-    let found = verdict(world, study, train, held);
-    let effect = &found.effects[0];
-    assert_eq!(effect.family, "command_gain", "{:?}", found.effects);
-    // in all blocks, not in the first one alone
-    assert!(effect.t > CERTAIN, "{}", effect.t);
+        writeln!(text, "{},{},{},{},{}", times[k], speed[k], shown[0], shown[1], shown[2]).unwrap();
+    }
+    world.add("train.csv", text);
+    world.add(
+        "study.toml",
+        "version = 1\nmodel = \"Rig.mo\"\nclass = \"Rig\"\n\
+        [inputs]\nw_ref = { column = \"w_ref\", unit = \"rad/s\", hold = true }\n\
+        [signals]\np_A = { variable = \"p_A\", column = \"p_A\", unit = \"Pa\" }\n\
+        p_B = { variable = \"p_B\", column = \"p_B\", unit = \"Pa\" }\n\
+        T_sh = { variable = \"T_sh\", column = \"T_sh\", unit = \"N.m\" }\n\
+        [[recordings]]\nfile = \"train.csv\"\nrole = \"train\"\ntime = \"t\"\n",
+    );
+    let mut sources = Sources::default();
+    let study = Study::read(&world, Path::new("study.toml"), &mut sources).value.unwrap();
+    let question = question(&world, &study, None, &mut sources).ok().unwrap();
+    let problem = &question.problem;
+    let model = problem.assemble(&[], &[]).unwrap();
+    let setting = model.setting(&[], &problem.noise_floor, Vec::new());
+    let pass = run_filter(&setting, &problem.train[0], 0, usize::MAX, Tape::Nothing).unwrap();
+    // 17,000 deviations where the filter goes along
+    assert!(pass.white.amax() < 10.0, "{}", pass.white.amax());
 }

@@ -34,10 +34,10 @@ model Nominal "The axis without any of the effects that a bench may add"
   Hydraulic.Chamber chamber_2(A = A, side = -1, V_0 = V2, p_start = p0) "Chamber 2";
   Hydraulic.LaminarGap leak_1(G = Ce, followViscosity = false) "Leakage of node 1";
   Hydraulic.LaminarGap leak_2(G = Ce, followViscosity = false) "Leakage of node 2";
-  SoftValve relief_1(p_open = pset - p0, K = Grel, w = 5e4) "Relief valve of node 1";
-  SoftValve relief_2(p_open = pset - p0, K = Grel, w = 5e4) "Relief valve of node 2";
-  SoftValve check_1(K = Kchk, w = 2e4) "Anticavitation valve of node 1";
-  SoftValve check_2(K = Kchk, w = 2e4) "Anticavitation valve of node 2";
+  ReliefValve relief_1(p_open = pset - p0, K = Grel, w = 5e4) "Relief valve of node 1";
+  ReliefValve relief_2(p_open = pset - p0, K = Grel, w = 5e4) "Relief valve of node 2";
+  CheckValve check_1(K = Kchk, w = 2e4) "Anticavitation valve of node 1";
+  CheckValve check_2(K = Kchk, w = 2e4) "Anticavitation valve of node 2";
   Hydraulic.Tank lowSide(p = p0) "Low side";
   Mechanical.Translational.Mass load(m = M) "Load";
   Mechanical.Translational.Damper cylinderFriction(d = b) "Friction of the cylinder";

@@ -1,5 +1,5 @@
 within GapAxis;
-model SoftValve "Valve that opens from a to b with a linear characteristic, its corner rounded"
+partial model SoftValve "Valve that opens from a to b with a linear characteristic, its corner rounded"
   extends Hydraulic.Bases.TwoPort;
   parameter SI.Pressure p_open(min = 0, nominal = 1e6) = 0 "Pressure drop at the corner";
   parameter Real K(unit = "m3/(s.Pa)", min = 0, nominal = 1e-9) = 1e-9 "Conductance when open";

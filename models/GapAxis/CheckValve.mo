@@ -1,0 +1,4 @@
+within GapAxis;
+model CheckValve "Anticavitation valve of the comparison"
+  extends SoftValve;
+end CheckValve;

@@ -1,0 +1,4 @@
+within GapAxis;
+model ReliefValve "Relief valve of the comparison"
+  extends SoftValve;
+end ReliefValve;
