@@ -4,7 +4,11 @@
 //! Power that oil carries is its mass flow times h, the integral of dp/rho from the reference pressure: the work that
 //! it takes to bring it to that pressure. `tests/balances.csv` says per class what it stores and what it loses.
 
-#![allow(clippy::disallowed_methods, reason = "tests read their own files")]
+#![allow(
+    clippy::disallowed_methods,
+    clippy::print_stderr,
+    reason = "tests read their own files and say what they found"
+)]
 
 mod disk;
 mod rig;

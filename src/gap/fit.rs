@@ -32,7 +32,7 @@ pub struct Prior {
     pub mean: f64,
     /// Standard deviation.
     pub sigma: f64,
-    /// How large it is is not known: beyond [`OPEN`] standard deviations the prior falls with the inverse of the distance
+    /// How large it is is not known: beyond five standard deviations the prior falls with the inverse of the distance
     /// only. A Gaussian would charge what is strongest with a fixed part of all that it explains.
     pub open: bool,
     /// Least value.
