@@ -96,13 +96,13 @@ impl Setting {
             return Cow::Borrowed(self);
         }
         let mut setting = self.clone();
-        setting.foreign(number).for_each(|p| setting.theta[p] = 0.0);
+        self.foreign(number).for_each(|p| setting.theta[p] = 0.0);
         Cow::Owned(setting)
     }
 
     /// Parameters that do not act in a recording.
-    pub fn foreign(&self, number: usize) -> impl Iterator<Item = usize> + use<> {
-        self.own.clone().into_iter().filter(move |own| own.1 != number).map(|own| own.0)
+    pub fn foreign(&self, number: usize) -> impl Iterator<Item = usize> {
+        self.own.iter().filter(move |own| own.1 != number).map(|own| own.0)
     }
 
     /// The sources with their levels times a factor.
