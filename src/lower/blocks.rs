@@ -20,10 +20,12 @@ pub enum Draft {
     Mixed { continuous: Vec<Draft>, discrete: Vec<AssignDraft> },
 }
 
-/// Explicit assignments: either modes of crossings, none of which reads another, or no modes at all.
+/// Explicit assignments: either modes of crossings, none of which reads another, or no modes at all; and either all
+/// moved by `pre` values or none.
 #[derive(Debug, Default)]
 pub struct AssignDraft {
     modes: bool,
+    moved: bool,
     targets: Vec<Target>,
     slots: FxHashSet<Slot>,
     defs: Defs,
@@ -43,6 +45,9 @@ pub struct Drafter<'s, 'a> {
     rules: Rules<'s>,
     /// The modes of crossings.
     modes: &'s FxHashSet<VarId>,
+    /// Slots whose values `pre` values reach: they may move from pass to pass of an event iteration, all others keep
+    /// the values of its first pass. Nobody asks at the start.
+    moved: FxHashSet<Slot>,
 }
 
 impl<'s, 'a> Drafter<'s, 'a> {
@@ -53,32 +58,69 @@ impl<'s, 'a> Drafter<'s, 'a> {
         inline: &'s FxHashMap<Slot, ExprId>,
         modes: &'s FxHashSet<VarId>,
     ) -> Self {
-        Drafter { shaper, rules: Rules { initial, inline, hoist: true }, modes }
+        let moved = if initial { FxHashSet::default() } else { shaper.layout.pre_slots().collect() };
+        Drafter { shaper, rules: Rules { initial, inline, hoist: true }, modes, moved }
     }
 
-    /// The definitions of a sorted system.
+    /// The definitions of a sorted system. Of neighbouring assignments those come first that stay through an event
+    /// iteration, so that its later passes need not run them.
     pub fn blocks(&mut self, blocks: &[Block]) -> Vec<Draft> {
         let mut drafts: Vec<Draft> = Vec::new();
+        let mut later: Vec<(Target, Shaped)> = Vec::new();
         for block in blocks {
-            match block {
-                Block::Assign(assign) => {
-                    let (target, shaped) = self.assign(assign);
-                    let modes = self.is_mode(target.unknown);
-                    if !matches!(drafts.last(), Some(Draft::Assign(run)) if run.takes(modes, &shaped)) {
-                        drafts.push(Draft::Assign(AssignDraft { modes, ..AssignDraft::default() }));
-                    }
-                    if let Some(Draft::Assign(run)) = drafts.last_mut() {
-                        run.add(target, &shaped, self.shaper);
-                    }
+            if let Block::Assign(assign) = block {
+                let (target, shaped) = self.assign(assign);
+                if self.moves(&shaped.inputs) {
+                    self.moved.insert(slot(target.slot));
+                    later.push((target, shaped));
+                } else {
+                    self.join(&mut drafts, false, target, &shaped);
                 }
-                Block::Loop(l) => drafts.push(Draft::Loop(Box::new(draft_loop(l, &self.rules, self.shaper)))),
+                continue;
+            }
+            for (target, shaped) in later.drain(..) {
+                self.join(&mut drafts, true, target, &shaped);
+            }
+            let draft = match block {
+                Block::Loop(l) => Draft::Loop(Box::new(draft_loop(l, &self.rules, self.shaper))),
                 Block::Mixed(mixed) => {
                     let discrete = self.discrete(&mixed.discrete);
-                    drafts.push(Draft::Mixed { continuous: self.blocks(&mixed.continuous), discrete });
+                    Draft::Mixed { continuous: self.blocks(&mixed.continuous), discrete }
                 }
-            }
+                Block::Assign(_) => unreachable!("taken above"),
+            };
+            self.follow(&draft);
+            drafts.push(draft);
+        }
+        for (target, shaped) in later {
+            self.join(&mut drafts, true, target, &shaped);
         }
         drafts
+    }
+
+    /// Adds an assignment to the last run if that takes it, else to a new one.
+    fn join(&mut self, drafts: &mut Vec<Draft>, moved: bool, target: Target, shaped: &Shaped) {
+        let modes = self.is_mode(target.unknown);
+        if !matches!(drafts.last(), Some(Draft::Assign(run)) if run.moved == moved && run.takes(modes, shaped)) {
+            drafts.push(Draft::Assign(AssignDraft { modes, moved, ..AssignDraft::default() }));
+        }
+        if let Some(Draft::Assign(run)) = drafts.last_mut() {
+            run.add(target, shaped, self.shaper);
+        }
+    }
+
+    fn moves(&self, inputs: &[Slot]) -> bool {
+        !self.moved.is_empty() && inputs.iter().any(|input| self.moved.contains(input))
+    }
+
+    /// Notes what a loop passes on; of loops through discrete equations all moves.
+    fn follow(&mut self, draft: &Draft) {
+        match draft {
+            Draft::Loop(l) if !self.moves(l.residual.slots()) => {}
+            _ => draft.computes(&mut |made| {
+                self.moved.insert(made);
+            }),
+        }
     }
 
     fn discrete(&mut self, assigns: &[Assign]) -> Vec<AssignDraft> {
@@ -104,6 +146,23 @@ impl<'s, 'a> Drafter<'s, 'a> {
 
     fn assign(&mut self, assign: &Assign) -> (Target, Shaped) {
         (target(assign, self.shaper), self.shaper.shape(assign.value, &self.rules))
+    }
+}
+
+impl Draft {
+    /// Calls `visit` for the slot of every unknown.
+    fn computes(&self, visit: &mut impl FnMut(Slot)) {
+        match self {
+            Draft::Assign(run) => run.targets.iter().for_each(|t| visit(slot(t.slot))),
+            Draft::Loop(l) => {
+                l.code.tearing_slots.iter().for_each(|&s| visit(slot(s)));
+                l.code.inner.iter().for_each(|t| visit(slot(t.slot)));
+            }
+            Draft::Mixed { continuous, discrete } => {
+                continuous.iter().for_each(|draft| draft.computes(visit));
+                discrete.iter().flat_map(|run| &run.targets).for_each(|t| visit(slot(t.slot)));
+            }
+        }
     }
 }
 

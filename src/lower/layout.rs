@@ -77,6 +77,11 @@ impl Layout {
         existing(self.pre[v.index()])
     }
 
+    /// The slots of all values before the event.
+    pub(super) fn pre_slots(&self) -> impl Iterator<Item = Slot> {
+        self.pre.iter().copied().filter(|&slot| slot != NONE)
+    }
+
     /// The slot of an unknown of a block.
     pub fn unknown(&self, unknown: Unknown) -> usize {
         match unknown {

@@ -69,6 +69,11 @@ impl Defs {
         self.slots.extend_from_slice(&other.slots);
     }
 
+    /// All slots that are read or written.
+    pub fn slots(&self) -> &[Slot] {
+        &self.slots
+    }
+
     /// How many there are.
     pub fn len(&self) -> usize {
         self.items.len()

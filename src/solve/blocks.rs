@@ -3,6 +3,7 @@
 
 use super::modes::Modes;
 use super::newton::{Newton, NewtonFailure, Reason, Scales};
+use super::stale::Stale;
 use crate::expr::VarId;
 use crate::lower::{AssignCode, BlockCode, LoopCode, MixedCode, System, Target};
 use crate::structure::Unknown;
@@ -75,6 +76,26 @@ impl Blocks {
     /// The first block that fails.
     pub fn run(&mut self, code: &[BlockCode], setting: &Setting<'_>, values: &mut [f64]) -> Result<(), BlockFailure> {
         code.iter().zip(&mut self.work).try_for_each(|(code, work)| work.run(code, setting, values))
+    }
+
+    /// Solves those that are stale, in order.
+    ///
+    /// # Errors
+    /// The first block that fails.
+    pub fn run_stale(
+        &mut self,
+        stale: &mut Stale,
+        code: &[BlockCode],
+        setting: &Setting<'_>,
+        values: &mut [f64],
+    ) -> Result<(), BlockFailure> {
+        for (number, (code, work)) in code.iter().zip(&mut self.work).enumerate() {
+            if stale.take(number, values) {
+                work.run(code, setting, values)?;
+                stale.compare(number, values);
+            }
+        }
+        Ok(())
     }
 }
 

@@ -5,6 +5,7 @@ use super::blocks::{BlockFailure, Blocks, Setting};
 use super::modes::Modes;
 use super::newton::Scales;
 use super::report::message_text;
+use super::stale::Stale;
 use crate::expr::VarId;
 use crate::lower::System;
 use crate::structure::ActionKind;
@@ -42,10 +43,12 @@ pub struct Events {
     blocks: Blocks,
     /// Variable, its slot and the slot of its `pre` value, of every discrete variable.
     discrete: Vec<(VarId, usize, usize)>,
-    /// Slots of the modes of `sample`.
-    samples: Vec<usize>,
+    /// Slot of the mode of each `sample`, and of its `pre` value.
+    samples: Vec<(usize, Option<usize>)>,
     /// Slots and values of the `reinit`s of one pass.
     reinits: Vec<(usize, f64)>,
+    /// Made for the first event that takes a second pass.
+    stale: Option<Stale>,
 }
 
 impl Events {
@@ -59,8 +62,9 @@ impl Events {
         Events {
             blocks: Blocks::new(&system.event, scales, modes),
             discrete: variables.into_iter().filter_map(|v| Some((v, layout.var(v), layout.pre(v)?))).collect(),
-            samples: samples.map(|v| layout.var(v)).collect(),
+            samples: samples.map(|v| (layout.var(v), layout.pre(v))).collect(),
             reinits: Vec::new(),
+            stale: None,
         }
     }
 
@@ -71,9 +75,19 @@ impl Events {
         }
     }
 
+    /// The same within an iteration: what reads them waits for the next pass.
+    fn move_pre(&self, stale: &mut Stale, values: &mut [f64]) {
+        for &(_, now, before) in &self.discrete {
+            if values[before] != values[now] {
+                values[before] = values[now];
+                stale.touch(before);
+            }
+        }
+    }
+
     /// Raises the mode of a `sample`; the iteration lowers it again.
     pub fn raise(&self, sample: usize, values: &mut [f64]) {
-        values[self.samples[sample]] = 1.0;
+        values[self.samples[sample].0] = 1.0;
     }
 
     fn changed(&self, values: &[f64]) -> bool {
@@ -94,33 +108,48 @@ impl Events {
         let setting = Setting { system, scales, modes };
         let mut outcome = Outcome::default();
         let mut moving = Vec::new();
-        for pass in 0..PASSES {
-            self.blocks.run(&system.event, &setting, values).map_err(EventFailure::Blocks)?;
-            system.aliases(values);
-            if self.changed(values) {
+        self.blocks.run(&system.event, &setting, values).map_err(EventFailure::Blocks)?;
+        system.aliases(values);
+        for pass in 1..PASSES {
+            let changed = self.changed(values);
+            if !changed && !self.samples_up(values) {
+                return Ok(outcome);
+            }
+            let mut stale = self.stale.take().unwrap_or_else(|| Stale::new(system));
+            if changed {
                 outcome.changed = true;
                 self.act(system, values, &mut outcome);
+                self.reinits.iter().for_each(|&(slot, _)| stale.touch(slot));
                 if pass + 10 >= PASSES {
                     moving.extend(self.discrete.iter().filter(|d| values[d.1] != values[d.2]).map(|d| d.0));
                 }
-                self.settle_pre(values);
-            } else if !self.lower_samples(values) {
-                return Ok(outcome);
+                self.move_pre(&mut stale, values);
+            } else {
+                self.lower_samples(&mut stale, values);
             }
+            self.blocks.run_stale(&mut stale, &system.event, &setting, values).map_err(EventFailure::Blocks)?;
+            system.aliases(values);
+            self.stale = Some(stale);
         }
         moving.sort_unstable();
         moving.dedup();
         Err(EventFailure::Endless(moving))
     }
 
-    /// `sample` holds only at its instant; true when one was lowered.
-    fn lower_samples(&self, values: &mut [f64]) -> bool {
-        let mut lowered = false;
-        for &slot in &self.samples {
-            lowered |= values[slot] != 0.0;
-            values[slot] = 0.0;
+    fn samples_up(&self, values: &[f64]) -> bool {
+        self.samples.iter().any(|&(now, _)| values[now] != 0.0)
+    }
+
+    /// `sample` holds only at its instant, behind which it has not been true: its end is no change that an event sees.
+    fn lower_samples(&self, stale: &mut Stale, values: &mut [f64]) {
+        for &(now, before) in &self.samples {
+            for slot in std::iter::once(now).chain(before) {
+                if values[slot] != 0.0 {
+                    values[slot] = 0.0;
+                    stale.touch(slot);
+                }
+            }
         }
-        lowered
     }
 
     /// Does what fires in this pass. New values of states are computed before any of them is set.

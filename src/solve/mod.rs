@@ -22,6 +22,7 @@ mod restart;
 mod schedule;
 mod selection;
 mod settings;
+mod stale;
 mod state;
 mod tangents;
 mod vectors;

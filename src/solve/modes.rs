@@ -94,7 +94,7 @@ impl Modes {
     pub fn correct(&self, system: &System, crossing: u32, computed: f64, values: &[f64]) -> f64 {
         let c = crossing as usize;
         match system.dae.crossings[c].kind {
-            CrossingKind::Time(rel, at) if self.after => {
+            CrossingKind::Time(rel, at) if self.after && computed != f64::from(after(rel)) => {
                 let at = system.eval(at, values);
                 if same_time(values[Layout::TIME], at) { f64::from(after(rel)) } else { computed }
             }

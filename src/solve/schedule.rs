@@ -77,9 +77,12 @@ pub fn next_time_crossing(system: &System, values: &[f64], t: f64) -> f64 {
     let mut next = f64::INFINITY;
     for crossing in &system.dae.crossings {
         let CrossingKind::Time(rel, at) = crossing.kind else { continue };
-        let at = system.eval(at, values);
         let changed = (values[system.layout.var(crossing.mode)] != 0.0) == after(rel);
-        if at.is_finite() && at > t && !same_time(at, t) && !changed {
+        if changed {
+            continue;
+        }
+        let at = system.eval(at, values);
+        if at.is_finite() && at > t && !same_time(at, t) {
             next = next.min(at);
         }
     }
