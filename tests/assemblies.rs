@@ -107,6 +107,94 @@ fn two_consumers_share_a_load_sensing_pump() {
     assert!(at(&t, "steer.s", 2.0) > at(&t, "steer.s", 1.0) + 0.01, "the wheels turn");
 }
 
+/// All of a sudden the drop that lay over the orifice lies over the compensator: Newton's method leaps from one side of
+/// the orifice's root to the other.
+#[test]
+fn an_orifice_opens_at_once_behind_a_closed_compensator() {
+    let mut simulation = circuit(
+        "inner Oil.ISOVG46 oil;
+         Hydraulic.PressureSource source(p = 210e5);
+         Hydraulic.PressureCompensator compensator;
+         Hydraulic.VariableOrifice meter(A_max = 2e-5);
+         Hydraulic.Tank tank;
+         Signal.Step lever(height = 0.5, startTime = 0.5);",
+        "connect(source.port, compensator.port_a);
+         connect(compensator.port_b, meter.port_a);
+         connect(meter.port_b, tank.port);
+         connect(compensator.port_y, tank.port);
+         connect(lever.y, meter.u);",
+    );
+    let t = run(simulation.stop_time(1.0));
+    // 7.2 to 8 bar over half of 20 mm2
+    let (least, most) = (0.65e-5 * (2.0 * 7.2e5 / 870.0_f64).sqrt(), 0.65e-5 * (2.0 * 8e5 / 850.0_f64).sqrt());
+    let q = last(&t, "meter.q");
+    assert!((least..most).contains(&q), "{q} m3/s");
+}
+
+/// Oil that comes from a source and goes into another, with no pressure given anywhere: of the loop that has no value,
+/// the operation is told that spoils it, not what reads it.
+#[test]
+fn what_is_not_finite_in_a_loop_is_told_where_it_is_made() {
+    let simulation = circuit(
+        "inner Oil.ISOVG46 oil;
+         Hydraulic.FlowSource into(q = 1e-4), out_of(q = -1e-4);
+         Hydraulic.Orifice between;",
+        "connect(into.port, between.port_a);
+         connect(between.port_b, out_of.port);",
+    );
+    let told = simulation.run().err().expect("no pressures fit").to_string();
+    assert!(told.contains("2/between.rho") && told.contains("2/0"), "{told}");
+}
+
+/// The load is lifted against the counterbalance valve's check, held by the brake, and let down no faster than the pilot
+/// allows: with the high side of the motor at B, as its ports say.
+#[test]
+fn a_winch_lifts_holds_and_lowers_its_load() {
+    let mut simulation = circuit(
+        "inner Oil.ISOVG46 oil;
+         Hydraulic.Tank tank;
+         Hydraulic.FlowSource pump(q = 1.33e-3);
+         Hydraulic.ReliefValve relief(p_set = 250e5, q_nom = 1.33e-3);
+         Hydraulic.Volume supply(V = 1e-3), up(V = 0.5e-3), held(V = 0.2e-3), down(V = 0.5e-3);
+         Hydraulic.Valve43 valve(q_nom = 1.33e-3, overlap = 0.1);
+         Hydraulic.CounterbalanceValve holding(p_set = 250e5, q_nom = 1.33e-3);
+         Hydraulic.Pump motor(V = 80e-6, G = 2e-12, T_c = 2);
+         Mechanical.Rotational.Inertia shaft(J = 0.05);
+         Mechanical.Rotational.Brake brake(fn_max = 600, mu_c = 1);
+         Mechanical.Rotational.LossyGear gear(ratio = 25);
+         Mechanical.Rotational.IdealRackAndPinion drum(ratio = 5);
+         Mechanical.Translational.Mass load(m = 2000);
+         Mechanical.Translational.Gravity weight(m = 2000);
+         Signal.TimeTable lever(table = [0, 0; 1, 0; 1.5, 0.6; 5, 0.6; 5.5, 0; 7, 0; 7.5, -0.5; 10, -0.5; 10.5, 0]);
+         Signal.TimeTable engaged(table = [0, 1; 1.1, 1; 1.2, 0; 5.5, 0; 5.7, 1; 7.1, 1; 7.2, 0; 10.5, 0; 10.7, 1]);",
+        "connect(pump.port, supply.port);
+         connect(supply.port, relief.port_a);
+         connect(relief.port_b, tank.port);
+         connect(supply.port, valve.port_P);
+         connect(valve.port_T, tank.port);
+         connect(valve.port_A, up.port);
+         connect(up.port, holding.port_a);
+         connect(holding.port_b, held.port);
+         connect(held.port, motor.port_b);
+         connect(motor.port_a, down.port);
+         connect(down.port, valve.port_B);
+         connect(holding.port_x, down.port);
+         connect(lever.y, valve.u);
+         connect(motor.flange, shaft.flange_a);
+         connect(shaft.flange_b, brake.flange_a);
+         connect(engaged.y, brake.f_normalized);
+         connect(brake.flange_b, gear.flange_a);
+         connect(gear.flange_b, drum.flangeR);
+         connect(drum.flangeT, load.flange_a);
+         connect(load.flange_b, weight.flange);",
+    );
+    let t = run(simulation.stop_time(12.0));
+    assert!(at(&t, "load.s", 5.4) > 2.0, "lifted by {} m", at(&t, "load.s", 5.4));
+    assert!((at(&t, "load.s", 6.9) - at(&t, "load.s", 6.0)).abs() < 1e-6, "held by the brake");
+    let v = at(&t, "load.v", 9.0);
+    assert!((-1.1..-0.5).contains(&v), "let down at {v} m/s by the pump, not by its weight");
+}
+
 /// A body of a hundredth of a gram breaks loose at the force that holds it, and not above.
 #[test]
 fn dry_friction_holds_a_tiny_mass_up_to_its_limit() {

@@ -13,6 +13,8 @@ const TOLERANCE: f64 = 1e-11;
 const ROUND_OFF: f64 = 1e-7;
 const MAX_ITERATIONS: u32 = 60;
 const SMALLEST_DAMPING: f64 = 1e-5;
+/// The smallest part of the first residuals that is taken away at once.
+const SMALLEST_PART: f64 = 1.0 / 256.0;
 /// Steps of a linear loop at most.
 const REFINEMENTS: u32 = 3;
 
@@ -84,6 +86,8 @@ pub struct Newton {
     step: Vec<f64>,
     next: Vec<f64>,
     matrix: Vec<f64>,
+    /// What may be left of each residual: 0, but on the way in [`Self::in_parts`].
+    rest: Vec<f64>,
     iterations: u32,
 }
 
@@ -108,6 +112,7 @@ impl Newton {
             step: vec![0.0; n],
             next: vec![0.0; n],
             matrix: vec![0.0; code.pattern.nnz()],
+            rest: vec![0.0; n],
             iterations: 0,
         }
     }
@@ -129,6 +134,9 @@ impl Newton {
         };
         let failure = self.failure(code, scales, values, reason);
         if self.x.len() == 1 && !code.linear && self.bracket(code, scales, values) {
+            return Ok(());
+        }
+        if failure.reason == Reason::NoConvergence && !code.linear && self.in_parts(code, scales, values) {
             return Ok(());
         }
         let guess = std::mem::take(&mut self.guess);
@@ -240,8 +248,8 @@ impl Newton {
         if !evaluate(code, &self.trial, values) {
             return Trial::NonFinite;
         }
-        for (b, &slot) in self.next.iter_mut().zip(&code.residual_slots) {
-            *b = -values[slot];
+        for ((b, &slot), rest) in self.next.iter_mut().zip(&code.residual_slots).zip(&self.rest) {
+            *b = rest - values[slot];
         }
         if !self.lu.solve(&mut self.next) {
             return Trial::NonFinite;
@@ -260,8 +268,8 @@ impl Newton {
 
     /// The Newton correction into `step`.
     fn correction(&mut self, code: &LoopCode, values: &[f64]) {
-        for (b, &slot) in self.step.iter_mut().zip(&code.residual_slots) {
-            *b = -values[slot];
+        for ((b, &slot), rest) in self.step.iter_mut().zip(&code.residual_slots).zip(&self.rest) {
+            *b = rest - values[slot];
         }
         self.lu.solve(&mut self.step);
     }
@@ -283,6 +291,33 @@ impl Newton {
             }
         }
         part.max(0.1)
+    }
+
+    /// Newton's homotopy: the residuals of the guess are taken away in parts, each solved from where the part before has
+    /// led. A flow over the root of a pressure drop is flat far from its zero, and Newton's method is thrown from one
+    /// side of it to the other; in parts it follows.
+    fn in_parts(&mut self, code: &LoopCode, scales: &Scales, values: &mut [f64]) -> bool {
+        let mut reached = self.guess.clone();
+        if !evaluate(code, &reached, values) {
+            return false;
+        }
+        let first: Vec<f64> = code.residual_slots.iter().map(|&slot| values[slot]).collect();
+        let (mut at, mut step) = (0.0_f64, 0.25_f64);
+        while at < 1.0 && step >= SMALLEST_PART {
+            let next = (at + step).min(1.0);
+            self.rest.iter_mut().zip(&first).for_each(|(rest, first)| *rest = (1.0 - next) * first);
+            self.x.copy_from_slice(&reached);
+            self.iterations = 0;
+            if self.iterate(code, scales, values).is_ok() {
+                reached.copy_from_slice(&self.x);
+                at = next;
+                step *= 2.0;
+            } else {
+                step *= 0.5;
+            }
+        }
+        self.rest.fill(0.0);
+        at >= 1.0
     }
 
     /// A search for a root around the guess, for one equation.

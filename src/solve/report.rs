@@ -162,9 +162,9 @@ fn equation_diagnostic(dae: &Dae, code: Code, text: String, equation: u32) -> Di
 
 fn loop_failure(system: &System, code: Code, failure: &NewtonFailure, values: &[f64], when: &str) -> Diagnostic {
     if let (Reason::NonFinite, Some(&equation)) = (&failure.reason, failure.non_finite.first())
-        && let Some(trap) = trap_in_loops(system, equation, values)
+        && let Some(trap) = trap_in_loop(system, equation, values)
     {
-        return non_finite(system, values[crate::lower::Layout::TIME], Some((trap, equation)));
+        return non_finite(system, values[crate::lower::Layout::TIME], Some(trap));
     }
     let dae = &system.dae;
     let worst = failure.residuals.first().map_or(0, |r| r.0);
@@ -190,9 +190,24 @@ fn loop_failure(system: &System, code: Code, failure: &NewtonFailure, values: &[
         .help("give `start` values near the solution and `nominal` values of the right size to the unknowns above")
 }
 
-fn trap_in_loops(system: &System, equation: u32, values: &[f64]) -> Option<Trap> {
-    let e = system.dae.equations.get(equation as usize)?;
-    system.trap(e.lhs, values).or_else(|| system.trap(e.rhs, values))
+/// The operation behind a residual that is not finite, with its equation: what follows explicitly in its loop comes
+/// before the residual that reads it.
+fn trap_in_loop(system: &System, equation: u32, values: &[f64]) -> Option<(Trap, u32)> {
+    let dae = &system.dae;
+    let blocks = dae.initial.iter().chain(&dae.event).flat_map(|block| match block {
+        Block::Mixed(mixed) => mixed.continuous.as_slice(),
+        other => std::slice::from_ref(other),
+    });
+    let mut inner = blocks.filter_map(|block| match block {
+        Block::Loop(l) if l.residuals.iter().any(|r| r.1 == equation) => Some(&l.inner),
+        _ => None,
+    });
+    let behind = inner.next().into_iter().flatten().find_map(|a| Some((system.trap(a.value, values)?, a.equation)));
+    behind.or_else(|| {
+        let e = dae.equations.get(equation as usize)?;
+        let trap = system.trap(e.lhs, values).or_else(|| system.trap(e.rhs, values))?;
+        Some((trap, equation))
+    })
 }
 
 /// Discrete values without which something is undetermined, as the shares of two dry frictions that hold one shaft.
