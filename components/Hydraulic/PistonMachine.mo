@@ -1,7 +1,7 @@
 within Hydraulic;
 model PistonMachine "Axial piston machine, chamber by chamber: port timing, compression, bore leakage, ripple"
-  Interfaces.HydraulicPort port_a "Port A; the high side when pumping with positive speed";
-  Interfaces.HydraulicPort port_b "Port B";
+  Interfaces.HydraulicPort port_a "Port A: a pump that turns positively delivers here; oil that is fed in here turns a motor negatively";
+  Interfaces.HydraulicPort port_b "Port B: a pump that turns positively draws here; oil that is fed in here turns a motor positively";
   Interfaces.HydraulicPort port_case "Case";
   Interfaces.RotationalFlange flange "Shaft";
   outer Oil.Fluid oil "Oil of the circuit";

@@ -1,7 +1,7 @@
 within ServoPump;
 partial model PumpPorts "What the bench expects of its pump, averaged or piston by piston"
-  Interfaces.HydraulicPort port_a "Port A; the high side when pumping with positive speed";
-  Interfaces.HydraulicPort port_b "Port B";
+  Interfaces.HydraulicPort port_a "Port A: a pump that turns positively delivers here; oil that is fed in here turns a motor negatively";
+  Interfaces.HydraulicPort port_b "Port B: a pump that turns positively draws here; oil that is fed in here turns a motor positively";
   Interfaces.RotationalFlange flange "Shaft";
   parameter SI.Volume V = 0.8e-6 "Displacement per revolution";
   SI.AngularVelocity w(nominal = 100) "Speed of the shaft";

@@ -1,7 +1,7 @@
 within Hydraulic.Bases;
 partial model Machine "Displacement machine in four quadrants: delivery and torque; leakage and friction are given by who extends it"
-  Interfaces.HydraulicPort port_a "Port A; the high side when pumping with positive speed";
-  Interfaces.HydraulicPort port_b "Port B";
+  Interfaces.HydraulicPort port_a "Port A: a pump that turns positively delivers here; oil that is fed in here turns a motor negatively";
+  Interfaces.HydraulicPort port_b "Port B: a pump that turns positively draws here; oil that is fed in here turns a motor positively";
   Interfaces.RotationalFlange flange "Shaft";
   outer Oil.Fluid oil "Oil of the circuit";
   parameter SI.Volume V(min = 1e-9, max = 1e-2, nominal = 1e-5, displayUnit = "ml") = 1e-5 "Displacement per revolution";
