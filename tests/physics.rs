@@ -298,15 +298,19 @@ fn the_motor_in_phases_is_the_motor_in_rotor_axes() {
 
 #[test]
 fn the_flux_model_of_the_induction_motor_settles_on_its_circuit() {
-    let torque = |class: &str| {
+    let settled = |class: &str, value: &str| {
         let mut simulation = circuit(
             &format!("{class} motor; Mechanical.Rotational.ConstantSpeed shaft(w_fixed = 80);"),
             "connect(shaft.flange, motor.flange); motor.f = 27.74; motor.U = 7.6*27.74/sqrt(3);",
         );
         simulation.settings().tolerance = 1e-9;
-        last(&simulation.stop_time(5.0).run().expect("it runs").trajectory, "motor.T_e")
+        last(&simulation.stop_time(5.0).run().expect("it runs").trajectory, value)
     };
-    near(torque("Electrical.Machines.InductionMotor"), torque("Electrical.Machines.InductionMotorSteady"), 1e-6);
+    for value in ["motor.T_e", "motor.P_cu"] {
+        let [model, circuit] =
+            ["", "Steady"].map(|form| settled(&format!("Electrical.Machines.InductionMotor{form}"), value));
+        near(model, circuit, 1e-6);
+    }
 }
 
 #[test]

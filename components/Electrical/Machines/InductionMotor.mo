@@ -10,7 +10,10 @@ model InductionMotor "Induction motor, flux model in synchronous axes"
   parameter SI.Inductance L_lr(min = 1e-9, max = 10, nominal = 1e-3) = 0.302/(120*Modelica.Constants.pi) "Leakage inductance of the rotor, on the stator side";
   parameter SI.Inductance L_m(min = 1e-9, max = 100, nominal = 1e-2) = 13.08/(120*Modelica.Constants.pi) "Magnetizing inductance";
   parameter SI.RotationalDampingConstant B(min = 0) = 0 "Friction and windage";
-  parameter SI.TemperatureDifference dT(min = -200, max = 300) = 0 "Windings above T_ref";
+  parameter SI.TemperatureDifference dT(min = -200, max = 300) = 0 "Windings above T_ref, without heatPort";
+  parameter Boolean useHeatPort = false "true: temperature and losses go through heatPort" annotation(Evaluate = true);
+  Interfaces.HeatPort heatPort(T = T_w, Q_flow = -P_cu) if useHeatPort "Windings";
+  parameter SI.Temperature T_ref(min = 200, max = 500) = 293.15 "Temperature of R_s and R_r";
   parameter SI.LinearTemperatureCoefficient alpha(min = 0, max = 0.02) = 0.0039 "Temperature coefficient of the resistances";
   SI.AngularVelocity w(nominal = 100) "Speed";
   SI.AngularVelocity w_e(nominal = 100) "Electrical angular velocity of the supply";
@@ -24,15 +27,23 @@ model InductionMotor "Induction motor, flux model in synchronous axes"
   SI.Current i_dr "Rotor current, d axis";
   SI.Current i_qr "Rotor current, q axis";
   SI.Torque T_e(nominal = 100) "Electromagnetic torque";
+  SI.Power P_cu(nominal = 100) "Copper loss of stator and rotor";
+  SI.Temperature T_w(nominal = 300) "Temperature of the windings";
 protected
   parameter SI.Inductance L_s = L_ls + L_m "Inductance of the stator";
   parameter SI.Inductance L_r = L_lr + L_m "Inductance of the rotor";
   parameter Real det(unit = "H2") = L_s*L_r - L_m^2 "Determinant";
-  parameter SI.Resistance R_1 = R_s*(1 + alpha*dT) "Stator resistance";
-  parameter SI.Resistance R_2 = R_r*(1 + alpha*dT) "Rotor resistance";
+  SI.Resistance R_1 "Stator resistance";
+  SI.Resistance R_2 "Rotor resistance";
 equation
   assert(p >= 1, "The number of pole pairs p must be at least 1");
   assert(R_r > 0 and L_m > 0 and L_ls > 0 and L_lr > 0, "Rotor resistance and inductances must be positive");
+  assert(alpha*(T_w - T_ref) > -1, "Cold windings keep some resistance: alpha holds near T_ref only");
+  if not useHeatPort then
+    T_w = T_ref + dT;
+  end if;
+  R_1 = R_s*(1 + alpha*(T_w - T_ref));
+  R_2 = R_r*(1 + alpha*(T_w - T_ref));
   w = der(flange.phi);
   w_e = 2*Modelica.Constants.pi*f;
   w_sl = w_e - p*w;
@@ -45,6 +56,7 @@ equation
   der(psi_dr) = -R_2*i_dr + w_sl*psi_qr;
   der(psi_qr) = -R_2*i_qr - w_sl*psi_dr;
   T_e = 1.5*p*(psi_ds*i_qs - psi_qs*i_ds);
+  P_cu = 1.5*(R_1*(i_ds^2 + i_qs^2) + R_2*(i_dr^2 + i_qr^2));
   flange.tau = -T_e + B*w;
-  annotation(Documentation(info = "<html><p>Peak values, d axis along the supply voltage. In steady state equal to <code>InductionMotorSteady</code>. Defaults: 50 hp, 460 V, 60 Hz, four poles. Source: P. C. Krause, Analysis of Electric Machinery, chapter 4.</p></html>"));
+  annotation(Documentation(info = "<html><p>Peak values, d axis along the supply voltage. In steady state equal to <code>InductionMotorSteady</code>. Defaults: 50 hp, 460 V, 60 Hz, four poles. Joined to a heat capacity (<code>useHeatPort</code>) the windings warm up: the rotor slips more under load. Source: P. C. Krause, Analysis of Electric Machinery, chapter 4.</p></html>"));
 end InductionMotor;
