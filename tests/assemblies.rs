@@ -142,7 +142,7 @@ fn what_is_not_finite_in_a_loop_is_told_where_it_is_made() {
         "connect(into.port, between.port_a);
          connect(between.port_b, out_of.port);",
     );
-    let told = simulation.run().err().expect("no pressures fit").to_string();
+    let told = simulation.run().expect_err("no pressures fit").to_string();
     assert!(told.contains("2/between.rho") && told.contains("2/0"), "{told}");
 }
 
