@@ -146,6 +146,25 @@ fn what_is_not_finite_in_a_loop_is_told_where_it_is_made() {
     assert!(told.contains("2/between.rho") && told.contains("2/0"), "{told}");
 }
 
+/// A rod is pulled out of a closed cylinder with more than the pressure of the air holds.
+#[test]
+fn a_cavitating_chamber_is_told() {
+    let mut simulation = circuit(
+        "inner Oil.ISOVG46 oil;
+         Hydraulic.Cylinder cylinder;
+         Hydraulic.Plug plug;
+         Hydraulic.Tank tank;
+         Mechanical.Translational.ConstantForce pull(f_constant = 5e3);",
+        "connect(cylinder.port_1, plug.port);
+         connect(cylinder.port_2, tank.port);
+         connect(cylinder.flange, pull.flange);",
+    );
+    let outcome = simulation.stop_time(0.1).run().expect("it runs on");
+    let told: Vec<String> = outcome.diagnostics.iter().map(|d| d.message.clone()).collect();
+    assert_eq!(told.len(), 1, "{told:?}");
+    assert!(told[0].starts_with("The oil cavitates"), "{told:?}");
+}
+
 /// The load is lifted against the counterbalance valve's check, held by the brake, and let down no faster than the pilot
 /// allows: with the high side of the motor at B, as its ports say.
 #[test]

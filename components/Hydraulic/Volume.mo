@@ -14,6 +14,7 @@ protected
 equation
   assert(V > 0, "The volume V must be positive");
   assert(beta_wall > 0, "The modulus of the wall must be positive");
+  assert(p > 0, "The oil cavitates: more is drawn than flows in, and the pressure lies at the floor of the oil's law. Is a check valve or a charge pump missing?", AssertionLevel.warning);
   p = port.p;
   (rho, beta) = oil.density(p);
   V_p = V*(1 + (p - oil.p_0)/beta_wall);
