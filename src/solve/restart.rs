@@ -21,6 +21,9 @@ const FIRST_ERROR: f64 = 0.3;
 /// The same at the start, where no step tells yet how much of it is to come.
 const START_ERROR: f64 = 0.1;
 
+/// How many times shorter, in powers of two, a turn of a crossing function may be than the first step.
+const HALVINGS: i32 = 20;
+
 /// Buffers for the unknowns around an event.
 #[derive(Debug, Default)]
 pub struct Restart {
@@ -172,23 +175,21 @@ impl Restart {
         true
     }
 
-    /// A step that does not leap over a function that crosses zero and comes back, as after the small bounce of a ball:
-    /// at most a quarter of the time it stays away.
+    /// A step that does not leap over what a crossing function does beside going on: crossing zero and coming back, as
+    /// after the small bounce of a ball, or leaving zero and returning to it, as where a contact slips for a moment. The
+    /// straight line of the first step would miss the one, and take the other back at once, over and over. At most a
+    /// quarter of the shortest of these times.
     fn see_return(&mut self, ida: &mut Ida<Model<'_>>, t: f64, h: f64) -> f64 {
         let count = ida.equations().roots.len();
-        let mut g = vec![0.0; 2 * count];
-        let (now, then) = g.split_at_mut(count);
-        self.crossings_after(ida, t, 0.0, now);
-        self.crossings_after(ida, t, 4.0 * h, then);
-        let comes_back: Vec<bool> = now.iter().zip(&*then).map(|(a, b)| a.signum() == b.signum()).collect();
-        for halvings in 1..12 {
-            let ahead = 4.0 * h * 0.5_f64.powi(halvings);
-            self.crossings_after(ida, t, ahead, then);
-            if (0..count).any(|i| comes_back[i] && now[i].signum() != then[i].signum()) {
-                return 0.25 * ahead;
-            }
-        }
-        h
+        let at = |ahead: f64| {
+            let mut g = vec![0.0; count];
+            self.crossings_after(ida, t, ahead, &mut g);
+            g
+        };
+        let times: Vec<f64> = (0..=HALVINGS).map(|k| 4.0 * h * 0.5_f64.powi(k)).collect();
+        let courses: Vec<Vec<f64>> = std::iter::once(0.0).chain(times.iter().copied()).map(at).collect();
+        let turns = (0..count).filter_map(|i| turn(courses[0][i], |k| courses.get(k + 1).map(|g| g[i])));
+        turns.max().map_or(h, |k| 0.25 * times[k])
     }
 
     /// The crossing functions a time `h` ahead, by a parabola through the values and derivatives now.
@@ -233,5 +234,39 @@ impl Restart {
         self.correction = correction;
         self.probe = probe;
         if h > 0.0 { h } else { most }
+    }
+}
+
+/// The first of shorter and shorter times ahead at which a function, `now` and at these times, is seen to turn: on the
+/// other side of zero though it is on this one later, or farther on this side than now though it is on the other later.
+fn turn(now: f64, ahead: impl Fn(usize) -> Option<f64>) -> Option<usize> {
+    let here = |g: f64| g.signum() == now.signum();
+    let returns = here(ahead(0)?);
+    let (k, g) = (1..).map_while(|k| Some((k, ahead(k)?))).find(|(_, g)| here(*g) != returns)?;
+    (returns || g.abs() > now.abs()).then_some(k)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A parabola from `now` with this slope and bend, at times of 1, 1/2, 1/4, ...
+    fn parabola(now: f64, slope: f64, bend: f64) -> Option<usize> {
+        turn(now, |k| {
+            let t = 0.5_f64.powi(i32::try_from(k).expect("small"));
+            (k < 12).then(|| now + slope * t + 0.5 * bend * t * t)
+        })
+    }
+
+    #[test]
+    fn turns_of_crossing_functions_are_seen() {
+        // up through zero and back down at 0.1: first seen above at 1/16
+        assert_eq!(parabola(-1e-12, 0.05, -1.0), Some(4));
+        // away from zero, and back at 0.1
+        assert_eq!(parabola(-1e-12, -0.05, 1.0), Some(4));
+        // straight through zero, straight away from it, towards it from afar
+        assert_eq!(parabola(-1e-12, 0.05, 0.0), None);
+        assert_eq!(parabola(-1e-12, -0.05, 0.0), None);
+        assert_eq!(parabola(-0.5, 0.1, 2.0), None);
     }
 }
