@@ -19,30 +19,39 @@ pub struct Pole {
     pub participation: Vec<(usize, f64)>,
 }
 
+/// Eigenvalues this close, as a part of their size, count as one: of two that are equal but for rounding, a defect of the
+/// matrix may have driven the eighth digit apart.
+const COINCIDE: f64 = 1e-6;
+
 /// Shares below this are not worth telling.
 const LEAST_SHARE: f64 = 0.02;
 
 /// Poles in the order of their magnitude. Empty where the eigenvalues cannot be found.
 ///
 /// Participation of state k in mode i is |w_ki v_ki| with left and right eigenvectors. Source: I. J. Perez-Arriaga,
-/// G. C. Verghese, F. C. Schweppe, IEEE Trans. PAS-101 (1982) 3117.
+/// G. C. Verghese, F. C. Schweppe, IEEE Trans. PAS-101 (1982) 3117. Of poles that coincide no eigenvector belongs to one
+/// alone: each has the share of the states in what all of them span, the diagonal of the projector V (W'V)^-1 W'.
 pub fn poles(model: &StateSpace) -> Vec<Pole> {
     let a = scaled(model);
     let all = eigenvalues(&a);
     let largest = all.iter().map(|l| l.norm()).fold(0.0, f64::max);
+    // rounding of integrators
+    let tidy = |l: Complex<f64>| if l.norm() <= 1e-14 * largest { Complex::new(0.0, 0.0) } else { l };
+    let all: Vec<Complex<f64>> = all.into_iter().map(tidy).collect();
     let mut found: Vec<Pole> = all
-        .into_iter()
+        .iter()
+        .copied()
         .filter(|l| l.im >= 0.0)
-        // rounding of integrators
-        .map(|l| if l.norm() <= 1e-14 * largest { Complex::new(0.0, 0.0) } else { l })
         .map(|l| {
             let size = l.norm();
+            let together: Vec<Complex<f64>> =
+                all.iter().copied().filter(|o| (o - l).norm() <= COINCIDE * size).collect();
             Pole {
                 re: l.re,
                 im: l.im,
                 frequency: size / std::f64::consts::TAU,
                 damping: if size > 0.0 { -l.re / size } else { 0.0 },
-                participation: participation(&a, l),
+                participation: participation(&a, &together),
             }
         })
         .collect();
@@ -67,37 +76,41 @@ pub(super) fn eigenvalues(a: &DMatrix<f64>) -> Vec<Complex<f64>> {
     schur.map_or_else(Vec::new, |s| s.complex_eigenvalues().iter().copied().collect())
 }
 
-fn participation(a: &DMatrix<f64>, eigenvalue: Complex<f64>) -> Vec<(usize, f64)> {
-    let n = a.nrows();
-    let right = eigenvector(a, eigenvalue);
-    let left = eigenvector(&a.transpose(), eigenvalue);
-    let (Some(right), Some(left)) = (right, left) else { return Vec::new() };
-    let all: Vec<f64> = (0..n).map(|k| (right[k] * left[k]).norm()).collect();
-    let sum: f64 = all.iter().sum();
-    let mut shares: Vec<(usize, f64)> = all.into_iter().map(|s| s / sum).enumerate().collect();
+fn participation(a: &DMatrix<f64>, together: &[Complex<f64>]) -> Vec<(usize, f64)> {
+    let Some(all) = projector(a, together).map(|p| p.diagonal().map(Complex::norm)) else { return Vec::new() };
+    let sum: f64 = all.sum();
+    let mut shares: Vec<(usize, f64)> = all.iter().map(|s| s / sum).enumerate().collect();
     shares.retain(|s| s.1 >= LEAST_SHARE);
     shares.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
     shares
 }
 
-/// By inverse iteration from a vector that favours no state.
-fn eigenvector(a: &DMatrix<f64>, eigenvalue: Complex<f64>) -> Option<DVector<Complex<f64>>> {
+/// On the space that belongs to eigenvalues which coincide, along all others.
+fn projector(a: &DMatrix<f64>, together: &[Complex<f64>]) -> Option<DMatrix<Complex<f64>>> {
+    let centre = together.iter().sum::<Complex<f64>>() / together.len() as f64;
+    let right = invariant(a, centre, together.len())?;
+    let left = invariant(&a.transpose(), centre, together.len())?.transpose();
+    Some(&right * (&left * &right).try_inverse()? * left)
+}
+
+/// A basis of the space of so many eigenvalues at one place, by inverse iteration from vectors that favour no state.
+fn invariant(a: &DMatrix<f64>, eigenvalue: Complex<f64>, count: usize) -> Option<DMatrix<Complex<f64>>> {
     let n = a.nrows();
     let size = a.amax().max(eigenvalue.norm()).max(f64::MIN_POSITIVE);
     let mut shifted = a.map(|v| Complex::new(v, 0.0));
     let shift = eigenvalue + Complex::new(1e-10 * eigenvalue.norm().max(1e-6 * size), 0.0);
     (0..n).for_each(|k| shifted[(k, k)] -= shift);
     let lu = shifted.lu();
-    let mut v = DVector::from_fn(n, |k, _| Complex::new(1.0, 0.1 * (k % 7) as f64));
+    let begin = |k: usize, j: usize| Complex::new(if k % count == j { 1.0 } else { 0.1 }, 0.1 * ((k + j) % 7) as f64);
+    let mut basis = DMatrix::from_fn(n, count, begin);
     for _ in 0..4 {
-        v = lu.solve(&v)?;
-        let norm = v.norm();
-        if !norm.is_finite() || norm == 0.0 {
+        basis = lu.solve(&basis)?;
+        if !basis.iter().all(|v| v.is_finite()) || basis.iter().all(|v| *v == Complex::new(0.0, 0.0)) {
             return None;
         }
-        v /= Complex::new(norm, 0.0);
+        basis = basis.qr().q();
     }
-    Some(v)
+    Some(basis)
 }
 
 /// Zeros of the way from one input to one output, in the order of their magnitude.

@@ -50,6 +50,30 @@ fn matrices_poles_and_zeros_of_an_oscillator() {
     assert!((response[(0, 0)].norm() - 1.0 / (0.8 * 5.0)).abs() < 1e-12);
 }
 
+/// Two lags of one rate beside each other, and two in a row (a matrix that has one eigenvector only): the poles say of
+/// both states that they take part, not twice the same of one.
+#[test]
+fn poles_that_coincide_name_all_their_states() {
+    for second in ["-2*z", "x - 2*z"] {
+        let text = format!(
+            "model M Real x(start = 1, fixed = true), z(start = 1, fixed = true), far(start = 1, fixed = true);
+              equation der(x) = -2*x; der(z) = {second}; der(far) = -50*far + x; end M;"
+        );
+        let (simulation, state) = start(&text);
+        let chosen = Chosen::new(&simulation.model().flat, &Choice::default(), &[]).expect("fits");
+        let model = linearize(simulation.model(), &chosen, &state).expect("has derivatives");
+        let poles = poles(&model);
+        assert_eq!(poles.len(), 3);
+        for pole in &poles[..2] {
+            let mut shares = pole.participation.clone();
+            shares.sort_by_key(|s| s.0);
+            let states: Vec<&str> = shares.iter().map(|s| model.states[s.0].name.as_str()).collect();
+            assert_eq!(states, ["x", "z"], "{second}");
+            assert!((pole.re + 2.0).abs() < 1e-6 && shares.iter().all(|s| (s.1 - 0.5).abs() < 1e-3), "{pole:?}");
+        }
+    }
+}
+
 #[test]
 fn zeros_of_a_lead() {
     // (s + 3)/((s + 1)(s + 10)) with a chain of two lags
