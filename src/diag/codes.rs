@@ -114,7 +114,7 @@ codes! {
     BadExperiment = "E602", Error, "an experiment file cannot be used";
     LargeResult = "N603", Note, "the result will be large";
     BadStudy = "E604", Error, "a study cannot be used";
-    StuckSignal = "W605", Warning, "a measured signal never changes";
+    StuckSignal = "W605", Warning, "a recorded column never changes";
     BadCheckpoint = "E606", Error, "a run cannot go on from a checkpoint";
     WorseThanConstant = "W607", Warning, "a fitted signal is met worse than by a constant";
     SteppingInput = "W608", Warning, "an input that steps is joined by straight lines";

@@ -35,7 +35,8 @@ impl Bound {
     /// # Errors
     /// [`Code::BadStudy`] for files that are not there or hold nothing in the window; [`Code::BadData`] for missing
     /// columns, times that do not grow, gaps, inputs with empty cells, columns without any number or in a unit that
-    /// cannot be converted. A signal that never changes is a warning.
+    /// cannot be converted. Warnings are a signal that never changes, and an input that does not in any recording that
+    /// is fitted.
     pub fn load(
         &self,
         world: &dyn World,
@@ -52,6 +53,9 @@ impl Bound {
         if found.is_empty() && role == Role::Train && loader.diagnostics.is_empty() {
             let d = Diagnostic::new(Code::BadStudy, "there is no recording to fit to");
             loader.diagnostics.push(d.help("give at least one existing recording the role `train`"));
+        }
+        if role == Role::Train {
+            loader.check_excitation(&found);
         }
         if loader.diagnostics.iter().any(Diagnostic::is_error) {
             Checked::failed(loader.diagnostics)
@@ -174,6 +178,20 @@ impl Loader<'_> {
             let text = format!("`{}` jumps {jumps} times and is joined by straight lines", entry.name);
             let d = Diagnostic::new(Code::SteppingInput, text).at(entry.span, "`hold = false`");
             self.diagnostics.push(d.at(head, "in this file").help("a source that holds its output is `hold = true`"));
+        }
+    }
+
+    /// An input may stand still in one recording, but one that does so in all of them excites nothing.
+    fn check_excitation(&mut self, recordings: &[Recording]) {
+        for (k, input) in self.bound.inputs.iter().enumerate() {
+            let mut values = recordings.iter().flat_map(|r| r.inputs[k].iter().copied());
+            let Some(first) = values.next() else { continue };
+            if values.all(|v| v == first) {
+                let (column, value) = (&input.entry.column, number::text(first));
+                let text = format!("the input column `{column}` never changes: it is {value} in every recording");
+                let d = Diagnostic::new(Code::StuckSignal, text).at(input.entry.span, "this input");
+                self.diagnostics.push(d.help("nothing is learnt of what acts through it: is it the right column?"));
+            }
         }
     }
 

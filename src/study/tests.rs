@@ -133,8 +133,8 @@ fn mistakes_are_shown_at_their_place() {
 #[test]
 fn bad_columns() {
     let texts = [
-        "t_s,q,level\n0,1,2\n1,1,2\n",
-        "t_s,q,level\n0,1,\n1,1,\n",
+        "t_s,q,level\n0,1,2\n1,2,2\n",
+        "t_s,q,level\n0,1,\n1,2,\n",
         "t_s,q,level\n0,1,1\n0,1,2\n",
         "t_s,q,level\n0,,1\n1,1,2\n",
         "t_s,q,level\n0,1,1\n1,1,x\n",
@@ -167,4 +167,18 @@ fn an_input_that_steps_is_not_joined_by_straight_lines() {
     assert!(said(stepping).contains("W608") && said(stepping).contains("`u` jumps 4 times"), "{}", said(stepping));
     // a course that climbs from sample to sample
     assert_eq!(said(&stepping.replace("0.1,1", "0.1,1.5").replace("0.5,1", "0.5,1.5")), "");
+}
+
+#[test]
+fn an_input_that_stands_still_in_all_recordings_is_told() {
+    let said = |first: &str, second: &str| {
+        let mut world = world(&STUDY.replace("\"held\"", "\"train\"\ntime = \"t_s\""));
+        world.add("lab/a.csv", first);
+        world.add("lab/b.csv", second);
+        load(&world).1
+    };
+    let (still, moving) = ("t_s,q,level\n0,1,2\n1,1,3\n2,1,3\n3,1,2\n", "t_s,q,level\n0,1,2\n1,2,3\n2,3,3\n3,1,2\n");
+    let told = said(still, still);
+    assert!(told.contains("W605") && told.contains("`q` never changes"), "{told}");
+    assert!(!said(still, moving).contains("W605"), "{}", said(still, moving));
 }
