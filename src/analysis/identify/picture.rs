@@ -43,18 +43,20 @@ fn label(name: &str, unit: &str) -> String {
 }
 
 fn course(course: &super::Course) -> Panel {
-    let line = |name: &str, y: Vec<f64>, colour: usize| Series {
+    // dashes let the measured course show through where the model meets it
+    let line = |name: &str, y: Vec<f64>, colour: usize, dashed: bool| Series {
         name: format!("{} {name}", course.name),
         x: course.times.clone(),
         y,
         colour,
+        dashed,
         ..Series::default()
     };
     let model = course.measured.iter().zip(&course.errors).map(|(m, e)| m + e).collect();
     Panel {
         x_label: "time in s".to_owned(),
         y_label: label(&course.name, &course.unit),
-        series: vec![line("measured", course.measured.clone(), 6), line("of the model", model, 0)],
+        series: vec![line("measured", course.measured.clone(), 6, false), line("of the model", model, 0, true)],
         ..Panel::default()
     }
 }
