@@ -1,16 +1,17 @@
 //! What changes at events only must be given so: a `discrete` or Integer variable by its equation, `pre` by its argument.
 
 use super::{Equation, FlatModel, Type, Variability, When, WhenAction};
-use crate::diag::{Code, Diagnostic};
+use crate::diag::{Code, Diagnostic, Span};
 use crate::expr::{ExprId, Node, Unary, VarId};
 use crate::instance::Instance;
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Tells what is wrong; the expressions are still those of the instance.
 pub(super) fn check(instance: &mut Instance<'_, '_>, flat: &FlatModel) {
     let assigned: FxHashSet<VarId> = flat.whens.iter().flat_map(When::assigned).collect();
     check_equations(instance, flat, &assigned);
     check_own_values(instance, flat);
+    check_reinits(instance, flat);
     check_pre(instance, flat, &assigned);
 }
 
@@ -64,6 +65,27 @@ fn check_own_values(instance: &mut Instance<'_, '_>, flat: &FlatModel) {
         let d =
             Diagnostic::new(Code::TypeMismatch, message).at(origin.span, format!("`{name}` means its new value here"));
         instance.diagnostics.push(d.help(format!("write `pre({name})` for the value before the event")));
+    }
+}
+
+/// `reinit` of one variable stands in one `when` only (MLS 8.3.6): of two that fire at once neither would say the value.
+fn check_reinits(instance: &mut Instance<'_, '_>, flat: &FlatModel) {
+    let mut first: FxHashMap<VarId, (usize, Span)> = FxHashMap::default();
+    for (clause, when) in flat.whens.iter().enumerate() {
+        for action in when.branches.iter().flat_map(|b| &b.actions) {
+            let WhenAction::Reinit { variable, origin, .. } = action else { continue };
+            let (other, span) = *first.entry(*variable).or_insert((clause, origin.span));
+            if other == clause {
+                continue;
+            }
+            let name = &flat.variables[variable.index()].name;
+            let message = format!("`{name}` gets a new value from two `when` clauses");
+            let d = Diagnostic::new(Code::Overdetermined, message).at(origin.span, "here again").at(span, "first here");
+            instance.diagnostics.push(d.help(
+                "write one clause, with `elsewhen` for the other condition: its order says which of the two counts",
+            ));
+            return;
+        }
     }
 }
 
