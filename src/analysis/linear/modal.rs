@@ -81,7 +81,9 @@ fn participation(a: &DMatrix<f64>, together: &[Complex<f64>]) -> Vec<(usize, f64
     let sum: f64 = all.sum();
     let mut shares: Vec<(usize, f64)> = all.iter().map(|s| s / sum).enumerate().collect();
     shares.retain(|s| s.1 >= LEAST_SHARE);
-    shares.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+    // equal ones in the order of the states, whatever rounding says
+    let rank = |share: f64| (1e9 * share).round();
+    shares.sort_by(|a, b| rank(b.1).total_cmp(&rank(a.1)).then(a.0.cmp(&b.0)));
     shares
 }
 
