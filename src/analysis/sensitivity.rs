@@ -59,7 +59,9 @@ pub fn sensitivity(
         Ok((plain, columns)) => Ok(Sensitivity { plain, parameters, columns, differences: None }),
         Err(why) => {
             let plain = run(model, &settings, None, interrupt)?;
-            let columns = by_differences(model, &settings, moved, interrupt)?;
+            let tight = Settings { tolerance: settings.tolerance.min(TIGHT), ..settings.clone() };
+            let columns = by_differences(model, &tight, moved, interrupt)
+                .or_else(|_| by_differences(model, &settings, moved, interrupt))?;
             Ok(Sensitivity { plain, parameters, columns, differences: Some(why) })
         }
     }
@@ -68,9 +70,14 @@ pub fn sensitivity(
 /// How far what was carried along may be from a difference, as a part of its largest value.
 const AGREE: f64 = 1e-3;
 
-/// Steps of that difference, as a part of the parameters: long, so that the error of the runs does not show, and where
-/// that meets something strongly curved a shorter one. Wrong derivatives agree with neither.
-const CHECKS: [f64; 2] = [1e-3, 1e-4];
+/// Tolerance of runs whose difference shall not show their own errors: behind events these depend on the parameters as
+/// steps do, by jumps.
+const TIGHT: f64 = 1e-12;
+
+/// Steps of that difference, as a part of the parameters, and the tolerance of its runs where it is not that of the run
+/// itself. A long step, so that errors do not show; where they do, tight runs; and where these meet something strongly
+/// curved, a shorter step. Wrong derivatives agree with none.
+const CHECKS: [(f64, f64); 3] = [(1e-3, 1.0), (1e-3, TIGHT), (1e-4, TIGHT)];
 /// The part of the rows that may lie between the moved times of an event.
 const BETWEEN: f64 = 0.02;
 
@@ -97,7 +104,7 @@ fn by_equations(
     let carried = rows.columns.split_off(wanted);
     rows.signals.truncate(wanted);
     let columns: Vec<Vec<Vec<f64>>> = carried.chunks(wanted.max(1)).map(<[_]>::to_vec).collect();
-    agrees(model, settings, moved, &columns, interrupt)?;
+    agrees(model, settings, moved, (&rows, &columns), interrupt)?;
     Ok((rows, columns))
 }
 
@@ -106,7 +113,7 @@ fn agrees(
     model: &Model,
     settings: &Settings,
     moved: &[Moved],
-    columns: &[Vec<Vec<f64>>],
+    (plain, columns): (&Trajectory, &[Vec<Vec<f64>>]),
     interrupt: &AtomicBool,
 ) -> Result<(), String> {
     // those that follow others stay with them: moved themselves they would follow no more
@@ -114,10 +121,59 @@ fn agrees(
         let others = moved.iter().filter(|o| o.variable != m.variable);
         others.into_iter().any(|o| reading(&model.flat, &[o.variable]).iter().any(|(v, _)| *v == m.variable))
     };
-    let share = |(k, m): (usize, &Moved)| if follows(m) { 0.0 } else { (1.0 + k as f64).cos() };
+    let share = |(k, m): (usize, &Moved)| {
+        let part = (1.0 + k as f64).cos();
+        if follows(m) { 0.0 } else { inward(model, m).map_or(part, |side| side * part.abs()) }
+    };
     let share: Vec<f64> = moved.iter().enumerate().map(share).collect();
-    let over = |step: f64| agrees_over(model, settings, moved, (&share, step), columns, interrupt);
-    over(CHECKS[0]).or_else(|why| over(CHECKS[1]).map_err(|_| why))
+    let over = |&(step, tolerance): &(f64, f64)| {
+        let settings = Settings { tolerance: settings.tolerance.min(tolerance), ..settings.clone() };
+        agrees_over(model, &settings, moved, (&share, step), (plain, columns), interrupt)
+    };
+    let mut checks = CHECKS.iter().map(over);
+    let first = checks.next().expect("there are some");
+    first.or_else(|why| checks.find_map(Result::ok).ok_or(why))
+}
+
+/// The side on which a parameter has room, where it stands at a bound.
+fn inward(model: &Model, moved: &Moved) -> Option<f64> {
+    let system = &model.system;
+    let mut values = system.layout.values();
+    system.evaluate_parameters(&mut values, &[]);
+    let room = CHECKS[0].0 * moved.size;
+    let below = system.min(moved.variable, &values).is_some_and(|min| moved.value - min < room);
+    let above = system.max(moved.variable, &values).is_some_and(|max| max - moved.value < room);
+    if below { Some(1.0) } else { above.then_some(-1.0) }
+}
+
+/// The derivative of the wanted variables along a change of parameters: central differences, and at a bound of the
+/// parameters, where runs on one side fail, those of second order on the other.
+fn along(
+    model: &Model,
+    settings: &Settings,
+    change: &(impl Fn(f64) -> Vec<(VarId, f64)> + Sync),
+    step: f64,
+    interrupt: &AtomicBool,
+) -> Result<Vec<Vec<f64>>, String> {
+    let at = |steps: f64| run(model, settings, change(steps * step), interrupt);
+    let (up, down) = rayon::join(|| at(1.0), || at(-1.0));
+    let combined = match (up, down) {
+        (Ok(up), Ok(down)) => combine(&[(&up, 0.5), (&down, -0.5)]),
+        (Ok(near), Err(_)) => combine(&[(&at(0.0)?, -1.5), (&near, 2.0), (&at(2.0)?, -0.5)]),
+        (Err(_), Ok(near)) => combine(&[(&at(0.0)?, 1.5), (&near, -2.0), (&at(-2.0)?, 0.5)]),
+        (Err(why), Err(_)) => return Err(why),
+    };
+    let mut columns = combined.ok_or("moved runs end elsewhere")?;
+    columns.iter_mut().flatten().for_each(|d| *d /= step);
+    Ok(columns)
+}
+
+/// The sum of runs with these weights; `None` where they have different rows.
+fn combine(runs: &[(&Trajectory, f64)]) -> Option<Vec<Vec<f64>>> {
+    let first = runs.first()?.0;
+    runs.iter().all(|(run, _)| run.times.len() == first.times.len()).then_some(())?;
+    let cell = |v: usize, row: usize| runs.iter().map(|(run, weight)| weight * run.columns[v][row]).sum();
+    Some((0..first.columns.len()).map(|v| (0..first.times.len()).map(|row| cell(v, row)).collect()).collect())
 }
 
 /// Compares with the difference over one step, in which each parameter takes its share.
@@ -126,26 +182,23 @@ fn agrees_over(
     settings: &Settings,
     moved: &[Moved],
     (share, step): (&[f64], f64),
-    columns: &[Vec<Vec<f64>>],
+    (plain, columns): (&Trajectory, &[Vec<Vec<f64>>]),
     interrupt: &AtomicBool,
 ) -> Result<(), String> {
-    let at = |sign: f64| {
+    let change = |by: f64| -> Vec<(VarId, f64)> {
         let movers = moved.iter().zip(share).filter(|(_, s)| **s != 0.0);
-        let changes = movers.map(|(m, s)| (m.variable, m.value + sign * step * s * m.size));
-        run(model, settings, changes, interrupt)
+        movers.map(|(m, s)| (m.variable, m.value + by * s * m.size)).collect()
     };
-    let (up, down) = rayon::join(|| at(1.0), || at(-1.0));
-    let (up, down) = (up?, down?);
+    let differences = along(model, settings, &change, step, interrupt)?;
     let rows = columns.first().and_then(|c| c.first()).map_or(0, Vec::len);
-    if up.times.len() != rows || down.times.len() != rows {
+    if differences.iter().any(|d| d.len() != rows) {
         return Err("moved runs end elsewhere".to_owned());
     }
     for v in 0..settings.wanted.len() {
-        let difference = |row: usize| (up.columns[v][row] - down.columns[v][row]) / (2.0 * step);
         let sum = |row: usize| columns.iter().zip(share).map(|(c, s)| s * c[v][row]).sum::<f64>();
         let most = (0..rows).map(|row| sum(row).abs()).fold(0.0, f64::max);
-        let size = up.columns[v].iter().fold(0.0f64, |m, x| m.max(x.abs()));
-        let apart = |row: &usize| (difference(*row) - sum(*row)).abs() > AGREE * most + 1e-6 * size;
+        let size = plain.columns[v].iter().fold(0.0f64, |m, x| m.max(x.abs()));
+        let apart = |row: &usize| (differences[v][*row] - sum(*row)).abs() > AGREE * most + 1e-6 * size;
         // a row between the moved times of an event tells nothing
         if (0..rows).filter(apart).count() > (rows as f64 * BETWEEN).ceil() as usize {
             let name = &model.flat.variables[settings.wanted[v].index()].name;
@@ -161,16 +214,11 @@ fn by_differences(
     moved: &[Moved],
     interrupt: &AtomicBool,
 ) -> Result<Vec<Vec<Vec<f64>>>, String> {
-    moved
-        .par_iter()
-        .map(|m| {
-            let at = |sign: f64| run(model, settings, [(m.variable, m.value + sign * STEP * m.size)], interrupt);
-            let (up, down) = (at(1.0)?, at(-1.0)?);
-            let difference =
-                |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(a, b)| (a - b) / (2.0 * STEP)).collect();
-            Ok(up.columns.iter().zip(&down.columns).map(difference).collect())
-        })
-        .collect()
+    let by = |m: &Moved| {
+        let change = |by: f64| vec![(m.variable, m.value + by * m.size)];
+        along(model, settings, &change, STEP, interrupt)
+    };
+    moved.par_iter().map(by).collect()
 }
 
 fn run(
@@ -292,6 +340,29 @@ mod tests {
                 let apart = exact[0].iter().zip(&other[0]).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
                 assert!(apart <= 1e-6 * most && most > 0.0, "{source} {}: {apart} of {most}", m.name);
             }
+        }
+    }
+
+    /// A parameter at its bound, beyond which an assertion stops the run, is moved to the other side alone.
+    #[test]
+    fn a_parameter_at_its_bound_moves_inwards() {
+        for (bound, law) in [("min = 1", "p >= 1"), ("max = 1", "p <= 1")] {
+            let text = format!(
+                "model M parameter Real p({bound}) = 1, k = 2; Real x(start = 3, fixed = true);
+                 equation assert({law}, \"beyond\"); der(x) = -k*p*noEvent(abs(x)); end M;"
+            );
+            let s = found(&text, &["p", "k"], "x", 1.0);
+            assert_eq!(s.differences, None, "{bound}");
+            for (row, &t) in s.plain.times.iter().enumerate() {
+                let exact = -2.0 * t * 3.0 * (-2.0 * t).exp();
+                assert!((0..2).all(|p| (s.columns[p][0][row] - exact).abs() < 1e-4), "{bound} {t}");
+            }
+            let (model, settings, moved) = asked("m.mo", &text, &["p"], "x", 1.0);
+            let settings = Settings { tolerance: 1e-11, event_rows: false, ..settings };
+            let differences = by_differences(&model, &settings, &moved, &AtomicBool::new(false)).expect("one side");
+            let exact = -2.0 * 3.0 * (-2.0_f64).exp();
+            let end = differences[0][0].last().copied().unwrap_or_default();
+            assert!((end - exact).abs() < 1e-6, "{bound}: {end} {exact}");
         }
     }
 
