@@ -4,23 +4,21 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::linearize::{put, restless, run_to, state_at};
+use super::linearize::{rest, restless, run_from, run_to, state_at};
 use super::messages::Messages;
 use super::recorder::write_text;
 use super::request::ModelArgs;
-use super::{Ending, Failure, columns, files, interrupt, model};
+use super::{Ending, Failure, columns, files, model};
 use crate::analysis::balance::{self, Budget};
 use crate::analysis::grid;
 use crate::analysis::linear::{Choice, Chosen};
-use crate::analysis::steady;
 use crate::compile::Model;
 use crate::diag::{Code, Diagnostic};
 use crate::experiment::seconds;
 use crate::expr::VarId;
 use crate::plot::{png, sankey};
 use crate::results::{CsvWriter, Signal, Trajectory, number};
-use crate::solve::{Control, Settings, State, signals, simulate};
-use crate::structure::StateChoice;
+use crate::solve::{Settings, State, signals};
 
 /// Operating points: where nothing changes any more, and where the power goes there
 #[derive(Args, Debug)]
@@ -85,9 +83,9 @@ pub(super) fn run(args: &SteadyArgs, messages: &mut Messages) -> Result<Ending, 
         if let Some(&v) = moved.first().filter(|_| !over.is_empty()) {
             state.values[v.index()] = value;
         }
-        match steady::steady(&chosen, &state) {
-            Ok((found, _)) => {
-                put(&chosen, &found.x, &mut state);
+        match rest(&model, &chosen, &state) {
+            Ok(found) => {
+                state = found;
                 let (rows, after) = settled(&model, &chosen, &state, &wanted)?;
                 table.push(value, &rows);
                 state = after;
@@ -109,7 +107,7 @@ pub(super) fn run(args: &SteadyArgs, messages: &mut Messages) -> Result<Ending, 
     }
     if args.balance || args.sankey.is_some() {
         let ports = balance::ports(&model.flat);
-        let rows = moment(&model, &chosen, &state, &balance::wanted(&ports))?.0;
+        let rows = run_from(&model, &chosen, &state, MOMENT, &balance::wanted(&ports))?.0;
         power(args, &model, &ports, &rows, messages)?;
     }
     Ok(Ending::Fine)
@@ -141,29 +139,9 @@ fn wanted(args: &SteadyArgs, model: &Model, chosen: &Chosen) -> Result<Vec<VarId
 /// Seconds over which a steady state is watched, to see how fast positions move.
 const MOMENT: f64 = 1e-3;
 
-/// A short run from a state, with the values of the raised parameters in it.
-fn moment(model: &Model, chosen: &Chosen, state: &State, wanted: &[VarId]) -> Result<(Trajectory, State), Failure> {
-    let settings = Settings {
-        start_time: state.time,
-        stop_time: state.time + MOMENT,
-        interval: MOMENT,
-        tolerance: 1e-8,
-        parameters: chosen.raised().map(|v| (v, state.values[v.index()])).collect(),
-        wanted: wanted.to_vec(),
-        event_rows: false,
-        ..Settings::from_experiment(&model.dae.experiment)
-    };
-    let mut rows = Trajectory::new(signals(&model.dae, wanted));
-    let mut reselect = |choice: &StateChoice| model.with_states(choice);
-    let mut control =
-        Control { interrupt: Some(interrupt::flag()), reselect: Some(&mut reselect), ..Control::default() };
-    let run = simulate(&model.system, &settings, &[], Some(state), &mut rows, &mut control);
-    if run.end.is_success() { Ok((rows, run.state)) } else { Err(Failure { diagnostics: run.diagnostics }) }
-}
-
 /// The values at a steady state, and the state with everything that follows from it.
 fn settled(model: &Model, chosen: &Chosen, state: &State, wanted: &[VarId]) -> Result<(Vec<f64>, State), Failure> {
-    let (rows, mut after) = moment(model, chosen, state, wanted)?;
+    let (rows, mut after) = run_from(model, chosen, state, MOMENT, wanted)?;
     after.time = state.time;
     Ok((rows.columns.iter().map(|c| c[0]).collect(), after))
 }
