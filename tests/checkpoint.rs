@@ -86,6 +86,24 @@ fn bounces_and_counters() {
     assert!(run.statistics.events > 5);
 }
 
+/// What is delayed has a past: jumps and bends in it too.
+#[test]
+fn delays() {
+    let (run, _) = goes_on(
+        "model M
+           Real x(start = 1, fixed = true), u, y;
+         equation
+           u = if sin(7*time) > 0.5 then 1 else 0;
+           y = delay(u, 0.45);
+           der(x) = -4*delay(x, 0.3) + y;
+           annotation(experiment(StopTime = 3, Interval = 0.01));
+         end M;",
+        0.137,
+        &[],
+    );
+    assert!(run.statistics.events > 10);
+}
+
 /// Dry friction that sticks and slips, sampled control with seeded noise, and a parameter found at the start.
 #[test]
 fn friction_sampling_and_noise() {

@@ -85,6 +85,9 @@ impl Plan {
     pub fn new(lifted: &Lifted) -> Result<Plan, Vec<Diagnostic>> {
         let checked = structure::analyze(&lifted.flat, &StateChoice::default());
         let Some(dae) = checked.value else { return Err(checked.diagnostics) };
+        if let Some(delay) = dae.delays.first() {
+            return Err(vec![delayed(&dae, delay)]);
+        }
         let system = Arc::new(lower_explicit(Arc::new(dae), &Options::default()));
         let place = |r: &Raised| place(&system, r).ok_or_else(|| vec![bound(&system, r.start)]);
         let raised = lifted.parameters.iter().chain(&lifted.inputs).map(place).collect::<Result<_, _>>()?;
@@ -219,6 +222,14 @@ impl Plan {
 fn place(system: &System, raised: &Raised) -> Option<Place> {
     let (column, negated) = column(system, raised.state)?;
     Some(Place { column, negated, start: raised.start })
+}
+
+/// What is delayed is a state of its own at every moment of the delay: no finite number of states says it.
+fn delayed(dae: &structure::Dae, delay: &structure::Delay) -> Diagnostic {
+    let name = &dae.variables[delay.variable.index()].name;
+    let text = format!("`{name}` has no finite number of states");
+    let d = Diagnostic::new(Code::Unsupported, text).at(delay.origin.span, "the model is to be made linear");
+    d.help("put `Signal.PadeDelay` in its place, which has as many states as its order")
 }
 
 /// A constraint lets states vary by themselves only together with a parameter.

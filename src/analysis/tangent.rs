@@ -40,6 +40,9 @@ impl Tangent {
         let Some(dae) = structure::analyze(&lifted.flat, &StateChoice::default()).value else {
             return Err("the equations cannot be sorted with parameters that move".to_owned());
         };
+        if !dae.delays.is_empty() {
+            return Err("what is delayed is not carried along".to_owned());
+        }
         let system = Arc::new(lower(Arc::new(dae), &Options::default()));
         Ok(Tangent { system, sizes: parameters.iter().map(|p| p.1).collect(), raised: lifted.parameters })
     }

@@ -287,6 +287,14 @@ impl Exprs {
         self.intern(Node::Sample(start, interval))
     }
 
+    /// `delay(a, time)`
+    pub fn delay(&mut self, a: ExprId, time: ExprId) -> ExprId {
+        match self.node(a) {
+            Node::Num(_) => a,
+            _ => self.intern(Node::Delay(a, time)),
+        }
+    }
+
     /// `a*a`, written as a power.
     pub fn square(&mut self, a: ExprId) -> ExprId {
         let two = self.num(2.0);

@@ -32,6 +32,7 @@ impl Exprs {
             Node::EventFloor(a) => Node::EventFloor(to(a)),
             Node::If(c, a, b) => Node::If(to(c), to(a), to(b)),
             Node::Sample(a, b) => Node::Sample(to(a), to(b)),
+            Node::Delay(a, b) => Node::Delay(to(a), to(b)),
             Node::Homotopy(a, b) => Node::Homotopy(to(a), to(b)),
             Node::Call(function, output, args) => {
                 let args: Vec<ExprId> = from.args(args).iter().map(|&a| to(a)).collect();

@@ -60,6 +60,7 @@ impl TimeDerivative {
         for node in pool.reachable(&[e], |node| !self.memo.contains_key(&node)) {
             let derivative = match pool.node(node) {
                 Node::Time => Exprs::ONE,
+                Node::Delay(a, time) => pool.delay(self.memo[&a], time),
                 Node::Var(v) => leaf(pool, Leaf::Var(v)).ok_or(Leaf::Var(v))?,
                 Node::Der(v) => leaf(pool, Leaf::Der(v)).ok_or(Leaf::Der(v))?,
                 _ => node_derivative(pool, node, &self.memo),

@@ -36,7 +36,8 @@ impl Evaluation {
                 };
                 self.known(if c == 0.0 { b } else { a })
             }
-            Node::Homotopy(a, _) => self.known(a),
+            // at rest a delayed value is the value
+            Node::Homotopy(a, _) | Node::Delay(a, _) => self.known(a),
             Node::Num(bits) => Some(f64::from_bits(bits)),
             Node::Time | Node::Var(_) | Node::Der(_) | Node::Pre(_) => Some(leaf(node)),
             Node::Sample(..) | Node::Initial | Node::Terminal => Some(leaf(node)),

@@ -138,6 +138,9 @@ pub enum Node {
     If(ExprId, ExprId, ExprId),
     /// True at `start + k interval`, k = 0, 1, ... Both are parameter expressions.
     Sample(ExprId, ExprId),
+    /// `delay(a, time)`: the value so long ago, before the start that at the start; the time is a parameter expression.
+    /// `structure` replaces it by an input that the run itself records.
+    Delay(ExprId, ExprId),
     /// True during initialization.
     Initial,
     /// True at the end of a successful run.
@@ -168,6 +171,7 @@ impl Hash for Node {
             Node::Initial => (7, 0, 0),
             Node::Terminal => (8, 0, 0),
             Node::Homotopy(a, b) => (9, a.0, b.0),
+            Node::Delay(a, b) => (10, a.0, b.0),
             Node::Call(f, output, args) => (f.0 ^ 0x4000_0000, output, args.start),
         };
         state.write_u64(u64::from(kind));

@@ -117,6 +117,7 @@ impl Printer<'_> {
                 (bind::WHOLE, pieces)
             }
             Node::Sample(a, b) => call("sample", &[a, b]),
+            Node::Delay(a, b) => call("delay", &[a, b]),
             Node::Homotopy(a, b) => call("homotopy", &[a, b]),
             Node::Call(function, output, args) => {
                 let function = &self.pool.functions[function.0 as usize];

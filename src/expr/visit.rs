@@ -78,6 +78,7 @@ impl Exprs {
             | Node::Rel(_, a, b)
             | Node::EventRel(_, a, b)
             | Node::Sample(a, b)
+            | Node::Delay(a, b)
             | Node::Homotopy(a, b) => ([a, b, none], 2),
             Node::If(c, a, b) => ([c, a, b], 3),
             Node::Call(_, _, args) => return Operands { few: [none; 3], len: 0, many: self.args(args) },
@@ -94,6 +95,7 @@ impl Exprs {
             Node::Rel(rel, a, b) => self.rel(rel, change(a), change(b)),
             Node::EventRel(rel, a, b) => self.event_rel(rel, change(a), change(b)),
             Node::Sample(a, b) => self.sample(change(a), change(b)),
+            Node::Delay(a, b) => self.delay(change(a), change(b)),
             Node::Homotopy(a, b) => self.homotopy(change(a), change(b)),
             Node::If(c, a, b) => self.if_(change(c), change(a), change(b)),
             Node::Call(function, output, args) => {

@@ -32,8 +32,7 @@ fn mathematical(name: &str) -> Option<Unary> {
 }
 
 /// Names that are built in and valid, but not supported.
-const UNSUPPORTED: [&str; 12] = [
-    "delay",
+const UNSUPPORTED: [&str; 11] = [
     "spatialDistribution",
     "inStream",
     "actualStream",
@@ -79,6 +78,7 @@ impl<'a> Instance<'a, '_> {
             "initial" => self.moment(Node::Initial, span),
             "terminal" => self.moment(Node::Terminal, span),
             "sample" => self.sample(args, view, span),
+            "delay" => self.delay(args, view, span),
             "homotopy" => self.homotopy_call(args, named, view, span),
             "semiLinear" => self.semi_linear(args, view, span),
             "size" | "ndims" | "zeros" | "ones" | "fill" | "identity" | "diagonal" | "linspace" | "transpose"
@@ -245,6 +245,26 @@ impl<'a> Instance<'a, '_> {
             return self.fail(Code::NotConstant, "`sample` is not known before the run", span);
         }
         Some(Val::Scalar(self.exprs.sample(s, i), Type::Boolean))
+    }
+
+    /// `delay(expression, time)`; the largest time as a third argument says nothing that a fixed time does not.
+    fn delay(&mut self, args: &'a [Expr], view: View, span: Span) -> Option<Val> {
+        let ([delayed, time] | [delayed, time, _]) = args else {
+            return self.fail(Code::BadCall, "`delay` takes an expression and a time", span);
+        };
+        if self.eval.constant {
+            return self.fail(Code::NotConstant, "`delay` is not known before the run", span);
+        }
+        let (delayed, time) = (self.eval(delayed, view)?, self.eval(time, view)?);
+        let Some((time, _)) = time.scalar() else { return self.wrong_type("a time", &time, span) };
+        if self.variability(time) > Variability::Parameter {
+            self.unsupported(span, "a `delay` whose time changes during the run");
+            return None;
+        }
+        if self.exprs.as_num(time).is_some_and(|t| t <= 0.0) {
+            return self.fail(Code::OutOfRange, "the time of `delay` must be positive", span);
+        }
+        Some(delayed.map(&mut |e, _| self.exprs.delay(e, time)).with_type(Type::Real))
     }
 
     fn homotopy_call(&mut self, args: &'a [Expr], named: &'a [(Ident, Expr)], view: View, span: Span) -> Option<Val> {

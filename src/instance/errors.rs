@@ -29,9 +29,6 @@ impl<'a> Instance<'a, '_> {
     /// A built-in function left out, with what to write instead.
     pub(super) fn unsupported_function(&mut self, span: Span, name: &str) {
         let advice = match name {
-            "delay" => {
-                "`Signal.PadeDelay` is near enough for slow signals, `Signal.SampledDelay` is exact for sampled ones"
-            }
             "spatialDistribution" => "cut the line into a chain of volumes and resistances",
             "inStream" | "actualStream" => "give the connector a potential and a flow for what is carried along",
             "getInstanceName" => "write the name as a String parameter",

@@ -265,6 +265,7 @@ impl<'a> Instance<'a, '_> {
                 N::Time | N::Der(_) => Variability::Continuous,
                 N::Var(v) => self.leaf_variability(v),
                 N::Pre(_) | N::Sample(..) | N::Initial | N::Terminal => Variability::Discrete,
+                N::Delay(a, _) if self.variabilities[a.index()] > Variability::Parameter => Variability::Continuous,
                 N::EventRel(..) | N::EventFloor(_) => {
                     let below = self.operand_variability(id);
                     below.min(Variability::Discrete)

@@ -49,7 +49,7 @@ pub fn find(system: &System, e: ExprId, values: &[f64]) -> Option<Trap> {
 fn needed_operands(pool: &Exprs, e: ExprId, value: &mut impl FnMut(ExprId) -> f64) -> Vec<ExprId> {
     match pool.node(e) {
         Node::If(c, a, b) => vec![c, if value(c) == 0.0 { b } else { a }],
-        Node::Homotopy(a, _) => vec![a],
+        Node::Homotopy(a, _) | Node::Delay(a, _) => vec![a],
         Node::Sample(..) => Vec::new(),
         _ => pool.operands(e).as_slice().to_vec(),
     }

@@ -3,6 +3,7 @@
 //! The integrator's past cannot be written down exactly. So a run that makes checkpoints begins afresh at each of them,
 //! from what the checkpoint holds and nothing else; a run that is taken up there does the same, to the last bit.
 
+use super::past::Past;
 use super::settings::Statistics;
 use super::state::State;
 use crate::expr::VarId;
@@ -50,7 +51,8 @@ impl Checkpoint {
         for ((name, value), derivative) in state.names.iter().zip(&state.values).zip(&state.derivatives) {
             let _ = writeln!(out, "{} {} {name}", bits(*value), bits(*derivative));
         }
-        out.push_str("end\n");
+        let past: String = state.past.numbers().into_iter().map(|n| format!(" {}", bits(n))).collect();
+        let _ = writeln!(out, "past{past}\nend");
         out
     }
 
@@ -74,10 +76,14 @@ impl Checkpoint {
         let work: Option<Vec<u64>> = work.split(' ').map(|word| word.parse().ok()).collect();
         let work = lines.need(work.and_then(|w| <[u64; 8]>::try_from(w).ok()))?;
         let count = lines.whole("values")?;
-        let mut state = State { time, names: Vec::new(), values: Vec::new(), derivatives: Vec::new() };
+        let (names, values, derivatives) = (Vec::new(), Vec::new(), Vec::new());
+        let mut state = State { time, names, values, derivatives, past: Past::default() };
         for _ in 0..count {
             lines.value(&mut state)?;
         }
+        let past = lines.field("past")?;
+        let past: Option<Vec<f64>> = past.split_whitespace().map(from_bits).collect();
+        state.past = lines.need(past.and_then(|numbers| Past::from_numbers(&numbers)))?;
         lines.field("end")?;
         Ok(Checkpoint { state, number, statistics: statistics(work), rows, choice, settled })
     }
@@ -163,6 +169,7 @@ mod tests {
                 names: vec!["x".into(), "'a b'".into()],
                 values: vec![1.0 / 3.0, -0.0],
                 derivatives: vec![f64::MIN_POSITIVE, f64::INFINITY],
+                past: Past::default(),
             },
             number: 3,
             statistics: statistics([1, 2, 3, 4, 5, 6, 7, 8]),
@@ -185,6 +192,6 @@ mod tests {
         let text = checkpoint().text();
         assert_eq!(Checkpoint::from_text(""), Err(1));
         assert_eq!(Checkpoint::from_text(&text.replace("number 3", "number three")), Err(2));
-        assert_eq!(Checkpoint::from_text(text.trim_end_matches("end\n")), Err(9));
+        assert_eq!(Checkpoint::from_text(text.trim_end_matches("end\n")), Err(10));
     }
 }

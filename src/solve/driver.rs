@@ -4,6 +4,7 @@ mod event;
 mod failure;
 mod legs;
 mod outside;
+mod remember;
 mod tangents;
 
 use super::algebraic::{self, Algebraic};
@@ -15,6 +16,7 @@ use super::modes::{Modes, RootFunctions, follows_time};
 use super::monitor::{Chatter, Told};
 use super::newton::Scales;
 use super::output::Grid;
+use super::past::{Delays, Past};
 use super::restart::Restart;
 use super::schedule::Clocks;
 use super::settings::{End, Settings, Statistics};
@@ -214,11 +216,12 @@ fn prepare<'a, 'c>(
     playback.seek(start, &mut values);
     let scales = Scales::new(system, &values);
     let mut modes = Modes::new(system, settings.tolerance);
+    let past = from.map_or_else(Past::default, |s| s.past.clone());
+    let delays = Delays::new(system, &values, past);
     let solved = match from {
         Some(state) => {
             state.restore(system, &mut values);
             system.parameters_changed(&mut values);
-            playback.seek(start, &mut values);
             modes.after = true;
             Ok(())
         }
@@ -229,6 +232,17 @@ fn prepare<'a, 'c>(
             })
             .and_then(|()| initialize::check_starts(system, &scales, &values)),
     };
+    let solved = solved.and(delays.map(|delays| playback.delays = delays).map_err(|(i, time)| {
+        let origin = system.dae.delays[i].origin;
+        let text = format!("the time of a `delay` must be positive, and is {} s", report::number(time));
+        report::at_origin(&system.dae, Code::OutOfRange, text, origin, "here")
+    }));
+    if playback.delays.past().is_empty() {
+        playback.delays.start(system, start, &mut values);
+    }
+    if from.is_some() {
+        playback.seek(start, &mut values);
+    }
     let restart = Restart::new(system, &scales, settings.tolerance);
     let asked = settings.tangents.as_ref().filter(|_| !system.columns.is_empty());
     let carried = asked.map(|asked| Box::new(Carried::new(system, asked, &settings.wanted, restart.nominal())));
@@ -288,14 +302,15 @@ impl<'a> Driver<'a, '_> {
             }
         };
         self.statistics.solve_s = clock.elapsed().saturating_sub(self.writing() - before).as_secs_f64();
-        self.finish(end, &values)
+        let past = self.ida.as_ref().map_or_else(Past::default, |ida| ida.watch().playback.delays.past().clone());
+        self.finish(end, &values, past)
     }
 
     fn writing(&self) -> Duration {
         self.sink.as_ref().map_or(Duration::ZERO, |sink| sink.writing())
     }
 
-    fn finish(mut self, end: Flow, values: &[f64]) -> Leg {
+    fn finish(mut self, end: Flow, values: &[f64], past: Past) -> Leg {
         let stands = end.is_ok() && (self.choice.is_some() || self.pauses());
         let end = match end {
             Ok(()) => End::Reached,
@@ -310,7 +325,7 @@ impl<'a> Driver<'a, '_> {
             time: self.t,
             diagnostics: self.diagnostics,
             statistics: self.statistics,
-            state: State::save(self.system, self.t, values),
+            state: State::save(self.system, self.t, values, past),
         };
         Leg { run, switch: stands.then_some(Switch { choice: self.choice, grid: self.grid }) }
     }
@@ -357,7 +372,11 @@ impl<'a> Driver<'a, '_> {
         }
         let events = &self.events;
         self.clocks.ring(self.t, |i| events.raise(i, &mut model.values));
-        let at_start = self.iterate(model, Cause::Start)?;
+        let mut at_start = self.iterate(model, Cause::Start)?;
+        // what happens at the start may change what the past begins with
+        if !resumed && model.playback.delays.start(system, self.t, &mut model.values) {
+            at_start = self.iterate(model, Cause::Start)?;
+        }
         outcome.terminate = outcome.terminate.or(at_start.terminate);
         outcome.failed.extend(at_start.failed);
         self.start_tangents(model)?;
@@ -408,11 +427,18 @@ impl<'a> Driver<'a, '_> {
         let span = self.settings.stop_time - self.t;
         let unseen = system.dae.states.is_empty() || follows_time(&system.dae);
         let longest = self.settings.longest_step.min(if unseen { span / 500.0 } else { f64::INFINITY });
-        ida.set_longest_step(longest);
+        let recorded = &ida.watch().playback.delays;
+        let (known, delays) = (recorded.longest_step(), !recorded.is_empty());
+        ida.set_longest_step(longest.min(known));
         if !self.restart.is_explicit() {
             ida.set_corrector_tolerance(algebraic_corrector(self.settings.tolerance));
         }
-        ida.pause_after(if system.dae.selections.is_empty() { PAUSE } else { PAUSE_WITH_SELECTIONS });
+        ida.pause_after(match () {
+            // each step is recorded
+            () if delays => 1,
+            () if system.dae.selections.is_empty() => PAUSE,
+            () => PAUSE_WITH_SELECTIONS,
+        });
         self.ida = Some(ida);
         if !self.hand_over_tangents(true) {
             return Err(self.refused(&Failure::Code(0)));

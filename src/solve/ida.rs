@@ -318,6 +318,20 @@ impl<E: Equations> Ida<E> {
         }
     }
 
+    /// Unknowns and derivatives at a time within the last step; false where it lies outside.
+    pub fn at(&mut self, t: f64, y: &mut Vec<f64>, yp: &mut Vec<f64>) -> bool {
+        let mut known = true;
+        for (order, out) in [(0, y), (1, yp)] {
+            out.clear();
+            // SAFETY: the scratch vector is ours; IDA writes into it
+            unsafe {
+                known &= s::IDAGetDky(self.memory, t, order, self.scratch) >= 0;
+                out.extend_from_slice(slice(self.scratch, self.n));
+            }
+        }
+        known
+    }
+
     /// The length of the first step after a start or restart; 0 lets IDA choose.
     pub fn set_first_step(&mut self, h: f64) {
         // SAFETY: plain setter

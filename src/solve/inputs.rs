@@ -1,6 +1,7 @@
 //! Recorded inputs: held (each step is an event) or linear between samples (each sample is a kink that steps respect).
 
 use super::modes::same_time;
+use super::past::Delays;
 use crate::expr::VarId;
 use crate::lower::Layout;
 use std::sync::Arc;
@@ -45,6 +46,8 @@ impl Input {
 pub struct Playback {
     tracks: Vec<Track>,
     any_linear: bool,
+    /// Delayed values: inputs that the run itself records.
+    pub delays: Delays,
 }
 
 #[derive(Clone, Debug)]
@@ -71,7 +74,7 @@ impl Playback {
             })
             .collect();
         let any_linear = tracks.iter().any(|t| t.input.interpolation == Interpolation::Linear);
-        Playback { tracks, any_linear }
+        Playback { tracks, any_linear, delays: Delays::default() }
     }
 
     /// Moves to time `t` (which may lie anywhere) and sets the values that hold just after it.
@@ -81,6 +84,7 @@ impl Playback {
             track.at = times.partition_point(|&s| s <= t || same_time(s, t)).saturating_sub(1);
         }
         self.set(t, values);
+        self.delays.seek(t, values);
     }
 
     /// Sets all values at `t`, between the samples where the playback stands.
@@ -90,8 +94,9 @@ impl Playback {
         }
     }
 
-    /// Sets the values of linear inputs at `t`; held ones keep theirs.
+    /// Sets the values of linear inputs and delays at `t`; held ones keep theirs.
     pub fn follow(&self, t: f64, values: &mut [f64]) {
+        self.delays.follow(t, values);
         if self.any_linear {
             for track in self.tracks.iter().filter(|t| t.input.interpolation == Interpolation::Linear) {
                 track.set(t, values);
@@ -99,14 +104,15 @@ impl Playback {
         }
     }
 
-    /// The next time after `t` at which a held input jumps.
+    /// The next time after `t` at which a held input or a delayed value jumps.
     pub fn next_jump(&self, t: f64) -> f64 {
-        self.next(t, Interpolation::Held)
+        self.next(t, Interpolation::Held).min(self.delays.next_jump(t))
     }
 
-    /// The next time after `t` at which a linear input bends.
+    /// The next time after `t` at which a linear input or a delayed value bends.
     pub fn next_kink(&self, t: f64) -> f64 {
-        if self.any_linear { self.next(t, Interpolation::Linear) } else { f64::INFINITY }
+        let linear = if self.any_linear { self.next(t, Interpolation::Linear) } else { f64::INFINITY };
+        linear.min(self.delays.next_bend(t))
     }
 
     fn next(&self, t: f64, kind: Interpolation) -> f64 {

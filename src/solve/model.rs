@@ -47,6 +47,11 @@ impl Model<'_> {
         self.roots.raw()[raw]
     }
 
+    /// The delayed expressions, from the slots as they are.
+    pub fn sources(&self) -> Vec<f64> {
+        self.playback.delays.sources(self.system, &self.values)
+    }
+
     /// Fills the slots of all variables.
     pub fn observe(&mut self, t: f64, y: &[f64], yp: &[f64]) {
         self.playback.follow(t, &mut self.values);

@@ -134,7 +134,7 @@ pub fn follows_time(dae: &Dae) -> bool {
     if watched.is_empty() {
         return false;
     }
-    let mut moved: FxHashSet<VarId> = FxHashSet::default();
+    let mut moved: FxHashSet<VarId> = dae.delays.iter().map(|d| d.variable).collect();
     let moves = |e: ExprId, moved: &FxHashSet<VarId>| {
         let on = dae.exprs.dependencies(&[e]);
         on.time || on.vars.iter().any(|v| moved.contains(v))

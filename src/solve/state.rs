@@ -1,5 +1,6 @@
 //! The state of a run at one time: saved, restored, carried over to another choice of states.
 
+use super::past::Past;
 use crate::expr::VarId;
 use crate::flat::Variability;
 use crate::lower::System;
@@ -16,17 +17,20 @@ pub struct State {
     pub values: Vec<f64>,
     /// Derivative of each variable; NaN where the model has none.
     pub derivatives: Vec<f64>,
+    /// What delays read of the time before; empty where there are none.
+    pub past: Past,
 }
 
 impl State {
     /// The state in `values`.
-    pub fn save(system: &System, time: f64, values: &[f64]) -> Self {
+    pub fn save(system: &System, time: f64, values: &[f64], past: Past) -> Self {
         let ids = || (0..).map(VarId).take(system.dae.variables.len());
         State {
             time,
             names: system.dae.variables.iter().map(|v| v.name.clone()).collect(),
             values: ids().map(|v| values[system.layout.var(v)]).collect(),
             derivatives: ids().map(|v| system.layout.der(v).map_or(f64::NAN, |slot| values[slot])).collect(),
+            past,
         }
     }
 

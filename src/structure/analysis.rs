@@ -8,8 +8,8 @@ use super::parameters::Known;
 use super::solve_block::BlockSolver;
 use super::sorting::{System, SystemRow};
 use super::{
-    ActionKind, Alias, Assign, Block, Dae, Selection, StateChoice, Unknown, alias, assertions, closed_groups, discrete,
-    dummy_derivatives, duplicates, events, initial, messages, parameters, regularity,
+    ActionKind, Alias, Assign, Block, Dae, Selection, StateChoice, Unknown, alias, assertions, closed_groups, delays,
+    discrete, dummy_derivatives, duplicates, events, initial, messages, parameters, regularity,
 };
 use crate::diag::{Checked, Diagnostic};
 use crate::expr::{Node, VarId};
@@ -74,6 +74,7 @@ fn run(flat: &FlatModel, choice: &StateChoice, diagnostics: &mut Vec<Diagnostic>
 }
 
 fn make_discrete_equations(draft: &mut Draft) {
+    delays::extract(draft);
     events::extract(draft);
     discrete::translate_whens(draft);
 }
@@ -323,6 +324,7 @@ fn assemble(flat: &FlatModel, mut draft: Draft, blocks: Blocks, rest: Rest) -> D
         initial_checks,
         crossings: draft.crossings,
         samples: draft.samples,
+        delays: draft.delays,
         actions: draft.actions,
         asserts: draft.asserts,
         exprs: draft.exprs,

@@ -1,6 +1,6 @@
 //! The system while it is being analysed: one pool, all variables and equations, and what is known about them so far.
 
-use super::{Action, ActionKind, Crossing, CrossingKind, Sample};
+use super::{Action, ActionKind, Crossing, CrossingKind, Delay, Sample};
 use crate::expr::{ExprId, Exprs, Node, VarId};
 use crate::flat::{self, FlatModel, Type, Variability};
 
@@ -59,6 +59,7 @@ pub(super) struct Draft {
     pub asserts: Vec<flat::Assert>,
     pub crossings: Vec<Crossing>,
     pub samples: Vec<Sample>,
+    pub delays: Vec<Delay>,
     pub actions: Vec<Action>,
     pub instances: Vec<flat::InstanceInfo>,
     /// Equations that must hold at the start although they determine nothing there.
@@ -185,6 +186,10 @@ impl Draft {
         for sample in &mut self.samples {
             visit(&mut sample.start);
             visit(&mut sample.interval);
+        }
+        for delay in &mut self.delays {
+            visit(&mut delay.source);
+            visit(&mut delay.time);
         }
         self.actions.iter_mut().for_each(|action| each_of_action(action, &mut visit));
     }

@@ -8,7 +8,7 @@ use super::draft::{Draft, Role, RowKind};
 use super::incidence::{Incidence, NONE, Scanner};
 use super::matching::{Augmenter, Matching};
 use super::sorting::{System, SystemRow};
-use super::{Unknown, discrete, messages, parameters};
+use super::{Unknown, delays, discrete, messages, parameters};
 use crate::diag::Diagnostic;
 use crate::expr::{ExprId, Exprs, Node, VarId};
 use crate::flat::{Equation, Origin, OriginKind};
@@ -320,10 +320,11 @@ fn at_start(draft: &mut Draft, running: &System) -> (Vec<bool>, Vec<ExprId>) {
         }
     }
     let keeping = keeps.clone();
-    let map = draft.rewritten(|pool, node| match node {
+    let mut map = draft.rewritten(|pool, node| match node {
         Node::Initial => Some(Exprs::ONE),
         Node::Pre(v) if keeping[v.index()] => Some(pool.var(v)),
         _ => None,
     });
+    delays::undelayed(draft, &mut map);
     (keeps, map)
 }

@@ -8,6 +8,7 @@ mod analysis;
 mod assertions;
 mod blt;
 mod closed_groups;
+mod delays;
 mod discrete;
 mod draft;
 mod dulmage_mendelsohn;
@@ -74,6 +75,8 @@ pub struct Dae {
     pub crossings: Vec<Crossing>,
     /// `sample` expressions: the mode variable is true exactly at its event.
     pub samples: Vec<Sample>,
+    /// `delay` expressions.
+    pub delays: Vec<Delay>,
     /// `reinit`, `terminate` and `assert` inside `when`, in order.
     pub actions: Vec<Action>,
     /// `assert`s outside `when`.
@@ -182,6 +185,19 @@ pub struct Sample {
     pub start: ExprId,
     /// Interval, positive.
     pub interval: ExprId,
+    /// Where it stands.
+    pub origin: flat::Origin,
+}
+
+/// A `delay(source, time)`: to the equations an input, whose course the run itself records.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Delay {
+    /// The input that stands for it in all equations. At the start it is the source itself.
+    pub variable: VarId,
+    /// What is delayed; of other delays only earlier ones.
+    pub source: ExprId,
+    /// By how much, in seconds; over parameters.
+    pub time: ExprId,
     /// Where it stands.
     pub origin: flat::Origin,
 }

@@ -241,6 +241,7 @@ impl Known {
                 self.values[if self.values[c.index()] == 0.0 { b } else { a }.index()]
             }
             Node::Sample(..) => f64::NAN,
+            Node::Delay(a, _) => self.values[a.index()],
             _ if known => self.combined(pool, e),
             _ => f64::NAN,
         }

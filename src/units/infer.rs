@@ -214,7 +214,7 @@ impl<'a> Units<'a> {
             Node::Var(v) | Node::Pre(v) => self.variables[v.index()],
             Node::Der(v) => self.variables[v.index()].over(Measure::Known(Quantity::SECOND)),
             Node::Unary(op, a) => unary(op, self.of(a)),
-            Node::EventFloor(a) => self.of(a),
+            Node::EventFloor(a) | Node::Delay(a, _) => self.of(a),
             Node::Binary(op, a, b) => self.binary(op, a, b),
             Node::Rel(..) | Node::EventRel(..) | Node::Sample(..) | Node::Initial | Node::Terminal => Measure::Number,
             Node::If(_, a, b) | Node::Homotopy(a, b) => self.of(a).join(self.of(b)),

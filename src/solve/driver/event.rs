@@ -108,10 +108,12 @@ impl<'a> Driver<'a, '_> {
                 driver.tangent_cells(model);
                 driver.write_row(model)?;
             }
+            let before = model.sources();
             driver.prepare_event(model, cause);
             let ready = driver.ready(model);
             let outcome = driver.iterate(model, cause)?;
             driver.restart.gather(driver.system, &model.values);
+            driver.remember_event(model, cause, &outcome, &before);
             driver.tangents_after(model, &outcome, ready)?;
             if driver.settings.event_rows || same_time(driver.grid.next(), t) {
                 driver.tangent_cells(model);
@@ -192,7 +194,7 @@ impl<'a> Driver<'a, '_> {
         let room = self.next_stop() - t;
         let ida = self.ida.as_mut().expect("made before the first step");
         let (start, root) = (cause == Cause::Start, cause == Cause::Root);
-        self.restart.restart(ida, t, room, self.settings.longest_step, start, root)
-            && (start || self.hand_over_tangents(false))
+        let longest = self.settings.longest_step.min(ida.watch().playback.delays.longest_step());
+        self.restart.restart(ida, t, room, longest, start, root) && (start || self.hand_over_tangents(false))
     }
 }

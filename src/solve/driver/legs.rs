@@ -66,9 +66,15 @@ impl<'a> Driver<'a, '_> {
         loop {
             let row = self.grid.next();
             let target = if row < to && !same_time(row, to) { row } else { to };
-            match self.ida().advance(target) {
+            let before = self.unrecorded(target);
+            match self.ida().advance(before.unwrap_or(target)) {
+                Ok((Reached::Output, t)) if before.is_some() => {
+                    self.t = t;
+                    self.remember();
+                }
                 Ok((Reached::Output, t)) => {
                     self.t = t;
+                    self.remember();
                     self.output()?;
                     if self.states_fail() {
                         return Ok(());
@@ -77,6 +83,7 @@ impl<'a> Driver<'a, '_> {
                 Ok((Reached::Pause, t)) => {
                     self.creep = if t - self.t < CREEPING * span { self.creep + 1 } else { 0 };
                     self.t = t;
+                    self.remember();
                     self.bound_steps();
                     self.look_outside()?;
                     if self.creep >= PATIENCE {
@@ -88,6 +95,7 @@ impl<'a> Driver<'a, '_> {
                 }
                 Ok((Reached::Stop, _)) => {
                     self.t = to;
+                    self.remember();
                     return if event <= to || same_time(event, to) {
                         self.event(Cause::Time)
                     } else {
@@ -96,6 +104,7 @@ impl<'a> Driver<'a, '_> {
                 }
                 Ok((Reached::Root, t)) => {
                     self.t = t;
+                    self.remember();
                     return self.event(Cause::Root);
                 }
                 Err((failure, t)) => {
@@ -160,6 +169,7 @@ impl<'a> Driver<'a, '_> {
         let (model, ..) = self.ida().parts();
         let Model { playback, values, .. } = model;
         playback.seek(t, values);
+        self.remember_bend();
         Ok(())
     }
 

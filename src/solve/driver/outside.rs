@@ -46,7 +46,8 @@ impl Driver<'_, '_> {
     /// Everything needed to go on from here.
     pub fn state(&mut self) -> State {
         let (system, t) = (self.system, self.t);
-        State::save(system, t, &self.ida().equations().values)
+        let model = self.ida().equations();
+        State::save(system, t, &model.values, model.playback.delays.past().clone())
     }
 
     /// Work done so far; no seconds.
