@@ -254,7 +254,7 @@ mod tests {
     fn parabola(now: f64, slope: f64, bend: f64) -> Option<usize> {
         turn(now, |k| {
             let t = 0.5_f64.powi(i32::try_from(k).expect("small"));
-            (k < 12).then(|| now + slope * t + 0.5 * bend * t * t)
+            (k < 12).then_some(now + slope * t + 0.5 * bend * t * t)
         })
     }
 
