@@ -549,6 +549,8 @@ impl Plan {
     ) -> Result<bool, LocalError> {
         let system = &self.system;
         let mut first = 0.0;
+        // a rate is what is left of its row at rate 0: from another rate, far larger, only its rounding would be left
+        self.explicit.iter().for_each(|&j| yp[j] = 0.0);
         for iteration in 0..NEWTON {
             if system.residual(time, y, yp, values, residual).is_err() {
                 return if self.implicit.is_empty() { Err(LocalError::NonFinite) } else { Ok(false) };

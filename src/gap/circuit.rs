@@ -321,7 +321,39 @@ impl<'a> Rates<'a> {
             }
         }
         rates.accelerations();
+        rates.differentiated = rates.followed(rates.differentiated.clone());
+        rates.accelerated = rates.followed(rates.accelerated.clone());
         rates
+    }
+
+    /// What has a derivative, and all that equations give by such variables alone: behind an ideal gear the speed of its
+    /// other side is in the model, too.
+    fn followed(&self, mut known: BTreeSet<u32>) -> BTreeSet<u32> {
+        let mut open: Vec<BTreeSet<u32>> = self.flat.equations.iter().filter_map(|e| self.moving(e)).collect();
+        loop {
+            let before = known.len();
+            open.retain(|vars| {
+                let unknown: Vec<u32> = vars.difference(&known).copied().take(2).collect();
+                if let [v] = unknown[..] {
+                    known.insert(v);
+                }
+                unknown.len() > 1
+            });
+            if known.len() == before {
+                return known;
+            }
+        }
+    }
+
+    /// The variables of an equation that relates nothing but such, those fixed left out.
+    fn moving(&self, e: &crate::flat::Equation) -> Option<BTreeSet<u32>> {
+        let leaves = self.flat.exprs.dependencies(&[e.lhs, e.rhs]);
+        let moving = |v: &&VarId| self.flat.variables[v.index()].variability > Variability::Parameter;
+        let free = |root: &u32| !self.fixed.contains(root) && !self.steady.contains(root);
+        let continuous = |v: &VarId| self.flat.variables[v.index()].variability == Variability::Continuous;
+        let vars: Vec<VarId> = leaves.vars.iter().filter(moving).copied().collect();
+        let smooth = leaves.ders.is_empty() && leaves.pres.is_empty() && vars.iter().all(continuous);
+        smooth.then(|| vars.iter().map(|v| self.find(v.0)).filter(free).collect())
     }
 
     fn unite(&mut self) {

@@ -14,7 +14,7 @@ use super::held;
 use super::locate::{self, Located};
 use super::problem::{Assembled, Chosen, Problem};
 use super::recording::{self, Gross};
-use super::screen::{self, Accepted, Screened};
+use super::screen::{self, Accepted, Candidate, Screen};
 use super::verdict::Verdict;
 use conclusion::Conclusion;
 use rayon::prelude::*;
@@ -242,22 +242,28 @@ impl Search {
     fn step(&mut self, problem: &Problem<'_>, progress: &mut dyn FnMut(Stage)) -> bool {
         let number = self.accepted.len() + 1;
         progress(Stage::Screen(number));
-        let screened = screen::screen(problem, &self.last, &self.accepted);
+        let screen = Screen::new(problem, &self.accepted);
+        let followed = screen.as_ref().map_or_else(Vec::new, |s| s.followed(&self.last, &self.accepted));
         if number == 1 {
-            let seen = screened.followed.iter().filter(|c| c.visible > SEEN).count();
-            self.visible = seen as f64 / screened.followed.len().max(1) as f64;
+            let seen = followed.iter().filter(|c| c.visible > SEEN).count();
+            self.visible = seen as f64 / followed.len().max(1) as f64;
         }
+        let plain = screen::is_plain(problem, &followed);
+        let course = if plain { None } else { self.course(problem) };
+        let driven = screen.zip(course.as_ref()).map_or_else(Vec::new, |(s, c)| c.screened(&s, &self.last));
         progress(Stage::Refine(number));
-        let refined = self.ranked(problem, screened);
+        let refined = self.ranked(problem, followed, &driven);
         let trials: Vec<Trial> = refined.iter().map(|r| self.trial(number, r)).collect();
         self.trials.extend(trials);
-        self.decide(problem, refined)
+        let further = self.decide(problem, refined);
+        let open = self.accepted.len() < number && self.shape.is_none() && self.pending.is_none();
+        further || open && course.is_some_and(|c| self.course_explained(problem, &c, driven))
     }
 
     /// The promising candidates, refined; best first.
-    fn ranked(&mut self, problem: &Problem<'_>, screened: Screened) -> Vec<Refined> {
-        let (mut chosen, rest) = promising(problem, &self.last, screened.followed);
-        hidden(&mut chosen, screened.driven);
+    fn ranked(&mut self, problem: &Problem<'_>, followed: Vec<Candidate>, driven: &[Candidate]) -> Vec<Refined> {
+        let (mut chosen, rest) = promising(problem, &self.last, followed);
+        hidden(&mut chosen, driven);
         chosen.extend(self.unseen(problem, &chosen));
         chosen.extend(self.reordering(problem));
         let mut refined = self.refined(problem, &chosen);
@@ -308,7 +314,7 @@ impl Search {
             return false;
         }
         let best = refined.remove(simplest(problem, &refined, self.last.evidence));
-        if !self.convinces(problem, &best) || self.mends_form(problem, &best) {
+        if !self.convinces(problem, &best) || self.mends_form(problem, &best.accepted, self.gain(&best.fit)) {
             return false;
         }
         let alternatives = refined
@@ -345,15 +351,15 @@ impl Search {
     fn halved(&self, problem: &Problem<'_>, r: &Refined) -> bool {
         let h = &problem.hypotheses[r.accepted.chosen.hypothesis];
         let at_bound = |(i, c): (usize, &Coefficient)| {
-            refine::share(c).is_some() && r.accepted.chosen.values[i] <= r.accepted.priors[i].min * (1.0 + AT_BOUND)
+            c.whole().is_some() && r.accepted.chosen.values[i] <= r.accepted.priors[i].min * (1.0 + AT_BOUND)
         };
-        refine::bounded(h) && h.coefficients.iter().enumerate().any(at_bound)
+        h.is_bounded() && h.coefficients.iter().enumerate().any(at_bound)
     }
 
     /// Whether an effect is the remainder of an accepted one of its family at its place, or a small one of its family or at
     /// its place: the machine's form may differ from that one's.
-    fn mends_form(&self, problem: &Problem<'_>, best: &Refined) -> bool {
-        let h = &problem.hypotheses[best.accepted.chosen.hypothesis];
+    fn mends_form(&self, problem: &Problem<'_>, best: &Accepted, gain: f64) -> bool {
+        let h = &problem.hypotheses[best.chosen.hypothesis];
         let least = |a: &Accepted, gain: f64| {
             let other = &problem.hypotheses[a.chosen.hypothesis];
             match (other.family == h.family, other.attachments[0].site.is_at(&h.attachments[0].site)) {
@@ -363,7 +369,7 @@ impl Search {
             }
         };
         let least = self.accepted.iter().zip(&self.found).map(|(a, f)| least(a, f.gain)).fold(0.0, f64::max);
-        h.family != "parameter" && !h.shapes.iter().any(|s| s.order) && self.gain(&best.fit) < least
+        h.family != "parameter" && !h.shapes.iter().any(|s| s.order) && gain < least
     }
 
     fn accept(&mut self, best: Refined, found: Found) {

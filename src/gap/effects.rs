@@ -78,6 +78,11 @@ impl Coefficient {
     pub fn label(&self) -> String {
         self.recording.map_or_else(|| self.name.clone(), |k| format!("{}_{}", self.name, k + 1))
     }
+
+    /// The value at which it stands for the whole effect, if it is a share of one.
+    pub fn whole(&self) -> Option<f64> {
+        self.max.filter(|m| m.is_finite() && *m <= 10.0 * self.nominal.abs())
+    }
 }
 
 /// A parameter that enters nonlinearly.

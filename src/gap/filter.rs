@@ -6,6 +6,7 @@
 //! States, covariances and columns are in units of the states' sizes. States that nothing measured depends on
 //! (those of effects at their off value) are carried along without covariance.
 
+pub mod colour;
 pub mod predict;
 
 use super::begin;
@@ -13,6 +14,7 @@ use super::data::{Inputs, Recording};
 use super::passive::{Passive, passive_states};
 use super::step::Exponential;
 use crate::analysis::local::{Local, LocalError, Plan};
+use colour::{Colour, Past};
 use nalgebra::{DMatrix, DVector};
 use std::borrow::Cow;
 use std::ops::Range;
@@ -63,6 +65,8 @@ pub struct Setting {
     pub noise: Vec<f64>,
     /// Per signal the largest noise that its samples allow; misfit beyond is not noise.
     pub most_noise: Vec<f64>,
+    /// Per signal, how its noise tells itself; none where it is white.
+    pub colours: Vec<Colour>,
     /// Parameters whose columns are wanted.
     pub columns: Vec<usize>,
     /// How many of the first columns are wanted against all others; beyond, a column is wanted against these and its
@@ -84,10 +88,10 @@ pub struct Setting {
 pub const SILENT: f64 = 1e-6;
 
 impl Setting {
-    /// The same without columns and without what is known of single recordings.
+    /// The same without columns, with white noise and without what is known of single recordings.
     pub fn alone(&self) -> Setting {
-        let (columns, groups, cuts, starts) = Default::default();
-        Setting { columns, common: 0, groups, cuts, starts, ..self.clone() }
+        let (columns, groups, colours, cuts, starts) = Default::default();
+        Setting { columns, common: 0, groups, colours, cuts, starts, ..self.clone() }
     }
 
     /// The setting of one recording.
@@ -120,7 +124,8 @@ pub struct Pass {
     pub gram: DMatrix<f64>,
     /// Log likelihood of each block.
     pub blocks: Vec<f64>,
-    /// Whitened innovations, samples by signals; 0 where there is no sample.
+    /// Innovations over their deviations, samples by signals; 0 where there is no sample. Where noise has a colour, theirs
+    /// is still in them.
     pub white: DMatrix<f64>,
     /// Linearised steps of the stretches asked for.
     pub tapes: Vec<Vec<Step>>,
@@ -263,6 +268,9 @@ pub(super) struct Filter<'a> {
     /// Transposed d z / d parameters wanted: a row for each of them, because there may be hundreds.
     s: DMatrix<f64>,
     work: Work,
+    /// Per signal whose noise has a colour, the rows before.
+    past: Vec<Past>,
+    row: Vec<f64>,
     chunk: Vec<f64>,
     /// Parts of cut steps so far.
     parts: usize,
@@ -361,6 +369,8 @@ impl<'a> Filter<'a> {
                 transposed: DMatrix::zeros(nz, nz),
                 total: DMatrix::zeros(nz, nz),
             },
+            past: vec![Past::default(); setting.colours.len()],
+            row: Vec::new(),
             chunk: Vec::new(),
             parts: 0,
             block: 0.0,
@@ -500,13 +510,13 @@ impl<'a> Filter<'a> {
     /// The measurement, one signal after the other (their noises are independent): innovations whitened, state,
     /// covariance and columns corrected. The model is linearised at `point`.
     fn update(&mut self, k: usize, point: &DVector<f64>) -> Result<Observed, LocalError> {
-        let (nz, width) = (self.z.len(), self.s.nrows());
-        let signals = &self.recording.signals;
+        let (nz, width, recording) = (self.z.len(), self.s.nrows(), self.recording);
+        let signals = &recording.signals;
         let here: Vec<usize> = (0..signals.len()).filter(|&i| signals[i][k].is_finite()).collect();
+        (0..self.past.len()).filter(|i| !here.contains(i)).for_each(|i| self.past[i].forget());
         let q = here.len();
         let innovation = DVector::from_fn(q, |row, _| signals[here[row]][k] - self.local.outputs[here[row]]);
         let c = self.output(&here);
-        let linear = &self.local.linear;
         let mut pc = DVector::zeros(nz);
         let mut e = DVector::zeros(width);
         for (row, &i) in here.iter().enumerate() {
@@ -524,22 +534,39 @@ impl<'a> Filter<'a> {
             }
             let root = variance.sqrt();
             // how predicted outputs depend on the parameters; innovations do with the opposite sign
-            e.fill(0.0);
-            e.iter_mut().zip(&self.setting.columns).for_each(|(e, &j)| *e = linear.d[(i, j)]);
+            let own = &self.local.linear.d;
+            e.iter_mut().zip(&self.setting.columns).for_each(|(e, &j)| *e = own[(i, j)]);
             e.gemv(1.0, &self.s, &direction, 1.0);
-            if k >= self.settled {
-                self.pass.white[(k, i)] = left / root;
-                self.chunk.extend(e.iter().map(|e| e / root));
-                self.chunk.push(left / root);
-                let likelihood = -0.5 * left * left / variance - root.ln() - 0.5 * (2.0 * std::f64::consts::PI).ln();
-                self.pass.likelihood += likelihood;
-                self.block += likelihood;
-            }
+            self.row.clear();
+            self.row.extend(e.iter().map(|e| e / root));
+            self.row.push(left / root);
+            self.weigh(k, i, root);
             self.z.axpy(left / variance, &pc, 1.0);
             self.s.ger(-1.0 / variance, &e, &pc, 1.0);
             self.p.ger(-1.0 / variance, &pc, &pc, 1.0);
         }
         Ok((here, innovation, c))
+    }
+
+    /// Counts the row of a signal's sample, in units of a deviation.
+    fn weigh(&mut self, k: usize, signal: usize, mut deviation: f64) {
+        let counted = k >= self.settled;
+        if counted {
+            self.pass.white[(k, signal)] = self.row[self.row.len() - 1];
+        }
+        if let Some(colour) = self.setting.colours.get(signal) {
+            if !self.past[signal].whiten(colour, &mut self.row) {
+                return;
+            }
+            deviation *= colour.power.sqrt();
+        }
+        if counted {
+            let left = self.row[self.row.len() - 1];
+            let likelihood = -0.5 * left * left - deviation.ln() - 0.5 * (2.0 * std::f64::consts::PI).ln();
+            self.pass.likelihood += likelihood;
+            self.block += likelihood;
+            self.chunk.append(&mut self.row);
+        }
     }
 
     fn close_block(&mut self) {

@@ -315,6 +315,7 @@ impl Assembled {
             sources: self.sources.clone().zip(like).map(source).collect(),
             noise: noise.to_vec(),
             most_noise: self.most_noise.clone(),
+            colours: Vec::new(),
             common: columns.len(),
             groups: Vec::new(),
             columns,

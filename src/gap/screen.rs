@@ -3,9 +3,9 @@
 
 use super::effects::{Coefficient, Shape};
 use super::evidence;
-use super::filter::{self, SILENT, Source, Tape};
+use super::filter::colour::Colour;
+use super::filter::{self, Source, Tape};
 use super::fit::{self, Fit, Prior};
-use super::held;
 use super::hypotheses::Hypothesis;
 use super::problem::{Assembled, Chosen, Problem, Tolerance};
 use nalgebra::DMatrix;
@@ -66,48 +66,69 @@ struct Entry {
     columns: Range<usize>,
 }
 
-/// What a screen found; best first, one entry a hypothesis.
-#[derive(Clone, Debug, Default)]
-pub struct Screened {
-    /// As the filter sees it, whose sources follow what moves slowly.
-    pub followed: Vec<Candidate>,
-    /// By what the inputs alone bring about; empty where the model simulates the recordings to within the noise, or where
-    /// the filter sees something plainly.
-    pub driven: Vec<Candidate>,
+/// The joint model of all hypotheses beside those accepted.
+pub struct Screen<'a> {
+    problem: &'a Problem<'a>,
+    drifts: Vec<usize>,
+    chosen: Vec<Chosen>,
+    assembled: Assembled,
 }
 
-/// Weighs every hypothesis beside those accepted.
-pub fn screen(problem: &Problem<'_>, base: &Fit, accepted: &[Accepted]) -> Screened {
-    let (drifts, effects): (Vec<usize>, Vec<usize>) =
-        (0..problem.hypotheses.len()).partition(|&h| problem.hypotheses[h].family == "parameter");
-    let taken = |c: &Chosen| {
-        let same = |a: &Chosen| problem.hypotheses[c.hypothesis].same(&c.values, &a.values);
-        accepted.iter().any(|a| a.chosen.hypothesis == c.hypothesis && same(&a.chosen))
-    };
-    let chosen: Vec<Chosen> = effects
-        .into_iter()
-        .filter(|&h| !problem.hypotheses[h].changes_order)
-        .flat_map(|h| variants(&problem.hypotheses[h], h))
-        .filter(|c| !taken(c))
-        .collect();
-    let open = |h: &usize| !accepted.iter().any(|a| a.chosen.hypothesis == *h);
-    let drifts: Vec<usize> = drifts.into_iter().filter(open).collect();
-    let before: Vec<Chosen> = accepted.iter().map(|a| a.chosen.clone()).collect();
-    let Some((chosen, assembled)) = attachable(problem, &before, chosen) else { return Screened::default() };
-    let joints = |b: Background| {
-        let own = Joint::new(problem, base, accepted, &assembled, &chosen, &b);
-        own.map_or_else(|| Joint::halves(problem, base, accepted, &chosen, &b), |joint| vec![joint])
-    };
-    let (full, reduced) = rayon::join(|| joints(Background::of(base, FULL)), || joints(Background::of(base, REDUCED)));
-    let floor = full.iter().map(|joint| joint.floor).reduce(f64::max);
-    let mut followed = weighed(&full, &drifts, None);
-    if floor.is_some() {
-        merge(&mut followed, weighed(&reduced, &drifts, floor));
+impl<'a> Screen<'a> {
+    /// `None` where nothing can be attached.
+    pub fn new(problem: &'a Problem<'a>, accepted: &[Accepted]) -> Option<Self> {
+        let (drifts, effects): (Vec<usize>, Vec<usize>) =
+            (0..problem.hypotheses.len()).partition(|&h| problem.hypotheses[h].family == "parameter");
+        let taken = |c: &Chosen| {
+            let same = |a: &Chosen| problem.hypotheses[c.hypothesis].same(&c.values, &a.values);
+            accepted.iter().any(|a| a.chosen.hypothesis == c.hypothesis && same(&a.chosen))
+        };
+        let chosen: Vec<Chosen> = effects
+            .into_iter()
+            .filter(|&h| !problem.hypotheses[h].changes_order)
+            .flat_map(|h| variants(&problem.hypotheses[h], h))
+            .filter(|c| !taken(c))
+            .collect();
+        let open = |h: &usize| !accepted.iter().any(|a| a.chosen.hypothesis == *h);
+        let drifts: Vec<usize> = drifts.into_iter().filter(open).collect();
+        let before: Vec<Chosen> = accepted.iter().map(|a| a.chosen.clone()).collect();
+        let (chosen, assembled) = attachable(problem, &before, chosen)?;
+        Some(Screen { problem, drifts, chosen, assembled })
     }
-    followed.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-    let hidden = followed.first().is_none_or(|c| c.gain < HIDING);
-    let silent = if hidden { Background::silent(problem, base).map_or_else(Vec::new, joints) } else { Vec::new() };
-    Screened { followed, driven: weighed(&silent, &drifts, None) }
+
+    /// Weighs every hypothesis as the filter sees it, whose sources follow what moves slowly; best first, one entry a
+    /// hypothesis.
+    pub fn followed(&self, base: &Fit, accepted: &[Accepted]) -> Vec<Candidate> {
+        let joints = |factor| self.joints(base, accepted, &Background::of(base, factor));
+        let (full, reduced) = rayon::join(|| joints(FULL), || joints(REDUCED));
+        let floor = full.iter().map(|joint| joint.floor).reduce(f64::max);
+        let mut found = weighed(&full, &self.drifts, None);
+        if floor.is_some() {
+            merge(&mut found, weighed(&reduced, &self.drifts, floor));
+        }
+        found.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        found
+    }
+
+    /// Weighs every hypothesis by what the inputs alone bring about, beside a model fitted by that: what it leaves is
+    /// noise, as strong and as coloured as it is. Nothing where it leaves no more than the sensors' noise.
+    pub fn driven(&self, course: &Fit, accepted: &[Accepted], noise: &[f64]) -> Vec<Candidate> {
+        if course.setting.noise.iter().zip(noise).all(|(left, noise)| *left < OPEN * noise) {
+            return Vec::new();
+        }
+        weighed(&self.joints(course, accepted, &Background::of(course, FULL)), &self.drifts, None)
+    }
+
+    fn joints(&self, base: &Fit, accepted: &[Accepted], background: &Background) -> Vec<Joint<'a>> {
+        let own = Joint::new(self.problem, base, accepted, &self.assembled, &self.chosen, background);
+        own.map_or_else(|| Joint::halves(self.problem, base, accepted, &self.chosen, background), |joint| vec![joint])
+    }
+}
+
+/// Whether the filter sees something plainly. What is there or not promises anything from where it is not.
+pub fn is_plain(problem: &Problem<'_>, followed: &[Candidate]) -> bool {
+    let plain = |c: &Candidate| c.gain >= HIDING && !problem.hypotheses[c.chosen.hypothesis].is_bounded();
+    followed.iter().any(plain)
 }
 
 /// What joint models say of their hypotheses and of all drifts, best first.
@@ -133,39 +154,19 @@ fn merge(found: &mut Vec<Candidate>, others: Vec<Candidate>) {
 struct Background {
     sources: Vec<Source>,
     noise: Vec<f64>,
+    colours: Vec<Colour>,
     share: f64,
 }
 
 impl Background {
-    /// The sources as fitted, times a factor.
+    /// Those of a fit, with its sources times a factor.
     fn of(base: &Fit, factor: f64) -> Self {
         Background {
             sources: base.setting.sources_times(factor),
             noise: base.setting.noise.clone(),
+            colours: base.setting.colours.clone(),
             share: base.search_share(),
         }
-    }
-
-    /// Sources that do nothing: what the model's own course leaves is noise, as strong and as coloured as it is. `None`
-    /// where it leaves no more than the sensors' noise.
-    fn silent(problem: &Problem<'_>, base: &Fit) -> Option<Self> {
-        let runs = held::simulate_all(&base.setting, &problem.train);
-        let mut left = Vec::new();
-        for (r, run) in problem.train.iter().zip(&runs) {
-            let run = run.as_ref()?;
-            let error = |k: usize, i: usize| {
-                let e = run.error(r, i, k);
-                if e.is_finite() { e } else { 0.0 }
-            };
-            left.push(DMatrix::from_fn(r.len() - run.from, problem.signals.len(), error));
-        }
-        let count: usize = left.iter().map(DMatrix::nrows).sum();
-        let rms = |i: usize| (left.iter().map(|l| l.column(i).norm_squared()).sum::<f64>() / count as f64).sqrt();
-        let rms: Vec<f64> = (0..problem.signals.len()).map(rms).collect();
-        let open = rms.iter().zip(&base.setting.noise).any(|(left, noise)| *left > OPEN * noise);
-        let noise = rms.iter().zip(&base.setting.noise).map(|(left, noise)| left.max(*noise)).collect();
-        let share = evidence::independent_share(&left.iter().collect::<Vec<_>>());
-        open.then_some(Background { sources: base.setting.sources_times(SILENT), noise, share })
     }
 }
 
@@ -256,7 +257,10 @@ impl<'a> Joint<'a> {
         }
         let mut setting = assembled.setting(&background.sources, &background.noise, columns);
         setting.common = common.len();
-        setting.cuts.clone_from(&base.cuts);
+        setting.colours.clone_from(&background.colours);
+        if !setting.sources.is_empty() {
+            setting.cuts.clone_from(&base.cuts);
+        }
         setting.groups = entries.iter().map(|e| e.columns.clone()).collect();
         let passes = fit::passes(&setting, &problem.train, usize::MAX, Tape::Nothing)?;
         let width = setting.columns.len() + 1;

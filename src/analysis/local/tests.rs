@@ -96,3 +96,20 @@ fn coefficients_of_known_sign_leave_nothing_implicit() {
     local.linearize(0.0, &[5e5], &[1e-3, 1.5e9], &[1e-5]).expect("has derivatives");
     assert!(local.linear.a[(0, 0)].is_finite() && local.rates[0] > 0.0);
 }
+
+#[test]
+fn rates_do_not_remember_where_the_model_was_before() {
+    let text = "model M
+        parameter Real k = 3; input Real u; Real x(start = 0.2, fixed = true), y;
+      equation
+        der(x) = u - k*x^3; y = k*x^2;
+      end M;";
+    let mut local = local(text, &["k"], &["y"], &[0.7]);
+    let at = |local: &mut Local, x: f64| {
+        local.evaluate(0.0, &[x], &[3.0], &[0.7]).expect("has values");
+        (local.rates[0], local.outputs[0])
+    };
+    let before = at(&mut local, 0.1);
+    at(&mut local, 1e8);
+    assert_eq!(at(&mut local, 0.1), before);
+}

@@ -2,12 +2,17 @@
 //! the colour of a disturbance. The model's errors are taken as autoregressive noise (Box, Jenkins, Time Series
 //! Analysis, 1970, ch. 7).
 
+use super::super::filter::colour::Colour;
 use super::super::filter::{SILENT, Setting};
 use super::super::fit::{self, Fit, Prior};
 use super::super::held;
-use super::super::problem::Problem;
-use super::refine::{Refined, switched_off};
+use super::super::problem::{Chosen, Problem};
+use super::super::screen::{Accepted, Candidate, Screen};
+use super::refine::{Refined, best_first, fitted as followed, make_whole, ready, switched_off, values};
+use super::{CLAIMED, CONSISTENT, Found, Search, Trial, near, simplest, vuong, won_and_lost};
 use crate::analysis::autoregression;
+use nalgebra::DMatrix;
+use rayon::prelude::*;
 
 /// Order of the autoregression.
 const ORDER: usize = 12;
@@ -16,6 +21,102 @@ const TURNS: usize = 3;
 
 /// Part of a plain gap by which other parameters must be better to be taken.
 const BETTER: f64 = 0.1;
+/// Part of the simulated gap that an effect leaves at most which only the course shows.
+const LEAVES: f64 = 0.7;
+/// Candidates at most that are fitted by the course.
+const FITTED: usize = 5;
+
+/// The accepted effects fitted by what the inputs alone bring about.
+pub(super) struct Course {
+    /// By the errors as they are, which is how near the course comes.
+    plain: Fit,
+    /// With errors that tell the next ones, which is how likely it is.
+    fit: Fit,
+    accepted: Vec<Accepted>,
+}
+
+impl Course {
+    /// All hypotheses beside it.
+    pub(super) fn screened(&self, screen: &Screen<'_>, last: &Fit) -> Vec<Candidate> {
+        screen.driven(&self.plain, &self.accepted, &last.setting.noise)
+    }
+
+    /// It and one effect more.
+    fn with(&self, problem: &Problem<'_>, mut candidate: Candidate) -> Option<Refined> {
+        let h = &problem.hypotheses[candidate.chosen.hypothesis];
+        if h.is_bounded() {
+            make_whole(h, &mut candidate);
+        }
+        let accepted = candidate.accepted();
+        let all: Vec<Accepted> = self.accepted.iter().chain([&accepted]).cloned().collect();
+        let (assembled, priors) = ready(problem, &self.plain, &all)?;
+        let setting = assembled.setting(&[], &self.plain.setting.noise, Vec::new());
+        let (_, fit) = plain_and_coloured(problem, setting, &priors)?;
+        Some(Refined::new(problem, accepted, assembled, fit))
+    }
+}
+
+impl Search {
+    /// The accepted effects by their course.
+    pub(super) fn course(&self, problem: &Problem<'_>) -> Option<Course> {
+        let (assembled, priors) = ready(problem, &self.last, &self.accepted)?;
+        let setting = assembled.setting(&[], &problem.full_scale, Vec::new());
+        let (plain, fit) = plain_and_coloured(problem, setting, &priors)?;
+        let with = |(a, own): (&Accepted, &Vec<usize>)| {
+            let chosen = Chosen { values: values(&plain, own), ..a.chosen.clone() };
+            Accepted { chosen, ..a.clone() }
+        };
+        let accepted = self.accepted.iter().zip(&assembled.attached).map(with).collect();
+        Some(Course { plain, fit, accepted })
+    }
+
+    /// Accepts an effect that explains the course where the filter, whose sources follow all that moves slowly or that many
+    /// samples in a row have in common, sees none. True when there was one.
+    pub(super) fn course_explained(
+        &mut self,
+        problem: &Problem<'_>,
+        course: &Course,
+        candidates: Vec<Candidate>,
+    ) -> bool {
+        let before = &course.fit;
+        let promises = |c: &Candidate| {
+            c.gain > CLAIMED && !problem.hypotheses[c.chosen.hypothesis].is_shape() && !self.has(c.chosen.hypothesis)
+        };
+        let promising: Vec<Candidate> = candidates.into_iter().filter(promises).take(FITTED).collect();
+        let mut refined: Vec<Refined> = promising.into_par_iter().filter_map(|c| course.with(problem, c)).collect();
+        refined.retain(|r| !self.halved(problem, r));
+        best_first(&mut refined);
+        let gain = |r: &Refined| r.fit.evidence - before.evidence;
+        let t = |r: &Refined| vuong(&r.fit.blocks, &before.blocks);
+        let round = self.accepted.len() + 1;
+        self.trials.extend(refined.iter().map(|r| Trial {
+            round,
+            chosen: r.accepted.chosen.clone(),
+            gain: gain(r),
+            t: t(r),
+            won_and_lost: won_and_lost(&r.fit, before),
+        }));
+        if refined.is_empty() {
+            return false;
+        }
+        let best = refined.remove(simplest(problem, &refined, before.evidence));
+        let noise = &self.last.setting.noise;
+        let gap = |fit: &Fit| held::gap_of(problem, &fit.setting, &problem.train, noise).total;
+        let sure = gain(&best) > CLAIMED && t(&best) > CONSISTENT && gap(&best.fit) < LEAVES * gap(before);
+        if !sure || self.mends_form(problem, &best.accepted, gain(&best)) {
+            return false;
+        }
+        let all: Vec<Accepted> = self.accepted.iter().chain([&best.accepted]).cloned().collect();
+        let Some((fit, model)) = followed(problem, &self.last, &all) else { return false };
+        let behind = |r: &Refined| best.fit.evidence - r.fit.evidence;
+        let alternatives = refined.iter().filter(|r| near(r, &best));
+        let alternatives = alternatives.map(|r| (r.accepted.chosen.clone(), behind(r))).collect();
+        self.found.push(Found { gain: gain(&best), t: t(&best), alternatives });
+        self.accepted = all;
+        self.adopt(fit, model);
+        true
+    }
+}
 
 /// A model fitted by what it says from the inputs alone; its sources must be silent. All its errors count as noise, as much
 /// of it independent as `share` says or as is found.
@@ -32,6 +133,39 @@ pub(super) fn fitted(problem: &Problem<'_>, mut setting: Setting, priors: &[Prio
         best = Some(found);
     }
     best
+}
+
+/// A model without sources fitted by what it says from the inputs alone: first by its errors as they are, with their size
+/// and colour, then with errors that tell the next ones. These weigh what is fast and small as much as what is slow and
+/// large, and lead astray from afar.
+fn plain_and_coloured(problem: &Problem<'_>, setting: Setting, priors: &[Prior]) -> Option<(Fit, Fit)> {
+    let mut plain = fitted(problem, setting, priors, Some(1.0))?;
+    (plain.setting.noise, plain.setting.colours) = errors(&plain);
+    let mut setting = plain.setting.clone();
+    let mut best = None;
+    for _ in 0..TURNS {
+        let found = fit::fit(setting, priors, &problem.train, Some(1.0), fit::ITERATIONS)?;
+        setting = found.setting.clone();
+        (setting.noise, setting.colours) = errors(&found);
+        best = Some(found);
+    }
+    Some((plain, best?))
+}
+
+/// How large the errors of each signal are, and their colours.
+fn errors(fit: &Fit) -> (Vec<f64>, Vec<Colour>) {
+    let signal = |(i, noise): (usize, &f64)| {
+        // there is no error of exactly 0 but where no sample is
+        let one = |w: &DMatrix<f64>| {
+            let all: Vec<f64> = w.column(i).iter().copied().collect();
+            all.split(|e| *e == 0.0).filter(|s| !s.is_empty()).map(<[f64]>::to_vec).collect::<Vec<_>>()
+        };
+        let stretches: Vec<Vec<f64>> = fit.white.iter().flat_map(one).collect();
+        let count = stretches.iter().map(Vec::len).sum::<usize>().max(1);
+        let square = stretches.iter().flatten().map(|e| e * e).sum::<f64>() / count as f64;
+        (noise * square.sqrt().max(1e-6), Colour::of(&stretches))
+    };
+    fit.setting.noise.iter().enumerate().map(signal).unzip()
 }
 
 /// A fit with the parameters of output error where these simulate the train recordings clearly better: where sources follow

@@ -10,7 +10,7 @@ use super::super::held;
 use super::super::hypotheses::{Hypothesis, Site};
 use super::super::problem::{Assembled, Problem};
 use super::super::screen::{Accepted, Candidate};
-use super::refine::{Refined, bounded, ready, share, switched_off, whole};
+use super::refine::{Refined, ready, switched_off, whole};
 use super::{CONSISTENT, Found, SEEN, Search, driven};
 use rayon::prelude::*;
 
@@ -26,7 +26,7 @@ impl Search {
         let known = |i: usize| seen.iter().any(|c| c.chosen.hypothesis == i);
         let unknown = |&i: &usize| {
             let h = &problem.hypotheses[i];
-            matches!(h.attachments[0].site, Site::Sensor(_)) && bounded(h) && !known(i)
+            matches!(h.attachments[0].site, Site::Sensor(_)) && h.is_bounded() && !known(i)
         };
         let open: Vec<usize> = (0..problem.hypotheses.len()).filter(|i| unknown(i) && !self.has(*i)).collect();
         let first = &problem.train[..1];
@@ -46,7 +46,7 @@ impl Search {
     pub(super) fn lost(&self, problem: &Problem<'_>, refined: &[Refined]) -> Option<(Refined, Found)> {
         let lost = |r: &Refined| {
             let h = &problem.hypotheses[r.accepted.chosen.hypothesis];
-            bounded(h) && r.fit.evidence < self.last.evidence - LOST
+            h.is_bounded() && r.fit.evidence < self.last.evidence - LOST
         };
         let left = refined.iter().find(|r| !lost(r)).map_or(&self.last, |r| &r.fit);
         let left = self.gap_of(problem, &left.setting, &problem.train);
@@ -105,7 +105,7 @@ impl Search {
 
 /// An effect as a whole that is nothing but shares of one.
 fn of_shares(h: &Hypothesis, index: usize) -> Option<Candidate> {
-    if h.coefficients.iter().all(|c| share(c).is_some()) { whole(h, index) } else { None }
+    if h.coefficients.iter().all(|c| c.whole().is_some()) { whole(h, index) } else { None }
 }
 
 /// The model with effects, parameters at their nominal values.

@@ -1,6 +1,5 @@
 //! Candidates of a screen one by one: each fitted together with everything accepted before, the front to its optimum.
 
-use super::super::effects::Coefficient;
 use super::super::filter::{Setting, Tape};
 use super::super::fit::{self, Fit, Prior, vuong};
 use super::super::hypotheses::Hypothesis;
@@ -101,7 +100,7 @@ impl Search {
     fn refine(&self, problem: &Problem<'_>, candidate: &Candidate, without: Option<f64>) -> Option<Refined> {
         let h = &problem.hypotheses[candidate.chosen.hypothesis];
         let mut whole = candidate.clone();
-        if bounded(h) {
+        if h.is_bounded() {
             make_whole(h, &mut whole);
             if h.variants().len() > 1 {
                 let found = self.shape_of_whole(problem, h, &mut whole);
@@ -125,10 +124,10 @@ impl Search {
         let of = |r: &Refined| r.accepted.chosen.hypothesis;
         let front = refined.first().map_or(0.0, |r| self.gain(&r.fit));
         let near =
-            |r: &&Refined| bounded(&problem.hypotheses[of(r)]) && self.gain(&r.fit) > PROMISING.max(BEHIND * front);
+            |r: &&Refined| problem.hypotheses[of(r)].is_bounded() && self.gain(&r.fit) > PROMISING.max(BEHIND * front);
         let sites: Vec<_> = refined.iter().filter(near).map(|r| site(of(r))).collect();
         let known = |i: usize| self.has(i) || refined.iter().any(|r| of(r) == i);
-        let open = |i: &usize| bounded(&problem.hypotheses[*i]) && sites.contains(&site(*i)) && !known(*i);
+        let open = |i: &usize| problem.hypotheses[*i].is_bounded() && sites.contains(&site(*i)) && !known(*i);
         let open: Vec<usize> = (0..problem.hypotheses.len()).filter(open).collect();
         if open.is_empty() {
             return Vec::new();
@@ -260,7 +259,7 @@ pub(super) fn promising(
         }
         if h(c).is_shape() {
             worth && kinds.len() < SHAPES && kinds.insert(h(c).effect.clone())
-        } else if bounded(h(c)) {
+        } else if h(c).is_bounded() {
             switched += 1;
             c.gain > PROMISING && switched <= BOUNDED
         } else {
@@ -271,10 +270,10 @@ pub(super) fn promising(
 }
 
 /// Adds the best of those that explain what the inputs alone bring about: sources that follow what moves slowly hide them.
-pub(super) fn hidden(chosen: &mut Vec<Candidate>, driven: Vec<Candidate>) {
+pub(super) fn hidden(chosen: &mut Vec<Candidate>, driven: &[Candidate]) {
     let known: BTreeSet<usize> = chosen.iter().map(|c| c.chosen.hypothesis).collect();
     let new = |c: &Candidate| c.gain > PROMISING && !known.contains(&c.chosen.hypothesis);
-    chosen.extend(driven.into_iter().take(DRIVEN).filter(new));
+    chosen.extend(driven.iter().take(DRIVEN).filter(|c| new(c)).cloned());
 }
 
 /// A parameter that stands at the end of its tolerance, beyond which sources may have taken what it would explain.
@@ -308,19 +307,9 @@ pub(super) fn siblings(
     rest.iter().filter(|c| !own.is_shape() && alike(c)).take(SIBLINGS).cloned().collect()
 }
 
-/// The value at which a coefficient stands for the whole effect, if it is a share of one.
-pub(super) fn share(c: &Coefficient) -> Option<f64> {
-    c.max.filter(|m| m.is_finite() && *m <= 10.0 * c.nominal.abs())
-}
-
 /// A lag or a dead time, or a sum of them.
 fn is_lag(h: &Hypothesis) -> bool {
-    bounded(h) && h.variants().len() > 1 && h.shapes.iter().all(|s| s.unit == "s")
-}
-
-/// An effect that is there or not: one that has a share of a whole.
-pub(super) fn bounded(h: &Hypothesis) -> bool {
-    h.family != "parameter" && h.coefficients.iter().any(|c| share(c).is_some())
+    h.is_bounded() && h.variants().len() > 1 && h.shapes.iter().all(|s| s.unit == "s")
 }
 
 /// An effect as a whole, with the first of its shapes.
@@ -336,7 +325,7 @@ pub(super) fn whole(h: &Hypothesis, index: usize) -> Option<Candidate> {
 /// Begins with the shares of an effect that is there or not at the whole.
 pub(super) fn make_whole(h: &Hypothesis, candidate: &mut Candidate) {
     for (i, c) in h.coefficients.iter().enumerate() {
-        let Some(max) = share(c) else { continue };
+        let Some(max) = c.whole() else { continue };
         candidate.chosen.values[i] = max;
         let prior = &mut candidate.priors[i];
         (prior.mean, prior.sigma, prior.open, prior.min) = (max, WHOLE * max, false, 0.5 * max);

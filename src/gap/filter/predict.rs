@@ -68,7 +68,7 @@ impl Filter<'_> {
         }
         let nearly_linear = match self.setting.cuts.get(self.number) {
             Some(cut) => !cut.get(k).copied().unwrap_or(false),
-            None => self.bend(t + h, &rate, &change, h).times <= 1.0,
+            None => self.has_values(t + h) && self.bend(&rate, &change, h).times <= 1.0,
         };
         let m = &self.work.exponential.transition;
         let nearly_linear = nearly_linear && finite && m.diagonal().iter().all(|m| m.abs() < RUNAWAY);
@@ -133,7 +133,7 @@ impl Filter<'_> {
         self.work.exponential.compute(&self.work.a, h, None);
         let change = &self.work.exponential.integral * &rate;
         self.z += &change;
-        let bend = if self.possible(t + h) { self.bend(t + h, &rate, &change, h) } else { Bend::UNKNOWN };
+        let bend = if self.possible(t + h) { self.bend(&rate, &change, h) } else { Bend::UNKNOWN };
         self.parts += 1;
         let deepest = if self.parts > MOST_PARTS * self.recording.len() { 0 } else { DEEPEST };
         if depth < deepest && (bend.lost || depth < FINEST && bend.times > FAR) {
@@ -156,13 +156,15 @@ impl Filter<'_> {
         self.local.linearize(t, &self.x, &self.theta, &self.between).is_ok()
     }
 
-    /// How far x' at the end of a step is from what the linear model says.
-    fn bend(&mut self, t: f64, rate: &DVector<f64>, change: &DVector<f64>, h: f64) -> Bend {
-        let expected = rate + &self.work.a * change;
+    /// Whether the model has values at the present state.
+    fn has_values(&mut self, t: f64) -> bool {
         self.load();
-        if self.local.evaluate(t, &self.x, &self.theta, &self.between).is_err() {
-            return Bend::UNKNOWN;
-        }
+        self.local.evaluate(t, &self.x, &self.theta, &self.between).is_ok()
+    }
+
+    /// How far x' at the end of a step, where the model was evaluated last, is from what the linear model says.
+    fn bend(&self, rate: &DVector<f64>, change: &DVector<f64>, h: f64) -> Bend {
+        let expected = rate + &self.work.a * change;
         let mut bend = Bend { times: 0.0, lost: false };
         for (i, &xi) in self.active.iter().enumerate() {
             let found = self.local.rates[xi] / self.scale[i];
