@@ -230,6 +230,33 @@ fn series_elements_add_up() {
     assert!((i - 2.0).abs() < 1e-9, "{i}");
 }
 
+/// Behind an ideal gear the speed is that before it times the ratio, so friction there is no new state; a shaft without
+/// inertia between two springs has no speed in the model.
+#[test]
+fn what_an_ideal_gear_drives_has_a_speed() {
+    let text = "model Train
+      input Real tau(unit = \"N.m\");
+      Mechanical.Rotational.Torque motor(tau = tau); Mechanical.Rotational.Inertia rotor(J = 0.01);
+      Mechanical.Rotational.IdealGear gear(ratio = 10);
+      Mechanical.Rotational.Spring first(c = 100); Mechanical.Rotational.Spring second(c = 200);
+      Mechanical.Rotational.Fixed wall;
+    equation
+      connect(motor.flange, rotor.flange_a); connect(rotor.flange_b, gear.flange_a);
+      connect(gear.flange_b, first.flange_a); connect(first.flange_b, second.flange_a);
+      connect(second.flange_b, wall.flange);
+    end Train;";
+    let request = Request { source: "Train.mo".into(), ..Request::default() };
+    let places = value(circuit(&MemoryWorld::single("Train.mo", text), &request));
+    let node = |name: &str| {
+        let of = |p: &bramah::gap::circuit::Port| p.name == name;
+        let port = places.ports.iter().find(|p| of(p)).expect("a port");
+        &places.nodes[port.node]
+    };
+    assert!(node("rotor.flange_b").has_rate && node("rotor.flange_b").has_acceleration);
+    assert!(node("gear.flange_b").has_rate && node("gear.flange_b").has_acceleration);
+    assert!(!node("first.flange_b").has_rate);
+}
+
 /// The file with the corrected model needs nothing beside it and runs as the augmented model does.
 #[test]
 fn the_corrected_model_stands_alone() {

@@ -122,13 +122,10 @@ impl Reader {
         self.circuit.experiment = flat.experiment;
         self.components(instance);
         self.nodes(instance, network);
-        let rates = Rates::of(flat);
+        let potential = |port: &Port| format!("{}.{}", port.name, port.potential.name);
+        let potentials: Vec<String> = self.circuit.ports.iter().map(potential).collect();
+        let rates = Rates::of(flat, &potentials);
         for node in &mut self.circuit.nodes {
-            let name = |&p: &usize| {
-                let port = &self.circuit.ports[p];
-                format!("{}.{}", port.name, port.potential.name)
-            };
-            let potentials: Vec<String> = node.ports.iter().map(name).collect();
             rates.of_node(&potentials, node);
         }
         self.rigid(&rates);
@@ -298,7 +295,7 @@ struct Rates<'a> {
 }
 
 impl<'a> Rates<'a> {
-    fn of(flat: &'a FlatModel) -> Self {
+    fn of(flat: &'a FlatModel, potentials: &[String]) -> Self {
         let count = u32::try_from(flat.variables.len()).expect("fewer than 2^32 variables");
         let index = (0u32..).zip(&flat.variables).map(|(i, v)| (v.name.as_str(), i)).collect();
         let root = (0..count).collect();
@@ -321,39 +318,20 @@ impl<'a> Rates<'a> {
             }
         }
         rates.accelerations();
-        rates.differentiated = rates.followed(rates.differentiated.clone());
-        rates.accelerated = rates.followed(rates.accelerated.clone());
+        let potentials = potentials.iter().filter_map(|name| rates.root_of(name)).collect();
+        let geared: Vec<BTreeSet<u32>> = flat.equations.iter().filter_map(|e| rates.geared(e, &potentials)).collect();
+        rates.differentiated = with_geared(rates.differentiated.clone(), &geared);
+        rates.accelerated = with_geared(rates.accelerated.clone(), &geared);
         rates
     }
 
-    /// What has a derivative, and all that equations give by such variables alone: behind an ideal gear the speed of its
-    /// other side is in the model, too.
-    fn followed(&self, mut known: BTreeSet<u32>) -> BTreeSet<u32> {
-        let mut open: Vec<BTreeSet<u32>> = self.flat.equations.iter().filter_map(|e| self.moving(e)).collect();
-        loop {
-            let before = known.len();
-            open.retain(|vars| {
-                let unknown: Vec<u32> = vars.difference(&known).copied().take(2).collect();
-                if let [v] = unknown[..] {
-                    known.insert(v);
-                }
-                unknown.len() > 1
-            });
-            if known.len() == before {
-                return known;
-            }
-        }
-    }
-
-    /// The variables of an equation that relates nothing but such, those fixed left out.
-    fn moving(&self, e: &crate::flat::Equation) -> Option<BTreeSet<u32>> {
+    /// The two potentials that an equation binds to each other whatever flows, as an ideal gear does.
+    fn geared(&self, e: &crate::flat::Equation, potentials: &BTreeSet<u32>) -> Option<BTreeSet<u32>> {
         let leaves = self.flat.exprs.dependencies(&[e.lhs, e.rhs]);
         let moving = |v: &&VarId| self.flat.variables[v.index()].variability > Variability::Parameter;
-        let free = |root: &u32| !self.fixed.contains(root) && !self.steady.contains(root);
-        let continuous = |v: &VarId| self.flat.variables[v.index()].variability == Variability::Continuous;
-        let vars: Vec<VarId> = leaves.vars.iter().filter(moving).copied().collect();
-        let smooth = leaves.ders.is_empty() && leaves.pres.is_empty() && vars.iter().all(continuous);
-        smooth.then(|| vars.iter().map(|v| self.find(v.0)).filter(free).collect())
+        let roots: BTreeSet<u32> = leaves.vars.iter().filter(moving).map(|v| self.find(v.0)).collect();
+        let binds = leaves.ders.is_empty() && leaves.pres.is_empty() && roots.len() == 2;
+        (binds && roots.is_subset(potentials)).then_some(roots)
     }
 
     fn unite(&mut self) {
@@ -421,14 +399,29 @@ impl<'a> Rates<'a> {
         all.all(|(_, e)| !holds(e)).then_some(first)
     }
 
-    /// Whether the potential of a node is fixed, and which of its derivatives are in the model.
+    /// Whether the potential of a node is fixed, and which of its derivatives are in the model; by the ports' potentials.
     fn of_node(&self, potentials: &[String], node: &mut NodeSet) {
-        for name in potentials {
+        for name in node.ports.clone().into_iter().map(|p| &potentials[p]) {
             let Some(&i) = self.index.get(name.as_str()) else { continue };
             let root = self.find(i);
             node.fixed |= self.fixed.contains(&root) || self.steady.contains(&root);
             node.has_rate |= self.differentiated.contains(&root);
             node.has_acceleration |= self.accelerated.contains(&root);
+        }
+    }
+}
+
+/// What has a derivative, and all that is bound to it: behind an ideal gear the speed of its other side is in the model, too.
+fn with_geared(mut known: BTreeSet<u32>, geared: &[BTreeSet<u32>]) -> BTreeSet<u32> {
+    loop {
+        let before = known.len();
+        for pair in geared {
+            if !pair.is_disjoint(&known) {
+                known.extend(pair);
+            }
+        }
+        if known.len() == before {
+            return known;
         }
     }
 }

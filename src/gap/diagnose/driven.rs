@@ -22,7 +22,7 @@ const TURNS: usize = 3;
 /// Part of a plain gap by which other parameters must be better to be taken.
 const BETTER: f64 = 0.1;
 /// Part of the simulated gap that an effect leaves at most which only the course shows.
-const LEAVES: f64 = 0.7;
+const LEAVES: f64 = 0.8;
 /// Candidates at most that are fitted by the course.
 const FITTED: usize = 5;
 
@@ -41,8 +41,8 @@ impl Course {
         screen.driven(&self.plain, &self.accepted, &last.setting.noise)
     }
 
-    /// It and one effect more.
-    fn with(&self, problem: &Problem<'_>, mut candidate: Candidate) -> Option<Refined> {
+    /// It and one effect more, with how near that comes.
+    fn with(&self, problem: &Problem<'_>, mut candidate: Candidate) -> Option<(Refined, Fit)> {
         let h = &problem.hypotheses[candidate.chosen.hypothesis];
         if h.is_bounded() {
             make_whole(h, &mut candidate);
@@ -51,8 +51,8 @@ impl Course {
         let all: Vec<Accepted> = self.accepted.iter().chain([&accepted]).cloned().collect();
         let (assembled, priors) = ready(problem, &self.plain, &all)?;
         let setting = assembled.setting(&[], &self.plain.setting.noise, Vec::new());
-        let (_, fit) = plain_and_coloured(problem, setting, &priors)?;
-        Some(Refined::new(problem, accepted, assembled, fit))
+        let (plain, fit) = plain_and_coloured(problem, setting, &priors)?;
+        Some((Refined::new(problem, accepted, assembled, fit), plain))
     }
 }
 
@@ -71,7 +71,8 @@ impl Search {
     }
 
     /// Accepts an effect that explains the course where the filter, whose sources follow all that moves slowly or that many
-    /// samples in a row have in common, sees none. True when there was one.
+    /// samples in a row have in common, is not sure of it. It must come clearly nearer to the recordings, more surely than
+    /// by chance, and the filter must not speak against it. True when there was one.
     pub(super) fn course_explained(
         &mut self,
         problem: &Problem<'_>,
@@ -83,8 +84,12 @@ impl Search {
             c.gain > CLAIMED && !problem.hypotheses[c.chosen.hypothesis].is_shape() && !self.has(c.chosen.hypothesis)
         };
         let promising: Vec<Candidate> = candidates.into_iter().filter(promises).take(FITTED).collect();
-        let mut refined: Vec<Refined> = promising.into_par_iter().filter_map(|c| course.with(problem, c)).collect();
-        refined.retain(|r| !self.halved(problem, r));
+        let found: Vec<(Refined, Fit)> = promising.into_par_iter().filter_map(|c| course.with(problem, c)).collect();
+        let noise = &self.last.setting.noise;
+        let gap = |fit: &Fit| held::gap_of(problem, &fit.setting, &problem.train, noise).total;
+        let left = LEAVES * gap(&course.plain);
+        let nearer = found.into_iter().filter(|(r, plain)| !self.halved(problem, r) && gap(plain) < left);
+        let mut refined: Vec<Refined> = nearer.map(|(r, _)| r).collect();
         best_first(&mut refined);
         let gain = |r: &Refined| r.fit.evidence - before.evidence;
         let t = |r: &Refined| vuong(&r.fit.blocks, &before.blocks);
@@ -100,14 +105,15 @@ impl Search {
             return false;
         }
         let best = refined.remove(simplest(problem, &refined, before.evidence));
-        let noise = &self.last.setting.noise;
-        let gap = |fit: &Fit| held::gap_of(problem, &fit.setting, &problem.train, noise).total;
-        let sure = gain(&best) > CLAIMED && t(&best) > CONSISTENT && gap(&best.fit) < LEAVES * gap(before);
+        let sure = gain(&best) > CLAIMED && t(&best) > CONSISTENT;
         if !sure || self.mends_form(problem, &best.accepted, gain(&best)) {
             return false;
         }
         let all: Vec<Accepted> = self.accepted.iter().chain([&best.accepted]).cloned().collect();
         let Some((fit, model)) = followed(problem, &self.last, &all) else { return false };
+        if self.gain(&fit) <= 0.0 {
+            return false;
+        }
         let behind = |r: &Refined| best.fit.evidence - r.fit.evidence;
         let alternatives = refined.iter().filter(|r| near(r, &best));
         let alternatives = alternatives.map(|r| (r.accepted.chosen.clone(), behind(r))).collect();
