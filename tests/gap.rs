@@ -159,7 +159,7 @@ fn verdict(mut world: MemoryWorld, study: &str, train: String, held: String) -> 
     let mut sources = Sources::default();
     let study = Study::read(&world, Path::new("study.toml"), &mut sources).value.unwrap();
     let question = question(&world, &study, None, &mut sources).ok().unwrap();
-    let found = search(&question.problem, &mut |_| ()).ok().unwrap();
+    let found = search(&question.problem, &mut |_| ()).unwrap_or_else(|trouble| panic!("{trouble:?}"));
     let held = question.held(None, &mut sources).unwrap();
     found.verdict(&question.problem, &held, 0.0)
 }

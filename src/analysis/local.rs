@@ -296,6 +296,8 @@ pub struct Local {
     torn_entries: Vec<f64>,
     /// Implicit unknowns of the last solution.
     implicit: Vec<f64>,
+    /// Some rate or output reads the rate of another state (`f = d*der(s)`).
+    reads_rates: bool,
     /// Entries of `linear` (row, column) that went through implicit unknowns.
     through_unknowns: Vec<(usize, usize)>,
     /// x' at the last point.
@@ -323,7 +325,7 @@ impl Local {
             c: DMatrix::zeros(p, n),
             d: DMatrix::zeros(p, r),
         };
-        Ok(Local {
+        let mut local = Local {
             point,
             y: vec![0.0; columns],
             yp: vec![0.0; columns],
@@ -331,12 +333,33 @@ impl Local {
             entries: vec![0.0; entries],
             torn_entries: vec![0.0; entries],
             implicit: vec![0.0; plan.implicit.len()],
+            reads_rates: false,
             through_unknowns: Vec::new(),
             rates: vec![0.0; n],
             outputs: vec![0.0; p],
             linear,
             plan,
-        })
+        };
+        local.reads_rates = local.looks_for_read_rates(time);
+        Ok(local)
+    }
+
+    /// Whether explicit rows change with the rates put into them; there is no value at the start where this cannot be told.
+    fn looks_for_read_rates(&mut self, time: f64) -> bool {
+        let Local { plan, point, y, yp, residual, .. } = self;
+        let system = &plan.system;
+        for (j, c) in system.columns.iter().enumerate() {
+            y[j] = point.values[system.layout.var(c.variable)];
+            yp[j] = 0.0;
+        }
+        let mut rates = |probe: f64| {
+            let tried: Vec<f64> = (0..yp.len()).map(|j| probe * (1.0 + 0.37 * j as f64)).collect();
+            plan.explicit.iter().for_each(|&j| yp[j] = tried[j]);
+            let known = system.residual(time, y, yp, &mut point.values, residual).is_ok();
+            known.then(|| plan.explicit.iter().map(|&j| tried[j] - residual[j]).collect::<Vec<f64>>())
+        };
+        let (Some(without), Some(with)) = (rates(0.0), rates(1.0)) else { return true };
+        without.iter().zip(&with).any(|(a, b)| (a - b).abs() > PROBED * (1.0 + a.abs()))
     }
 
     /// What is evaluated.
@@ -376,7 +399,7 @@ impl Local {
     }
 
     fn values(&mut self, time: f64, x: &[f64], theta: &[f64], u: &[f64]) -> Result<(), LocalError> {
-        let Local { plan, point, y, yp, residual, entries, torn_entries, .. } = self;
+        let Local { plan, point, y, yp, residual, entries, torn_entries, reads_rates, .. } = self;
         let system = &plan.system;
         for (&(column, _), &value) in plan.states.iter().zip(x) {
             y[column] = value;
@@ -393,6 +416,9 @@ impl Local {
                 y[j] = point.values[system.layout.var(c.variable)];
                 yp[j] = if c.state { point.values[system.layout.der(c.variable).expect("a state")] } else { 0.0 };
             }
+        }
+        if *reads_rates && !plan.discrete {
+            plan.settle_rates(time, y, yp, residual, &mut point.values)?;
         }
         for (rate, &(column, _)) in self.rates.iter_mut().zip(&plan.states) {
             *rate = yp[column];
@@ -426,11 +452,43 @@ impl Local {
         let system = &plan.system;
         system.jacobian(time, 0.0, y, yp, &mut point.values, entries).map_err(|_| LocalError::NonFinite)?;
         let torn = plan.implicit.iter().any(|i| i.1);
-        if torn {
+        if torn || self.reads_rates {
             system.jacobian(time, 1.0, y, yp, &mut point.values, torn_entries).map_err(|_| LocalError::NonFinite)?;
         }
         self.scatter();
-        if self.plan.implicit.is_empty() { Ok(()) } else { self.eliminate(torn) }
+        if !self.plan.implicit.is_empty() {
+            self.eliminate(torn)?;
+        }
+        if self.reads_rates { self.through_rates() } else { Ok(()) }
+    }
+
+    /// Adds what goes through the rates that others read: r = g(x, r) has d r/d x = (1 - d g/d r)^-1 d g/d x.
+    fn through_rates(&mut self) -> Result<(), LocalError> {
+        let Local { plan, entries, torn_entries, linear, through_unknowns, .. } = self;
+        let (n, p) = (plan.states.len(), plan.outputs.len());
+        let mut read = DMatrix::zeros(n + p, n);
+        let pattern = &plan.system.pattern;
+        for (column, role) in plan.roles.iter().enumerate() {
+            let Role::State(j) = *role else { continue };
+            for k in pattern.colptr[column]..pattern.colptr[column + 1] {
+                match plan.targets[pattern.rowidx[k]] {
+                    Target::Rate(i) if i != j => read[(i, j)] = entries[k] - torn_entries[k],
+                    Target::Output(i) => read[(n + i, j)] = entries[k] - torn_entries[k],
+                    _ => {}
+                }
+            }
+        }
+        let own = DMatrix::identity(n, n) - read.rows(0, n);
+        let own = own.lu();
+        linear.a = own.solve(&linear.a).ok_or(LocalError::Singular)?;
+        linear.b = own.solve(&linear.b).ok_or(LocalError::Singular)?;
+        linear.c += read.rows(n, p) * &linear.a;
+        linear.d += read.rows(n, p) * &linear.b;
+        // the next point begins with nothing of this one
+        let width = n + linear.b.ncols();
+        through_unknowns.clear();
+        through_unknowns.extend((0..n + p).flat_map(|row| (0..width).map(move |column| (row, column))));
+        Ok(())
     }
 
     /// The explicit part: minus the entries of rows `der(x) - value`. What is not among them is 0 already, but for what
@@ -532,6 +590,8 @@ impl Local {
 
 /// Iterations of Newton's method on the implicit unknowns.
 const NEWTON: usize = 12;
+/// A rate that reads others changes by more than this part of it when they do.
+const PROBED: f64 = 1e-9;
 /// Residuals and corrections are rounding below this part of what they began with.
 const CONVERGED: f64 = 1e-11;
 
@@ -587,6 +647,26 @@ impl Plan {
             }
         }
         Ok(false)
+    }
+
+    /// Rates that read other rates, which follow from each other one after the other.
+    fn settle_rates(
+        &self,
+        time: f64,
+        y: &[f64],
+        yp: &mut [f64],
+        residual: &mut [f64],
+        values: &mut [f64],
+    ) -> Result<(), LocalError> {
+        for _ in 0..self.explicit.len() {
+            self.system.residual(time, y, yp, values, residual).map_err(|_| LocalError::NonFinite)?;
+            let settled = self.explicit.iter().all(|&j| residual[j].abs() <= CONVERGED * yp[j].abs());
+            self.explicit.iter().for_each(|&j| yp[j] -= residual[j]);
+            if settled {
+                break;
+            }
+        }
+        Ok(())
     }
 
     fn correction(

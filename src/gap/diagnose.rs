@@ -8,7 +8,7 @@ mod refine;
 
 use super::data::Recording;
 use super::effects::Coefficient;
-use super::filter::{Setting, Tape};
+use super::filter::{SILENT, Setting, Tape};
 use super::fit::{self, Fit, Prior, vuong};
 use super::held;
 use super::locate::{self, Located};
@@ -203,10 +203,16 @@ fn anchor(problem: &Problem<'_>, noise: &[f64]) -> Result<(Fit, Assembled), Trou
     let near = driven::fitted(problem, silent, &priors, None).map(|f| {
         let mut setting = nominal.clone();
         setting.theta[model.free.clone()].copy_from_slice(&f.setting.theta[model.free.clone()]);
-        setting
+        (setting, f.setting.noise)
     });
-    let starts: Vec<Setting> = std::iter::once(nominal).chain(near).collect();
-    let fits: Vec<Fit> = starts.into_par_iter().filter_map(|s| settled(problem, s, &priors)).collect();
+    let starts: Vec<Setting> = std::iter::once(nominal).chain(near.iter().map(|n| n.0.clone())).collect();
+    let mut fits: Vec<Fit> = starts.into_par_iter().filter_map(|s| settled(problem, s, &priors)).collect();
+    if let (true, Some((setting, noise))) = (fits.is_empty(), near) {
+        // a sensor that folds its signal may drive sources to where the filter has no values: then what the model does not
+        // know is noise
+        let silent = Setting { sources: setting.sources_times(SILENT), noise, ..setting };
+        fits.extend(fit::fit(silent, &priors, &problem.train, None, fit::ITERATIONS));
+    }
     let share = fits.iter().map(|f| f.share).fold(0.0, f64::max);
     let best = fits.into_iter().map(|f| f.at_share(share)).max_by(|a, b| a.evidence.total_cmp(&b.evidence));
     let diverges = || Trouble::Diverges(0.0, "the model has no values on the way".into());

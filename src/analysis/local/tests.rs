@@ -113,3 +113,20 @@ fn rates_do_not_remember_where_the_model_was_before() {
     at(&mut local, 1e8);
     assert_eq!(at(&mut local, 0.1), before);
 }
+
+/// A damper written with the derivative of a port's position reads the rate of a state.
+#[test]
+fn rates_that_read_other_rates() {
+    let text = "model M
+        parameter Real d = 3, m = 2;
+        input Real u; Real s(start = 0.2, fixed = true), v(start = 0.1, fixed = true), f, P;
+      equation
+        v = der(s); f = d*der(s) + 5*s; m*der(v) = u - f; P = f*der(s);
+      end M;";
+    let mut local = local(text, &["d", "m"], &["f", "P"], &[0.7]);
+    check(&mut local, &[0.3, -0.4], &[3.0, 2.0], &[0.7]);
+    local.evaluate(0.0, &[0.0, 1.0], &[3.0, 2.0], &[0.0]).expect("has values");
+    assert_eq!(local.rates, [1.0, -1.5]);
+    local.linearize(0.0, &[0.0, 0.0], &[3.0, 2.0], &[0.0]).expect("has derivatives");
+    assert!((local.linear.a[(1, 1)] + 1.5).abs() < 1e-12, "{}", local.linear.a);
+}
