@@ -83,6 +83,18 @@ struct Found {
     alternatives: Vec<(Chosen, f64)>,
 }
 
+impl Found {
+    /// What the best candidate has over the model before, and those of the others that cannot be told from it.
+    fn over(before: &Fit, best: &Refined, others: &[Refined]) -> Self {
+        let behind = |r: &Refined| (r.accepted.chosen.clone(), best.fit.evidence - r.fit.evidence);
+        Found {
+            gain: best.fit.evidence - before.evidence,
+            t: vuong(&best.fit.blocks, &before.blocks),
+            alternatives: others.iter().filter(|r| near(r, best)).map(behind).collect(),
+        }
+    }
+}
+
 /// A gap that no effect explains, by its shape.
 struct Shaped {
     /// Index into [`Problem::hypotheses`].
@@ -106,6 +118,19 @@ pub struct Trial {
     pub t: f64,
     /// Log likelihood won in the blocks that gain, and lost in the others, nats, not scaled.
     pub won_and_lost: (f64, f64),
+}
+
+impl Trial {
+    /// What a candidate has over the model before.
+    fn over(before: &Fit, round: usize, r: &Refined) -> Self {
+        Trial {
+            round,
+            chosen: r.accepted.chosen.clone(),
+            gain: r.fit.evidence - before.evidence,
+            t: vuong(&r.fit.blocks, &before.blocks),
+            won_and_lost: won_and_lost(&r.fit, before),
+        }
+    }
 }
 
 /// A shape that explains more than the best effect, while effects are looked for that together explain as much: two
@@ -259,8 +284,7 @@ impl Search {
         let driven = screen.zip(course.as_ref()).map_or_else(Vec::new, |(s, c)| c.screened(&s, &self.last));
         progress(Stage::Refine(number));
         let refined = self.ranked(problem, followed, &driven);
-        let trials: Vec<Trial> = refined.iter().map(|r| self.trial(number, r)).collect();
-        self.trials.extend(trials);
+        self.trials.extend(refined.iter().map(|r| Trial::over(&self.last, number, r)));
         let further = self.decide(problem, refined);
         let open = self.accepted.len() < number && self.shape.is_none() && self.pending.is_none();
         further || open && course.is_some_and(|c| self.course_explained(problem, &c, driven))
@@ -323,12 +347,7 @@ impl Search {
         if !self.convinces(problem, &best) || self.mends_form(problem, &best.accepted, self.gain(&best.fit)) {
             return false;
         }
-        let alternatives = refined
-            .iter()
-            .filter(|r| near(r, &best))
-            .map(|r| (r.accepted.chosen.clone(), best.fit.evidence - r.fit.evidence))
-            .collect();
-        let found = Found { gain: self.gain(&best.fit), t: vuong(&best.fit.blocks, &self.last.blocks), alternatives };
+        let found = Found::over(&self.last, &best, &refined);
         self.accept(best, found);
         // a second effect is looked for beside a shape, a third one only where the two come near it
         let behind = |p: &Pending| self.accepted.len() > p.accepted + 1 && p.shape.fit.evidence > self.last.evidence;
@@ -458,16 +477,6 @@ impl Search {
         self.base =
             if self.accepted.is_empty() { last.clone() } else { driven::simulating(problem, self.base.clone()) };
         self.adopt(last, model);
-    }
-
-    fn trial(&self, round: usize, r: &Refined) -> Trial {
-        Trial {
-            round,
-            chosen: r.accepted.chosen.clone(),
-            gain: self.gain(&r.fit),
-            t: vuong(&r.fit.blocks, &self.last.blocks),
-            won_and_lost: won_and_lost(&r.fit, &self.last),
-        }
     }
 
     /// Drops again what closes little of the simulated gap now that everything else is there: one effect hides another,

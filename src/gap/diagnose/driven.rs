@@ -2,20 +2,18 @@
 //! the colour of a disturbance. The model's errors are taken as autoregressive noise (Box, Jenkins, Time Series
 //! Analysis, 1970, ch. 7).
 
-use super::super::filter::colour::Colour;
+use super::super::filter::colour::{Colour, ORDER};
 use super::super::filter::{SILENT, Setting};
 use super::super::fit::{self, Fit, Prior};
 use super::super::held;
 use super::super::problem::{Chosen, Problem};
 use super::super::screen::{Accepted, Candidate, Screen};
 use super::refine::{Refined, best_first, fitted as followed, make_whole, ready, switched_off, values};
-use super::{CLAIMED, CONSISTENT, Found, Search, Trial, near, simplest, vuong, won_and_lost};
+use super::{CLAIMED, CONSISTENT, Found, Search, Trial, simplest};
 use crate::analysis::autoregression;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
-/// Order of the autoregression.
-const ORDER: usize = 12;
 /// Turns of parameters and noise.
 const TURNS: usize = 3;
 
@@ -91,22 +89,15 @@ impl Search {
         let nearer = found.into_iter().filter(|(r, plain)| !self.halved(problem, r) && gap(plain) < left);
         let mut refined: Vec<Refined> = nearer.map(|(r, _)| r).collect();
         best_first(&mut refined);
-        let gain = |r: &Refined| r.fit.evidence - before.evidence;
-        let t = |r: &Refined| vuong(&r.fit.blocks, &before.blocks);
         let round = self.accepted.len() + 1;
-        self.trials.extend(refined.iter().map(|r| Trial {
-            round,
-            chosen: r.accepted.chosen.clone(),
-            gain: gain(r),
-            t: t(r),
-            won_and_lost: won_and_lost(&r.fit, before),
-        }));
+        self.trials.extend(refined.iter().map(|r| Trial::over(before, round, r)));
         if refined.is_empty() {
             return false;
         }
         let best = refined.remove(simplest(problem, &refined, before.evidence));
-        let sure = gain(&best) > CLAIMED && t(&best) > CONSISTENT;
-        if !sure || self.mends_form(problem, &best.accepted, gain(&best)) {
+        let found = Found::over(before, &best, &refined);
+        let sure = found.gain > CLAIMED && found.t > CONSISTENT;
+        if !sure || self.mends_form(problem, &best.accepted, found.gain) {
             return false;
         }
         let all: Vec<Accepted> = self.accepted.iter().chain([&best.accepted]).cloned().collect();
@@ -114,10 +105,7 @@ impl Search {
         if self.gain(&fit) <= 0.0 {
             return false;
         }
-        let behind = |r: &Refined| best.fit.evidence - r.fit.evidence;
-        let alternatives = refined.iter().filter(|r| near(r, &best));
-        let alternatives = alternatives.map(|r| (r.accepted.chosen.clone(), behind(r))).collect();
-        self.found.push(Found { gain: gain(&best), t: t(&best), alternatives });
+        self.found.push(found);
         self.accepted = all;
         self.adopt(fit, model);
         true
@@ -126,19 +114,14 @@ impl Search {
 
 /// A model fitted by what it says from the inputs alone; its sources must be silent. All its errors count as noise, as much
 /// of it independent as `share` says or as is found.
-pub(super) fn fitted(problem: &Problem<'_>, mut setting: Setting, priors: &[Prior], share: Option<f64>) -> Option<Fit> {
-    let mut best = None;
-    for _ in 0..TURNS {
-        let found = fit::fit(setting, priors, &problem.train, share, fit::ITERATIONS)?;
-        setting = found.setting.clone();
+pub(super) fn fitted(problem: &Problem<'_>, setting: Setting, priors: &[Prior], share: Option<f64>) -> Option<Fit> {
+    in_turns(problem, setting, priors, share, |setting, found| {
         for (i, noise) in setting.noise.iter_mut().enumerate() {
             let (sum, count) =
                 found.white.iter().fold((0.0, 0), |(s, n), w| (s + w.column(i).norm_squared(), n + w.nrows()));
             *noise *= (sum / count.max(1) as f64).sqrt().max(1e-6);
         }
-        best = Some(found);
-    }
-    best
+    })
 }
 
 /// A model without sources fitted by what it says from the inputs alone: first by its errors as they are, with their size
@@ -147,15 +130,28 @@ pub(super) fn fitted(problem: &Problem<'_>, mut setting: Setting, priors: &[Prio
 fn plain_and_coloured(problem: &Problem<'_>, setting: Setting, priors: &[Prior]) -> Option<(Fit, Fit)> {
     let mut plain = fitted(problem, setting, priors, Some(1.0))?;
     (plain.setting.noise, plain.setting.colours) = errors(&plain);
-    let mut setting = plain.setting.clone();
+    let coloured = in_turns(problem, plain.setting.clone(), priors, Some(1.0), |setting, found| {
+        (setting.noise, setting.colours) = errors(found);
+    })?;
+    Some((plain, coloured))
+}
+
+/// Fits parameters and noise in turn; the last fit is at the noise that the one before left.
+fn in_turns(
+    problem: &Problem<'_>,
+    mut setting: Setting,
+    priors: &[Prior],
+    share: Option<f64>,
+    renew: impl Fn(&mut Setting, &Fit),
+) -> Option<Fit> {
     let mut best = None;
     for _ in 0..TURNS {
-        let found = fit::fit(setting, priors, &problem.train, Some(1.0), fit::ITERATIONS)?;
+        let found = fit::fit(setting, priors, &problem.train, share, fit::ITERATIONS)?;
         setting = found.setting.clone();
-        (setting.noise, setting.colours) = errors(&found);
+        renew(&mut setting, &found);
         best = Some(found);
     }
-    Some((plain, best?))
+    best
 }
 
 /// How large the errors of each signal are, and their colours.

@@ -6,7 +6,7 @@ use crate::analysis::autoregression;
 use std::collections::VecDeque;
 
 /// Order of the autoregression.
-const ORDER: usize = 12;
+pub const ORDER: usize = 12;
 /// Partial autocorrelations at most: an error that never fades would leave nothing to weigh.
 const LIMIT: f64 = 0.9999;
 
