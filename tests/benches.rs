@@ -1,6 +1,8 @@
 //! The benches of both papers: `models/ServoPump` (Zhang et al., Processes 2021, 9, 814) and `models/ClosedCircuit`
 //! (DOI 10.1177/09544054221102779) against published figures and the reference values restated here.
 
+#![allow(clippy::disallowed_methods, reason = "tests read their own files")]
+
 mod rig;
 
 use bramah::Simulation;
@@ -220,6 +222,52 @@ fn the_flow_divides_into_dead_load_and_saturation_zone() {
     assert!(last(&t, "N_T") < 0.0 && last(&t, "N_s") == 0.0);
 }
 
+/// Fig. 2, and flow over speed at loads: none up to where the calibration has the pump cover its leakage, then the slope
+/// without load, and an end at 3000 r/min; backwards the same.
+#[test]
+fn the_flow_over_speed_has_its_three_zones() {
+    let mut simulation = shipped("ServoPump.FlowZones");
+    for (p, dead) in [(5e6, 18.0), (10e6, 25.194244604316545), (21e6, 41.02158273381295)] {
+        simulation.set("p_load", p).expect("a parameter").set("N_end", 3600.0).expect("a parameter");
+        let t = run(&simulation);
+        let flow = |n: f64| at(&t, "Q", 5.0 * (1.0 + n / 3600.0));
+        for n in [300.0, 1000.0, 2900.0] {
+            near(flow(n), 0.7682e-6 * (n - dead) / 60.0, 4e-3);
+            near(flow(-n), -flow(n), 1e-4);
+        }
+        near(flow(3600.0), 0.7682e-6 * (3000.0 - dead) / 60.0, 4e-3);
+        let t = run(simulation.set("N_end", 60.0).expect("a parameter"));
+        let flow = |n: f64| at(&t, "Q", 5.0 * (1.0 + n / 60.0)) * 6e7;
+        let (inside, outside) = (flow(0.96 * dead), flow(1.04 * dead));
+        assert!(inside.abs() < 0.02 && outside > 0.02, "{inside} and {outside} ml/min at {p} Pa");
+    }
+}
+
+/// Files, classes, variables and parameters that the experiments beside both benches name are there.
+#[test]
+fn the_experiments_name_what_there_is() {
+    let mut tried = 0;
+    for folder in ["ServoPump", "ClosedCircuit"] {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("models").join(folder);
+        let mut entries: Vec<_> = std::fs::read_dir(folder).expect("the folder is there").flatten().collect();
+        entries.sort_by_key(std::fs::DirEntry::path);
+        for path in entries.iter().map(std::fs::DirEntry::path).filter(|p| p.extension().is_some_and(|e| e == "toml")) {
+            let mut sources = bramah::diag::Sources::default();
+            let file = sources.add(path.to_string_lossy(), std::fs::read_to_string(&path).expect("a text"));
+            let checked = bramah::experiment::parse(&sources, file);
+            assert!(checked.diagnostics.is_empty(), "{path:?}: {:?}", checked.diagnostics);
+            let experiment = checked.value.expect("an experiment");
+            let set: Vec<_> = experiment.set.iter().map(|(name, value)| (name.as_str(), value.as_str())).collect();
+            let columns = shipped_with(experiment.file.as_deref().expect("a class"), &set).columns();
+            for name in &experiment.variables {
+                assert!(columns.iter().any(|c| c.name == *name), "{path:?}: {name}");
+            }
+            tried += 1;
+        }
+    }
+    assert!(tried > 15, "{tried}");
+}
+
 /// The sampled drive and the resolved pump move the axis as the continuous and the averaged ones do.
 #[test]
 fn the_forms_of_drive_and_pump_agree() {
@@ -308,6 +356,19 @@ fn both_circuits_take_either_motor_and_control() {
             }
         }
     }
+}
+
+/// Fig. 10: torque lost per speed lost at the synchronous speed, 14.0 and 34.9 Nm s/rad.
+#[test]
+fn the_motors_of_fig_10_differ_in_stiffness() {
+    let t = run(&shipped("ClosedCircuit.MotorCurves"));
+    let synchronous = 30.0 * 27.74;
+    let slope = |name: &str| {
+        let torque = |n: f64| at(&t, name, n / (1.1 * synchronous));
+        (torque(synchronous - 5.0) - torque(synchronous + 5.0)) / (10.0 * std::f64::consts::PI / 30.0)
+    };
+    near(slope("T_A"), 14.0, 0.01);
+    near(slope("T_B"), 34.9, 0.01);
 }
 
 #[test]

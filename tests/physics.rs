@@ -159,6 +159,88 @@ fn a_fast_stroke_of_the_accumulator_is_adiabatic_and_a_slow_one_isothermal() {
     }
 }
 
+/// Filled beyond its capacity the gas keeps what is left of it, and the pressure rises with the modulus of the oil alone.
+#[test]
+fn a_full_accumulator_stops() {
+    for class in ["Accumulator", "AccumulatorPolytropic", "AccumulatorRealGas"] {
+        let mut simulation = circuit(
+            &format!(
+                "inner Oil.Fluid oil(redeclare function density = Oil.Compression.constantModulus(beta_0 = 1.5e9));
+                 Hydraulic.{class} gas(V_0 = 1e-3, p_pre = 20e5, p_start = 20e5, p_max = 50e6, V_full = 0.2);
+                 Hydraulic.FlowSource source(q = 1e-5);"
+            ),
+            "connect(source.port, gas.port);",
+        );
+        simulation.settings().tolerance = 1e-8;
+        let t = run(simulation.stop_time(81.5));
+        let full = t.times.iter().position(|&time| time > 81.0).expect("a row");
+        let (p, v, time) = (column(&t, "gas.p"), column(&t, "gas.V_gas"), &t.times);
+        let (end, soft) = (p.len() - 1, if class == "AccumulatorRealGas" { 0.5 } else { 0.01 });
+        near(v[end], 0.2e-3, if soft > 0.1 { 0.04 } else { 1e-6 });
+        // the oil of 0.82 l, and in the real gas a stop that takes p_max within a hundredth of V_0
+        let stiff = (p[end] - p[full]) / (time[end] - time[full]);
+        let oil = 1e-5 * 1.5e9 / 0.82e-3;
+        assert!(stiff > (1.0 - soft) * oil && stiff < (1.0 + soft) * oil, "{class}: {stiff} instead of {oil} Pa/s");
+    }
+}
+
+/// Joined to a heat port, leakage and friction of a machine have the viscosity of the temperature there.
+#[test]
+fn the_gaps_of_a_machine_have_the_temperature_of_its_case() {
+    let mut simulation = circuit(
+        "inner Oil.Fluid oil(lambda = 0.03);
+         Hydraulic.AxialPistonMachine own(useHeatPort = true);
+         Hydraulic.AxialPistonMachine common;
+         Thermal.FixedTemperature warm(T = oil.T_0 + 20);
+         Mechanical.Rotational.ConstantSpeed shaft;
+         Hydraulic.PressureSource a(p = 200e5);
+         Hydraulic.Tank b;",
+        "connect(shaft.flange, own.flange); connect(shaft.flange, common.flange);
+         connect(a.port, own.port_a); connect(a.port, common.port_a);
+         connect(b.port, own.port_b); connect(b.port, common.port_b);
+         connect(warm.port, own.heatPort);",
+    );
+    let t = run(simulation.stop_time(1e-6));
+    near(last(&t, "own.Q_leak"), last(&t, "common.Q_leak") * 0.6f64.exp(), 1e-9);
+    near(last(&t, "own.T_slipper"), last(&t, "common.T_slipper") * (-0.6f64).exp(), 1e-9);
+    near(-last(&t, "warm.port.Q_flow"), -last(&t, "own.lossPower"), 1e-9);
+}
+
+/// At half the displacement the pistons move and lean half as much; slippers and valve plate rub as before.
+#[test]
+fn pistons_rub_less_at_small_displacement() {
+    let mut simulation = circuit(
+        "inner Oil.Fluid oil;
+         parameter Real displacement = 1;
+         Hydraulic.AxialPistonMachine machine(useInput = true);
+         Mechanical.Rotational.ConstantSpeed shaft;
+         Hydraulic.PressureSource a(p = 200e5);
+         Hydraulic.Tank b;",
+        "connect(shaft.flange, machine.flange); connect(a.port, machine.port_a); connect(b.port, machine.port_b);
+         machine.u = displacement;",
+    );
+    let whole = run(simulation.stop_time(1e-6));
+    let half = run(simulation.set("displacement", -0.5).expect("a parameter"));
+    near(last(&half, "machine.T_piston"), last(&whole, "machine.T_piston") / 4.0, 1e-9);
+    near(last(&half, "machine.T_slipper"), last(&whole, "machine.T_slipper"), 1e-9);
+}
+
+/// A trapezoidal spindle of 40 % needs no second efficiency: it locks itself, and the nut does not drive it.
+#[test]
+fn a_screw_of_low_efficiency_is_not_driven_back() {
+    let mut simulation = circuit(
+        "Mechanical.Rotational.Screw screw(eta = 0.4, pitch = 5e-3);
+         Mechanical.Rotational.ConstantSpeed shaft;
+         Mechanical.Translational.ConstantForce load(f_constant = -1000);",
+        "connect(shaft.flange, screw.flangeR); connect(screw.flangeT, load.flange);",
+    );
+    let ideal = 1000.0 * 5e-3 / (2.0 * PI);
+    for (w, torque) in [(100.0, ideal / 0.4), (-100.0, 0.0)] {
+        let t = run(simulation.set("shaft.w_fixed", w).expect("a parameter").stop_time(1e-6));
+        assert!((last(&t, "screw.flangeR.tau") - torque).abs() < 1e-9 * ideal, "at {w} rad/s");
+    }
+}
+
 /// Merritt, Hydraulic Control Systems, section 3.4: the square root above, a straight line below the transition.
 #[test]
 fn the_orifice_is_turbulent_above_and_laminar_below_its_transition() {
@@ -465,6 +547,49 @@ fn machines_take_power_in_all_four_quadrants() {
                 "{class} gives {loss} W at {w} rad/s, {a} Pa and {b} Pa, {u} of the displacement, {celsius} degC"
             );
         }
+    }
+}
+
+/// Piston by piston, at every moment: ports, bores with the oil that pistons drag along, friction; over whole turns shaft
+/// and oil lose what that adds up to, and the elastic energy that leaves with the oil.
+#[test]
+fn pistons_take_power_in_all_four_quadrants() {
+    let mut simulation = circuit(
+        "inner Oil.Fluid oil(redeclare function density = Oil.Compression.constantModulus(beta_0 = 1.5e10));
+         Hydraulic.PistonMachine machine(drag = true, h = 2e-5, k_p = 0.02, useInput = true);
+         parameter Real displacement = 1;
+         Mechanical.Rotational.ConstantSpeed shaft;
+         Hydraulic.PressureSource a;
+         Hydraulic.PressureSource b;
+         Real given(start = 0, fixed = true);
+         Real lost(start = 0, fixed = true);",
+        "connect(shaft.flange, machine.flange);
+         connect(a.port, machine.port_a);
+         connect(b.port, machine.port_b);
+         connect(b.port, machine.port_case);
+         machine.u = displacement;
+         der(given) = machine.T_sh*machine.w - machine.dp*machine.Q_A;
+         der(lost) = machine.lossPower;",
+    );
+    for (w, a, b, u) in [
+        (60.0, 2e7, 5e5, 1.0),
+        (60.0, 5e5, 2e7, 1.0),
+        (-60.0, 2e7, 5e5, 0.6),
+        (-60.0, 5e5, 2e7, 1.0),
+        (60.0, 2e7, 5e5, -0.4),
+    ] {
+        for (name, value) in [("shaft.w_fixed", w), ("a.p", a), ("b.p", b), ("displacement", u)] {
+            simulation.set(name, value).expect("a parameter");
+        }
+        let turn = 2.0 * PI / 60.0;
+        let settings = simulation.settings();
+        (settings.stop_time, settings.interval) = (2.0 * turn, turn / 700.0);
+        let t = run(&simulation);
+        let least = column(&t, "machine.lossPower").iter().copied().fold(f64::INFINITY, f64::min);
+        assert!(least > -1e-6, "{least} W at {w} rad/s, {a} and {b} Pa, {u}");
+        let over = |name: &str| at(&t, name, 2.0 * turn) - at(&t, name, turn);
+        let (given, lost) = (over("given"), over("lost"));
+        assert!((given - lost).abs() < 0.05 * lost, "{given} and {lost} J at {w} rad/s, {a} and {b} Pa, {u}");
     }
 }
 

@@ -37,6 +37,25 @@ fn the_flow_control_valve_holds_its_flow() {
     near(flow(&mut valve, 6e5, 10e5), -in_series, 0.01);
 }
 
+/// Half the play to either side: at 3 V coming from below the setting is that of 2.8 V, coming from above of 3.2 V.
+#[test]
+fn the_magnet_of_the_proportional_relief_valve_sticks() {
+    let mut valve = circuit(
+        &format!(
+            "{OIL} Hydraulic.ProportionalRelief valve(hysteretic = true, h = 0.4, k_u = 2e6);
+             Signal.Trapezoid command(amplitude = 4, offset = 1, rising = 1, holding = 1, falling = 1);
+             Hydraulic.FlowSource source;
+             Hydraulic.Tank tank;"
+        ),
+        "connect(command.y, valve.u); connect(source.port, valve.port_a); connect(valve.port_b, tank.port);",
+    );
+    let t = run(valve.stop_time(3.5));
+    // the lag of 50 ms and of the play at 4 V/s: 0.2 V
+    for (time, u) in [(0.5, 3.0 - 0.2 - 0.2), (1.9, 4.8), (2.5, 3.0 + 0.2 + 0.2), (3.5, 1.2)] {
+        near(at(&t, "valve.p_set", time), 2e6 * u, 0.02);
+    }
+}
+
 #[test]
 fn valves_on_spools_take_power_in_both_directions() {
     for (class, more) in [

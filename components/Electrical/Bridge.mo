@@ -15,5 +15,5 @@ equation
   n.i = i;
   dc_p.i = d*i;
   dc_n.i = -d*i;
-  annotation(Documentation(info = "<html><p><code>v = d v_dc</code>, <code>i_dc = d i</code> with the modulation d: the mean over a switching period, without its ripple. Power is conserved but for <code>R_on</code>.</p></html>"));
+  annotation(Documentation(info = "<html><p><code>v = d v_dc</code>, <code>i_dc = d i</code> with the modulation d: the mean over a switching period, without its ripple. Power is conserved but for <code>R_on</code>. Valid for processes slower than the carrier. Source: W. Leonhard, Control of Electrical Drives, 2001.</p></html>"));
 end Bridge;

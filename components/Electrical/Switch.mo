@@ -11,5 +11,5 @@ protected
 equation
   v = s*unit_v*(if closed then R_on*unit_i/unit_v else 1);
   i = s*unit_i*(if closed then 1 else G_off*unit_v/unit_i);
-  annotation(Documentation(info = "<html><p><code>R_on</code> when closed, <code>G_off</code> when open, as one curve with a parameter; switching is an event.</p></html>"));
+  annotation(Documentation(info = "<html><p><code>R_on</code> when closed, <code>G_off</code> when open, as one curve with a parameter; switching is an event. No arc, no time of switching.</p></html>"));
 end Switch;

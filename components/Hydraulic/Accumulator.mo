@@ -13,12 +13,15 @@ model Accumulator "Bladder accumulator, gas with a thermal time constant"
   parameter SI.SpecificHeatCapacity c_v(min = 100, max = 20000) = 743 "Heat capacity of the gas at constant volume, nitrogen";
   parameter Real V_min(unit = "1", min = 0.001, max = 0.5) = 0.02 "Oil left when empty, over V_0";
   parameter Real w_stop(unit = "1", min = 1e-4, max = 0.1) = 0.01 "Rounding of the empty stop, over V_0";
+  parameter Real V_full(unit = "1", min = 0.001, max = 0.5) = 0.02 "Gas left when full, over V_0";
   SI.Pressure p(start = p_start, fixed = true, nominal = 1e6, stateSelect = StateSelect.prefer) "Pressure of the oil";
   SI.Temperature T(start = T_start, fixed = true, nominal = 300, stateSelect = StateSelect.prefer) "Temperature of the gas";
   SI.Volume V_gas(nominal = 1e-3) "Volume of the gas";
   SI.Volume V_oil(nominal = 1e-3) "Volume of the oil";
   SI.Mass mass(nominal = 1) "Mass of the oil";
 protected
+  parameter Real w_full(unit = "1") = min(w_stop, V_full/2) "Rounding of the full stop, over V_0";
+  Real share(unit = "1") "Part of the change of V_free that the gas follows: 0 at both stops";
   SI.Volume V_free(nominal = 1e-3) "Volume that the gas would take at the pressure of the oil";
   SI.VolumeFlowRate V_gas_dot(nominal = 1e-4) "Rate of V_gas";
   SI.Density rho(nominal = 1000) "Density of the oil";
@@ -31,8 +34,9 @@ equation
   p = port.p;
   p_s = max(p, 1e-3*p_pre);
   V_free = V_0*(p_pre/p_s)*(T/T_wall);
-  V_gas = V_0*(1 - Smooth.ramp(1 - V_free/V_0 + w_stop, 2*w_stop));
-  V_gas_dot = min(max((1 - V_free/V_0 + w_stop)/(2*w_stop), 0), 1)*V_free*(der(T)/T - der(p)/p_s);
+  V_gas = V_0*(1 - Smooth.ramp(1 - V_free/V_0 + w_stop, 2*w_stop) + Smooth.ramp(V_full - V_free/V_0 + w_full, 2*w_full));
+  share = min(max((1 - V_free/V_0 + w_stop)/(2*w_stop), 0), 1) - min(max((V_full - V_free/V_0 + w_full)/(2*w_full), 0), 1);
+  V_gas_dot = share*V_free*(der(T)/T - der(p)/p_s);
   der(T) = (T_wall - T)/tau - R*T/(c_v*V_gas)*V_gas_dot;
   V_oil = V_0*(1 + V_min) - V_gas;
   (rho, beta) = oil.density(p);
@@ -40,6 +44,6 @@ equation
   mass = rho*V_oil;
   annotation(Documentation(info = "<html>
 <p>Ideal gas, <code>p V_gas = m R T</code>, and its balance of energy with Newton's cooling, <code>dT/dt = (T_wall - T)/tau - R T/(c_v V_gas) dV_gas/dt</code>: fast strokes are adiabatic (exponent 1.40), slow ones isothermal, and the pressure relaxes
-after a fast stroke. Below the precharge the bladder rests on its valve and only the oil in the neck (<code>V_min V_0</code>) is compressed; the passage is rounded within <code>w_stop V_0</code> of it on either side; beyond, the law of the gas holds exactly.</p>
+after a fast stroke. Below the precharge the bladder rests on its valve and only the oil in the neck (<code>V_min V_0</code>) is compressed; the passage is rounded within <code>w_stop V_0</code> of it on either side; beyond, the law of the gas holds exactly. Full, the gas keeps <code>V_full V_0</code>, and only the oil is compressed further.</p>
 <p>Real gas matters above some 10 MPa; Newton's cooling misses the phase of fast oscillation. Source: D. R. Otis and A. Pourmovahed, J. Dyn. Syst. Meas. Control 107 (1985) 116.</p></html>"));
 end Accumulator;

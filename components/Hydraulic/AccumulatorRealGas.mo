@@ -15,6 +15,7 @@ model AccumulatorRealGas "Bladder accumulator, real gas (Redlich and Kwong) with
   parameter SI.Pressure p_c(min = 1e4, max = 1e8, nominal = 1e6) = 3.396e6 "Critical pressure, nitrogen";
   parameter Real V_min(unit = "1", min = 0.001, max = 0.5) = 0.02 "Oil left when empty, over V_0";
   parameter Real w_stop(unit = "1", min = 1e-4, max = 0.1) = 0.01 "Volume beyond V_0, over V_0, at which the pressure of the oil reaches zero";
+  parameter Real V_full(unit = "1", min = 0.001, max = 0.5) = 0.02 "Gas left when full, over V_0";
   SI.Pressure p(nominal = 1e7) "Pressure of the oil";
   SI.Pressure p_gas(nominal = 1e7) "Pressure of the gas";
   SI.Temperature T(start = T_wall, fixed = true, nominal = 300, stateSelect = StateSelect.prefer) "Temperature of the gas";
@@ -54,8 +55,9 @@ equation
   p_T = R/(v - b) + a*sqrt(T_c/T)/(2*T*v*(v + b));
   p_v = -R*T/(v - b)^2 + a*sqrt(T_c/T)*(2*v + b)/(v^2*(v + b)^2);
   der(T) = (T_wall - T)/tau - T/(m_gas*c_v)*p_T*der(V_gas);
-  p_dot = p_T*der(T) + p_v*der(V_gas)/m_gas - 2*p_pre/(w_stop*V_0)*min(max((V_gas/V_0 - 1)/w_stop, 0), 1)*der(V_gas);
-  p = p_gas - p_pre*Smooth.ramp(V_gas/V_0 - 1, w_stop)/w_stop*2;
+  p_dot = p_T*der(T) + p_v*der(V_gas)/m_gas
+    - 2/(w_stop*V_0)*(p_pre*min(max((V_gas/V_0 - 1)/w_stop, 0), 1) + p_max*min(max((V_full - V_gas/V_0)/w_stop, 0), 1))*der(V_gas);
+  p = p_gas + 2*(p_max*Smooth.ramp(V_full - V_gas/V_0, w_stop) - p_pre*Smooth.ramp(V_gas/V_0 - 1, w_stop))/w_stop;
   p = port.p;
   V_oil = V_0*(1 + V_min) - V_gas;
   (rho, beta) = oil.density(p);
@@ -63,6 +65,6 @@ equation
   mass = rho*V_oil;
   annotation(Documentation(info = "<html>
 <p><code>p = R T/(v - b) - a sqrt(T_c/T)/(v (v + b))</code>; balance of energy with Newton's cooling, <code>dT/dt = (T_wall - T)/tau - T/(m c_v) (dp/dT)_v dV/dt</code>. The mass of the gas follows from the precharge. Above some 10 MPa nitrogen takes more volume than an ideal gas: at 30 MPa and 20 degC <code>Z</code> is 1.1 to 1.2.
-When empty, the bladder rests on its valve within <code>w_stop V_0</code>.</p>
+When empty, the bladder rests on its valve within <code>w_stop V_0</code>; when full, at <code>V_full V_0</code>, it meets a stop that takes <code>p_max</code> within <code>w_stop V_0</code>. Gases of high precharge are beyond the law before that.</p>
 <p>Valid up to twice the critical density of the gas. For lower pressures <code>Accumulator</code> is simpler. Source: O. Redlich, J. N. S. Kwong, Chem. Rev. 44 (1949) 233; balance of energy: D. R. Otis and A. Pourmovahed, J. Dyn. Syst. Meas. Control 107 (1985) 116.</p></html>"));
 end AccumulatorRealGas;

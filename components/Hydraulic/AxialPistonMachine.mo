@@ -53,12 +53,12 @@ equation
   Q_plate = alpha_k*h_v^3/(12*mu)*(1/log(r_v2/r_v1) + 1/log(r_v4/r_v3))*dp;
   Q_leak = Q_slipper + Q_piston + Q_plate;
   T_slipper = z*mu*pi*(r_s2^2 - r_s1^2)*R^2/h_s*w;
-  T_piston = w_p*z/2*mu*pi*d*L*(R*tan(beta_s))^2/h_p*w + (1 - w_p)*mu_p*c_g*tan(beta_s)*D*p_mag*s;
+  T_piston = u_used^2*(w_p*z/2*mu*pi*d*L*(R*tan(beta_s))^2/h_p*w + (1 - w_p)*mu_p*c_g*tan(beta_s)*D*p_mag*s);
   T_plate = w_v*mu*pi/2*(r_v2^4 - r_v1^4 + r_v4^4 - r_v3^4)/h_v*w + (1 - w_v)*mu_v*r_m*(F_s + xi*z/2*A_p*p_mag)*s;
   T_rest = k_b*D*p_mag*s + k_w*w*noEvent(abs(w));
   T_loss = T_slipper + T_piston + T_plate + T_rest;
   annotation(Documentation(info = "<html>
-<p>Laminar leakage and viscous friction of the three lubricated pairs; dry friction of piston and plate weighted with <code>1 - w_p</code> and <code>1 - w_v</code>. The viscosity is that of the mean film pressure, half the pressure difference above <code>p_film0</code>.
-All leakage passes from port to port; valid for full-film gaps of 5 to 50 um.</p>
-<p>Structure: H.-S. Jeong, J. Mech. Sci. Technol. 21 (2007) 312, re-derived from lubrication theory; as used in DOI 10.1177/09544054221102779, whose numbers are not at hand: the defaults are assumed.</p></html>"));
+<p>Laminar leakage and viscous friction of the three lubricated pairs; dry friction of piston and plate weighted with <code>1 - w_p</code> and <code>1 - w_v</code>. With the displacement u the pistons move and lean less: their friction falls with the square of it. The viscosity is that of the mean film pressure, half the pressure difference above <code>p_film0</code>.
+All leakage passes from port to port (<code>CasePump(redeclare AxialPistonMachine machine)</code> adds ways to the case); valid for full-film gaps of 5 to 50 um. The shares of fluid friction are constants: what changes between mixed and full film over speed is not in it.</p>
+<p>Source: structure by H.-S. Jeong, J. Mech. Sci. Technol. 21 (2007) 312, re-derived from lubrication theory; as used in DOI 10.1177/09544054221102779, whose numbers are not at hand: the defaults are assumed.</p></html>"));
 end AxialPistonMachine;

@@ -23,5 +23,5 @@ equation
   connect(gap_b.port_b, port_case);
   connect(port_a, gap_i.port_a);
   connect(gap_i.port_b, port_b);
-  annotation(Documentation(info = "<html><p>A machine (replaceable) with laminar gaps from each port to the case and between the ports, for circuits where it matters which way the leakage takes.</p></html>"));
+  annotation(Documentation(info = "<html><p>A machine (replaceable) with laminar gaps from each port to the case and between the ports, for circuits where it matters which way the leakage takes. Valid while the gaps stay laminar; the pressure in the case is that of <code>port_case</code>. Source: J. Ivantysyn and M. Ivantysynova, Hydrostatic Pumps and Motors, 2001.</p></html>"));
 end CasePump;

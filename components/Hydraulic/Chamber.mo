@@ -29,5 +29,5 @@ equation
   max(V, V_min)/beta*der(p) = port.q - side*A*v;
   flange.f = -side*A*(p - p_ambient);
   mass = rho*max(V, V_min);
-  annotation(Documentation(info = "<html><p><code>V/beta dp/dt = q - A v</code>, force <code>A (p - p_ambient)</code>. Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, section 6.1.</p></html>"));
+  annotation(Documentation(info = "<html><p><code>V/beta dp/dt = q - A v</code>, force <code>A (p - p_ambient)</code>. Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, section 6.1. Valid while the volume stays above <code>V_min</code>; the oil has one pressure throughout, so no waves.</p></html>"));
 end Chamber;

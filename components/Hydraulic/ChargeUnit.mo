@@ -24,5 +24,5 @@ equation
   connect(check_A.port_b, port_a);
   connect(line.port, check_B.port_a);
   connect(check_B.port_b, port_b);
-  annotation(Documentation(info = "<html><p>Replaces the leakage of a closed circuit and holds its low side at <code>p_charge</code>. One direction of rotation.</p></html>"));
+  annotation(Documentation(info = "<html><p>Replaces the leakage of a closed circuit and holds its low side at <code>p_charge</code>. One direction of rotation. Turned backwards it draws its line empty. Source: J. Ivantysyn and M. Ivantysynova, Hydrostatic Pumps and Motors, 2001, closed circuits.</p></html>"));
 end ChargeUnit;

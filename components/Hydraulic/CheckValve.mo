@@ -15,5 +15,5 @@ equation
   q = Functions.orificeFlow(dp, A_leak + x*A_max, C_d, rho, oil.mu, Re_cr);
   annotation(Documentation(info = "<html>
 <p>The cross section grows smoothly from <code>A_leak</code> to <code>A_max</code> between <code>p_crack</code> and <code>p_open</code>. No event, no mass of the poppet: use it
-where the valve is faster than the circuit, <code>CheckValveDynamic</code> where it may flutter.</p></html>"));
+where the valve is faster than the circuit, <code>CheckValveDynamic</code> where it may flutter. Source: form of the check valve in MathWorks' Simscape documentation; the flow is that of <code>Orifice</code>.</p></html>"));
 end CheckValve;

@@ -8,5 +8,5 @@ model CheckValveLinear "Check valve with a linear characteristic: free from a to
 equation
   assert(K >= 0, "The conductance K must not be negative");
   q = K*Smooth.ramp(dp - p_crack, w) + G_leak*dp;
-  annotation(Documentation(info = "<html><p>Closed up to <code>p_crack</code> but for <code>G_leak</code>; from there a parabola over the width <code>w</code>, <code>K (dp - p_crack)^2/(2 w)</code>, then the straight line <code>K (dp - p_crack - w/2)</code>. The slope is continuous, and the flow never goes against the pressure. Simple stand-in for <code>CheckValve</code>.</p></html>"));
+  annotation(Documentation(info = "<html><p>Closed up to <code>p_crack</code> but for <code>G_leak</code>; from there a parabola over the width <code>w</code>, <code>K (dp - p_crack)^2/(2 w)</code>, then the straight line <code>K (dp - p_crack - w/2)</code>. The slope is continuous, and the flow never goes against the pressure. Simple stand-in for <code>CheckValve</code>. Valid near one point of work: the flow of a real valve grows with the root of the pressure drop.</p></html>"));
 end CheckValveLinear;

@@ -11,5 +11,5 @@ equation
   assert(dp_nom > 0 and q_nom > 0 and kA >= 0, "The nominal point must be positive, kA not negative");
   q = q_nom/dp_nom*mu_nom/oil.mu*dp;
   oilHeat.Q_flow = kA*(oilHeat.T - T_ambient);
-  annotation(Documentation(info = "<html><p>Laminar pressure drop, <code>q = q_nom dp/dp_nom</code> at the nominal viscosity; heat <code>kA (T_oil - T_ambient)</code> leaves the oil through <code>oilHeat</code>. The temperature of the oil is one for the circuit.</p></html>"));
+  annotation(Documentation(info = "<html><p>Laminar pressure drop, <code>q = q_nom dp/dp_nom</code> at the nominal viscosity; heat <code>kA (T_oil - T_ambient)</code> leaves the oil through <code>oilHeat</code>. The temperature of the oil is one for the circuit. Valid while the flow of the coolant does not change; kA is a constant. Source: Newton's law of cooling.</p></html>"));
 end Cooler;

@@ -6,5 +6,5 @@ model DryResistance "Constant pressure difference against the flow, as by a pist
 equation
   assert(dp_friction >= 0, "dp_friction must not be negative");
   dp = dp_friction*Smooth.sgn(q, q_w);
-  annotation(Documentation(info = "<html><p><code>dp = dp_friction sign(q)</code>: the seal friction of a separating piston. Between ports that are both held at given pressures it has no solution.</p></html>"));
+  annotation(Documentation(info = "<html><p><code>dp = dp_friction sign(q)</code>: the seal friction of a separating piston. Between ports that are both held at given pressures it has no solution. Valid for motion; at rest it creeps within <code>q_w</code> instead of holding.</p></html>"));
 end DryResistance;

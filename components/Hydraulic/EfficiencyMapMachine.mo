@@ -45,5 +45,5 @@ equation
   Q_leak = loss_v*V*w_map/(2*pi)*dp/p_map;
   T_loss = loss_m*D*p_map*Smooth.sgn(w, w_s)*min(abs(dp)/p_map + 1e-2, 1);
   annotation(Documentation(info = "<html><p>The maps hold what was measured pumping: <code>eta_v</code>, delivery over <code>V n</code>, and <code>eta_m</code>, ideal torque over the shaft's, rows by speed, columns by pressure difference, bilinear between. They are written in the model, or read from a file that holds both (<code>fileName</code>; for its form see <code>Signal.Functions.readTable</code>).</p>
-<p>The losses, leakage <code>(1 - eta_v) V n</code> and torque <code>(1/eta_m - 1) D dp</code>, are applied in all four quadrants, so that motoring and standstill stay passive. Outside the maps the losses of the edge hold, the leakage falling with the pressure.</p></html>"));
+<p>The losses, leakage <code>(1 - eta_v) V n</code> and torque <code>(1/eta_m - 1) D dp</code>, are applied in all four quadrants, so that motoring and standstill stay passive. Outside the maps the losses of the edge hold, the leakage falling with the pressure. Valid at the temperature at which the maps were measured: viscosity does not change them. Source: efficiencies as defined by ISO 4409.</p></html>"));
 end EfficiencyMapMachine;

@@ -23,5 +23,5 @@ equation
   connect(u, metering.u);
   q = metering.q;
   annotation(Documentation(info = "<html><p><code>PressureCompensator</code> before a <code>VariableOrifice</code>. Above <code>dp_set + dp_open</code> in all the flow is <code>u q_nom</code> within about <code>droop/4</code>; below, the valve is two open orifices in series. Backwards the compensator stands open.</p>
-<p>A step of the load passes until the spool has moved (<code>tau</code>): the known start-up jump.</p></html>"));
+<p>A step of the load passes until the spool has moved (<code>tau</code>): the known start-up jump. Source: W. Backe and H. Murrenhoff, Grundlagen der Oelhydraulik, 1994.</p></html>"));
 end FlowControlValve;

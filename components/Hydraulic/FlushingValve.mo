@@ -15,5 +15,5 @@ equation
   connect(way_a.port_b, port_out);
   connect(port_b, way_b.port_a);
   connect(way_b.port_b, port_out);
-  annotation(Documentation(info = "<html><p>A spool between both sides of a closed circuit joins the low side to the outlet as soon as the high side exceeds it by <code>dp_open</code>; in the middle both are closed.</p></html>"));
+  annotation(Documentation(info = "<html><p>A spool between both sides of a closed circuit joins the low side to the outlet as soon as the high side exceeds it by <code>dp_open</code>; in the middle both are closed. The spool has no mass: valid for changes slower than some 10 ms. Source: J. Ivantysyn and M. Ivantysynova, Hydrostatic Pumps and Motors, 2001, closed circuits.</p></html>"));
 end FlushingValve;

@@ -14,5 +14,5 @@ equation
   connect(half_a.port_b, volume.port);
   connect(volume.port, half_b.port_a);
   connect(half_b.port_b, port_b);
-  annotation(Documentation(info = "<html><p>Two halves of a resistance with a compliant volume between; the inertia of the oil is left out. For waves take <code>Line</code> with <code>beta_wall</code>.</p></html>"));
+  annotation(Documentation(info = "<html><p>Two halves of a resistance with a compliant volume between; the inertia of the oil is left out. For waves take <code>Line</code> with <code>beta_wall</code>. Valid below a tenth of <code>c/L</code>. Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, section 3.10.</p></html>"));
 end Hose;

@@ -20,5 +20,5 @@ equation
   connect(loss_b.port_b, volume.port);
   connect(loss_c.port_b, volume.port);
   annotation(Documentation(info = "<html><p><code>dp = zeta rho/2 v^2</code> in each branch by the speed of that branch. The real coefficients depend on how the flow divides (0.1 to 1.3); take them from a handbook where they matter.</p>
-<p>Source: I. E. Idelchik, Handbook of Hydraulic Resistance, 2008, chapter 7, mean values for equal diameters.</p></html>"));
+<p>Source: I. E. Idelchik, Handbook of Hydraulic Resistance, 2008, chapter 7, mean values for equal diameters. Valid where the branches carry similar flows.</p></html>"));
 end Junction;

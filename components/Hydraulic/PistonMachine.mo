@@ -27,6 +27,8 @@ model PistonMachine "Axial piston machine, chamber by chamber: port timing, comp
   parameter SI.AngularVelocity w_s(min = 1e-3, max = 100, nominal = 1) = 1 "Width of the sign of speed in the dry friction";
   parameter Boolean useInput = false "true: the displacement follows u, -1 to 1" annotation(Evaluate = true);
   Interfaces.RealInput u if useInput "Displacement over the greatest one";
+  parameter Boolean useHeatPort = false "true: losses heat what is joined to heatPort" annotation(Evaluate = true);
+  Interfaces.HeatPort heatPort(Q_flow = -lossPower) if useHeatPort "Case: heat of the losses";
   SI.AngularVelocity w(nominal = 100) "Speed of the shaft";
   SI.Pressure dp(nominal = 1e6) "Pressure of A above B";
   SI.VolumeFlowRate Q_A(nominal = 1e-4) "Volume flow out of port A";
@@ -42,6 +44,7 @@ model PistonMachine "Axial piston machine, chamber by chamber: port timing, comp
 protected
   constant Real pi = Modelica.Constants.pi;
   parameter SI.Area A_p = pi*d^2/4 "Area of a piston";
+  parameter SI.Area A_drag = if drag then pi*d*h/2 else 0 "Area that the dragged oil adds to that of a piston: up to the middle of the gap";
   parameter Real s_o = sin(opening) "Sine of the opening angle";
   Interfaces.RealInput u_used "Displacement";
   SI.Angle phi[z] "Angles of the pistons, 0 at the outer dead centre";
@@ -70,7 +73,7 @@ equation
     (rho[i], beta[i]) = oil.density(p[i]);
     q_a[i] = C_d*(A_leak + A_port*Smooth.step(sin(phi[i] - timing_a)/s_o))*sqrt(4/(rho[i] + rho_a))*Smooth.root(p[i] - port_a.p, t);
     q_b[i] = C_d*(A_leak + A_port*Smooth.step(-sin(phi[i] - timing_b)/s_o))*sqrt(4/(rho[i] + rho_b))*Smooth.root(port_b.p - p[i], t);
-    q_l[i] = pi*d*h^3*(1 + 1.5*eps^2)/(12*oil.thickening(oil.mu, (p[i] + port_case.p)/2 - oil.p_0)*L)*(p[i] - port_case.p) - (if drag then pi*d*h*v[i]/2 else 0);
+    q_l[i] = pi*d*h^3*(1 + 1.5*eps^2)/(12*oil.thickening(oil.mu, (p[i] + port_case.p)/2 - oil.p_0)*L)*(p[i] - port_case.p) - A_drag*v[i];
     rho[i]*V[i]/beta[i]*der(p[i]) = rho[i]*A_p*v[i] - (rho[i] + rho_c)/2*q_l[i] - (rho[i] + rho_a)/2*q_a[i] + (rho[i] + rho_b)/2*q_b[i];
   end for;
   rho_a*Q_A = sum((rho[i] + rho_a)/2*q_a[i] for i in 1:z);
@@ -78,12 +81,13 @@ equation
   rho_b*port_b.q = sum((rho[i] + rho_b)/2*q_b[i] for i in 1:z);
   rho_c*port_case.q = -sum((rho[i] + rho_c)/2*q_l[i] for i in 1:z);
   T_loss = (T_c + k_p*z*A_p*H/(2*pi)*Smooth.mag(dp, 1e4))*Smooth.sgn(w, w_s) + b*w;
-  T_sh = sum((p[i] - port_case.p)*A_p*(H/2)*u_used*sin(phi[i]) for i in 1:z) + T_loss;
+  T_sh = sum((p[i] - port_case.p)*(A_p + A_drag)*(H/2)*u_used*sin(phi[i]) for i in 1:z) + T_loss;
   flange.tau = T_sh;
   mass = sum(rho[i]*V[i] for i in 1:z);
-  lossPower = sum(q_a[i]*(p[i] - port_a.p) + q_b[i]*(port_b.p - p[i]) + q_l[i]*(p[i] - port_case.p) for i in 1:z) + T_loss*w;
+  lossPower = sum(q_a[i]*(p[i] - port_a.p) + q_b[i]*(port_b.p - p[i]) + (q_l[i] + A_drag*v[i])*(p[i] - port_case.p) for i in 1:z) + T_loss*w;
   annotation(Documentation(info = "<html>
 <p>Piston i at <code>phi_i = theta + 2 pi i/z</code>, chamber <code>V_d + A_p H/2 (1 + cos phi_i)</code>; <code>V_i/beta dp_i/dt = A_p v_i - q_leak - q_A + q_B</code> in masses. The ports open over the angle <code>opening</code> from the dead centres on, with flow in both directions,
 so that compression, backflow at opening and the ripple of flow and torque come out of the equations: averaged, the loss per stroke is <code>(V_s + V_d) dp/beta</code>. The kinematic ripple for an odd number of pistons is <code>pi/(2 z) tan(pi/(4 z))</code> of the mean, peak to peak; 2.5 % for seven.</p>
-<p>The input <code>u</code> scales the stroke about its middle (variable displacement, over centre when negative). Very stiff: nanoseconds at open ports. Source: Zhang et al., Processes 2021, 9, 814, equations of section 4.2.2, with a port that lets oil back and with drag in the bore.</p></html>"));
+<p>With <code>drag</code> a piston drags half of the oil in its gap along, and the pressure drop along the gap pulls at the piston: together the piston is as large as the middle of the gap, which neither loses nor gives energy. The shear of the film itself is in <code>b</code>.</p>
+<p>The input <code>u</code> scales the stroke about its middle (variable displacement, over centre when negative); what the pistons move while the plate itself swings is left out. Very stiff: nanoseconds at open ports. Inertia of the oil in the ports and squeeze of the films are left out too: valid up to some thousand revolutions per minute. Source: Zhang et al., Processes 2021, 9, 814, equations of section 4.2.2, with a port that lets oil back and with drag in the bore.</p></html>"));
 end PistonMachine;

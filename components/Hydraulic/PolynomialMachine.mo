@@ -25,5 +25,5 @@ equation
   T_loss = D*p_nom*((m_0 + m_1*x + m_4*x*abs(u_used))*Smooth.sgn(w, w_s) + (m_2 + m_3*y)*w/w_nom);
   annotation(Documentation(info = "<html>
 <p>With pressure and speed over their nominal values: leakage <code>V n_nom (q_1 x + q_2 x^2 + q_3 x y + q_4 x u^2)</code>, torque loss <code>D p_nom (m_0 + m_1 x + m_2 y + m_3 y^2 + m_4 x u)</code>. Each term takes energy in all four quadrants, which free polynomials fitted to a map do not.</p>
-<p>Fit the coefficients to measured losses by least squares with non-negative coefficients; valid within the measured range. The form follows loss models with polynomials such as those of L. Zarotti and N. Nevegato (1982); terms that could give energy are left out.</p></html>"));
+<p>Fit the coefficients to measured losses by least squares with non-negative coefficients; valid within the measured range. Source: polynomials in pressure, speed and displacement as L. Zarotti and N. Nevegato, Pump efficiencies: approximation and modelling, 6th Int. Fluid Power Symposium 1981, introduced them. Their paper was not at hand: which terms they keep may differ from these, of which every one is passive.</p></html>"));
 end PolynomialMachine;

@@ -29,5 +29,5 @@ equation
   connect(feeding.port_b, port_b);
   connect(port_b, relieving.port_a);
   connect(relieving.port_b, port_t);
-  annotation(Documentation(info = "<html><p>Below <code>p_set</code> it feeds b as <code>PressureReducer</code> does; from <code>(1 + overlap droop) p_set</code> on it lets oil from b to the tank, so that an outer force cannot raise the pressure at b. Between both it is closed.</p></html>"));
+  annotation(Documentation(info = "<html><p>Below <code>p_set</code> it feeds b as <code>PressureReducer</code> does; from <code>(1 + overlap droop) p_set</code> on it lets oil from b to the tank, so that an outer force cannot raise the pressure at b. Between both it is closed. Mass of the spool and flow forces are in <code>tau</code> and <code>droop</code>. Source: H. Murrenhoff, Grundlagen der Fluidtechnik 1: Hydraulik, 2012.</p></html>"));
 end PressureReducerRelieving;

@@ -18,5 +18,5 @@ equation
   annotation(Documentation(info = "<html>
 <p>The opening grows in proportion to the pressure above <code>p_set</code>, the corners rounded over a tenth of the range, and is full at
 <code>p_set (1 + override)</code> (5 to 10 % is usual), where it passes <code>q_nom</code>. Closed in the other direction. Use <code>ReliefValveDynamic</code> where the delay of
-opening matters.</p></html>"));
+opening matters. Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, section 5.7.</p></html>"));
 end ReliefValve;

@@ -9,5 +9,5 @@ equation
   assert(p_set > 0, "The setting p_set must be positive");
   assert(K >= 0, "The conductance K must not be negative");
   q = K*Smooth.ramp(dp - p_set, w) + G_leak*dp;
-  annotation(Documentation(info = "<html><p>The law of <code>CheckValveLinear</code>: closed up to <code>p_set</code> but for <code>G_leak</code>, a parabola over the width <code>w</code>, then the straight line <code>K (dp - p_set - w/2)</code>. The flow never goes against the pressure. Simple stand-in for <code>ReliefValve</code>.</p></html>"));
+  annotation(Documentation(info = "<html><p>The law of <code>CheckValveLinear</code>: closed up to <code>p_set</code> but for <code>G_leak</code>, a parabola over the width <code>w</code>, then the straight line <code>K (dp - p_set - w/2)</code>. The flow never goes against the pressure. Simple stand-in for <code>ReliefValve</code>. Valid near one point of work: override over flow is a straight line.</p></html>"));
 end ReliefValveLinear;

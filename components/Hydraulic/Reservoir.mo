@@ -27,5 +27,5 @@ equation
   port.p = p + rho*Modelica.Constants.g_n*h;
   A*der(h) = port.q;
   mass = rho*A*h;
-  annotation(Documentation(info = "<html><p><code>A dh/dt = q</code>, <code>p_port = p + rho g h</code>. Closed, the gas is compressed as the level rises, <code>p (h_max - h)^n = const</code>: what differential cylinders do to a small sealed tank. The compressibility of the oil at this pressure is left out. The run ends when the reservoir runs dry or overflows.</p><p>Where the level does not matter: <code>Tank</code>.</p></html>"));
+  annotation(Documentation(info = "<html><p><code>A dh/dt = q</code>, <code>p_port = p + rho g h</code>. Closed, the gas is compressed as the level rises, <code>p (h_max - h)^n = const</code>: what differential cylinders do to a small sealed tank. The compressibility of the oil at this pressure is left out. The run ends when the reservoir runs dry or overflows.</p><p>Where the level does not matter: <code>Tank</code>. Source: hydrostatics.</p></html>"));
 end Reservoir;

@@ -17,5 +17,5 @@ equation
   connect(way_a.port_b, port_out);
   connect(port_b, way_b.port_a);
   connect(way_b.port_b, port_out);
-  annotation(Documentation(info = "<html><p>The outlet is joined to the side of higher pressure; the ball changes over smoothly within the pressure difference w.</p></html>"));
+  annotation(Documentation(info = "<html><p>The outlet is joined to the side of higher pressure; the ball changes over smoothly within the pressure difference w. Within w both inlets are joined to each other through the ball: valid where they seldom stand so close. Source: H. Murrenhoff, Grundlagen der Fluidtechnik 1: Hydraulik, 2012.</p></html>"));
 end ShuttleValve;

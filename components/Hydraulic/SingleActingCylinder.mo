@@ -30,5 +30,5 @@ equation
   connect(piston.flange_b, flange);
   seal.p_1 = chamber.p - p_ambient;
   seal.p_2 = 0;
-  annotation(Documentation(info = "<html><p><code>m dv/dt = A (p - p_a) - F_0 - c s - f_seal</code>, end stops at both ends; friction replaceable as in <code>Cylinder</code>.</p></html>"));
+  annotation(Documentation(info = "<html><p><code>m dv/dt = A (p - p_a) - F_0 - c s - f_seal</code>, end stops at both ends; friction replaceable as in <code>Cylinder</code>. Rod side open to the surroundings. Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, section 6.1.</p></html>"));
 end SingleActingCylinder;

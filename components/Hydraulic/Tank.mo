@@ -4,5 +4,5 @@ model Tank "Open or pressurised tank of constant pressure"
   parameter SI.Pressure p(min = 0, nominal = 1e5) = 101325 "Pressure of the tank";
 equation
   port.p = p;
-  annotation(Documentation(info = "<html><p>Takes and gives any amount of oil at one pressure. It is what gives a circuit its level of pressure.</p></html>"));
+  annotation(Documentation(info = "<html><p>Takes and gives any amount of oil at one pressure. It is what gives a circuit its level of pressure. Level and heating are left out: <code>Reservoir</code>, <code>Thermal.OilMass</code>.</p></html>"));
 end Tank;

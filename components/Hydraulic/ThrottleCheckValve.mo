@@ -11,5 +11,5 @@ equation
   connect(throttle.port_b, port_b);
   connect(port_b, check.port_a);
   connect(check.port_b, port_a);
-  annotation(Documentation(info = "<html><p>A throttle from a to b with a check valve that opens from b to a.</p></html>"));
+  annotation(Documentation(info = "<html><p>A throttle from a to b with a check valve that opens from b to a. No mass of the poppet.</p></html>"));
 end ThrottleCheckValve;

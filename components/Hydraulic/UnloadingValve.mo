@@ -23,5 +23,5 @@ equation
   tau*der(x) = (if unloading then 1 else 0) - x;
   q = Functions.orificeFlow(dp, A_leak + max(x, 0)*A_max, C_d, rho, oil.mu, Re_cr);
   port_x.q = 0;
-  annotation(Documentation(info = "<html><p>Charging an accumulator: pump, check valve, accumulator with the pilot behind the check valve; at <code>p_set</code> the pump is joined to the tank, at <code>(1 - hysteresis) p_set</code> it charges again. The snap of the pilot stage is an event, the main spool a lag.</p></html>"));
+  annotation(Documentation(info = "<html><p>Charging an accumulator: pump, check valve, accumulator with the pilot behind the check valve; at <code>p_set</code> the pump is joined to the tank, at <code>(1 - hysteresis) p_set</code> it charges again. The snap of the pilot stage is an event, the main spool a lag. Source: H. Murrenhoff, Grundlagen der Fluidtechnik 1: Hydraulik, 2012.</p></html>"));
 end UnloadingValve;

@@ -17,5 +17,5 @@ equation
   connect(edge_PA.port_b, port_A);
   connect(port_A, edge_AT.port_a);
   connect(edge_AT.port_b, port_T);
-  annotation(Documentation(info = "<html><p>u = 1 joins P to A, u = 0 joins A to T, both closed in between; motion of the spool by <code>Spool</code>, replaceable.</p></html>"));
+  annotation(Documentation(info = "<html><p>u = 1 joins P to A, u = 0 joins A to T, both closed in between; motion of the spool by <code>Spool</code>, replaceable. Flow forces are left out.</p></html>"));
 end Valve32;

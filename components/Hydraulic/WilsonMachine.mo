@@ -11,5 +11,5 @@ equation
   assert(c_s >= 0 and c_t >= 0 and c_d >= 0 and c_f >= 0 and T_0 >= 0, "Loss coefficients must not be negative");
   Q_leak = c_s*D*dp/mu + c_t*V^(2/3)*sqrt(2/rho_high)*dp/(dp^2 + 1e6)^0.25;
   T_loss = c_d*D*mu*w + (c_f*D*Smooth.mag(dp, 1e4) + T_0)*Smooth.sgn(w, w_s);
-  annotation(Documentation(info = "<html><p>Source: W. E. Wilson, Proc. ASME 1946; W. M. J. Schloesser, Hydraulic Power Transmission 1961. The leakage by slip is <code>c_s dp V/(2 pi mu)</code>.</p></html>"));
+  annotation(Documentation(info = "<html><p>Source: W. E. Wilson, Proc. ASME 1946; W. M. J. Schloesser, Hydraulic Power Transmission 1961. The leakage by slip is <code>c_s dp V/(2 pi mu)</code>; the turbulent one is laminar within 1 kPa of no pressure difference. One coefficient each over the whole range: good within some per cent of efficiency at half to full load, poor at low speed. Compression of the oil is not told apart from slip.</p></html>"));
 end WilsonMachine;

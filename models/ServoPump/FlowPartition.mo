@@ -1,39 +1,18 @@
 within ServoPump;
 model FlowPartition "Limits of the dead, load and saturation zones of the flow over pressure (paper's section 4)"
+  extends SpeedLimits;
   parameter SI.Pressure p_load(min = 1e5, max = 25e6, nominal = 1e7) = 21e6 "Load pressure p_A - p_B at the end";
-  parameter SI.Pressure p_low(min = 5e4, nominal = 5e5) = 5e5 "Pressure of the low side";
   parameter Real theta_oil(unit = "degC", min = 0, max = 90) = 35 "Temperature of the oil";
-  parameter Real N_pump(unit = "rev/min", min = 1) = 3000 "Rated speed of the pump";
-  parameter Real N_motor(unit = "rev/min", min = 1) = 3000 "Rated speed of the motor";
-  parameter SI.Torque T_max(min = 0) = 3.18 "Continuous torque of the motor";
-  parameter SI.Voltage U_max(min = 0) = 540/sqrt(3) "Greatest phase voltage, peak";
-  parameter SI.Resistance R_s(min = 0) = 0.176 "Resistance of a phase";
-  parameter SI.Inductance L(min = 0) = 0.314e-3 "Inductance of a phase";
-  parameter SI.MagneticFlux psi(min = 1e-4) = 0.08 "Flux of the magnets";
-  parameter Integer pairs(min = 1) = 8 "Pole pairs";
-  parameter Real R_suction(unit = "Pa.s2/m6", min = 0) = 1e14 "Drop of the suction line over the square of the flow";
-  parameter SI.Pressure p_cav(min = 0, nominal = 1e5) = 5e4 "Least pressure at the inlet";
   inner Oil.ServoPumpOil oil(T_0 = Modelica.Units.Conversions.from_degC(theta_oil)) "Oil";
   Signal.Ramp pressure(offset = 1e5, height = p_load - 1e5, duration = 1) "Course of the load pressure";
   Hydraulic.PressureSource side_B(p = p_low) "Low side";
   Hydraulic.PressureSource side_A(useInput = true) "High side";
-  Mechanical.Rotational.Speed motor "Speed at which that is so";
-  BenchPump pump(compression = false) "Pump at the end of its dead zone: it delivers nothing";
-  SI.Pressure dp(nominal = 1e7) "Load pressure";
+  Mechanical.Rotational.Speed motor "Speed at which the pump delivers nothing: the end of its dead zone";
   Real N_d(unit = "rev/min", nominal = 10) "End of the dead zone: the pump just covers its leakage";
-  Real N_U(unit = "rev/min", nominal = 1e3) "Limit by the voltage";
-  Real N_T(unit = "rev/min", nominal = 1e3) "Limit by the torque, negative where it does not suffice at any speed";
-  Real N_cav(unit = "rev/min", nominal = 1e3) "Limit by cavitation at the inlet";
-  Real N_s(unit = "rev/min", nominal = 1e3) "Begin of the saturation zone: the least of the limits";
-  SI.VolumeFlowRate Q_s(nominal = 1e-5) "Flow there";
+  SI.VolumeFlowRate Q_s(nominal = 1e-5) "Flow at the begin of the saturation zone";
   SI.Volume slope(nominal = 1e-6, displayUnit = "ml") "Flow over speed in the load zone, per revolution";
 protected
-  constant Real pi = Modelica.Constants.pi;
-  parameter Real D(unit = "m3/rad") = pump.V/(2*pi) "Displacement per radian";
   SI.AngularVelocity w_d(nominal = 1) "Speed at the end of the dead zone";
-  SI.Torque T(nominal = 1) "Torque at the voltage limit";
-  SI.Current i_q(nominal = 1) "Current there";
-  SI.AngularVelocity w_U(nominal = 400, start = 400) "Speed there";
 equation
   connect(side_B.port, pump.port_b);
   connect(side_A.port, pump.port_a);
@@ -43,19 +22,11 @@ equation
   motor.w_ref = w_d;
   pump.Q_A = 0;
   N_d = Modelica.Units.Conversions.to_rpm(w_d);
-  T = D*dp + pump.T_c + pump.k_p*D*dp + pump.b*w_U;
-  T = 1.5*pairs*psi*i_q;
-  (R_s*i_q + pairs*w_U*psi)^2 + (pairs*w_U*L*i_q)^2 = U_max^2;
-  N_U = Modelica.Units.Conversions.to_rpm(w_U);
-  N_T = Modelica.Units.Conversions.to_rpm((T_max - pump.T_c - (1 + pump.k_p)*D*dp)/pump.b);
-  N_cav = 60*sqrt((p_low - p_cav)/R_suction)/pump.V;
-  N_s = max(min(min(min(N_pump, N_motor), min(N_U, N_cav)), N_T), 0);
   Q_s = (pump.V - pump.sigma)*(N_s - N_d)/60;
   slope = pump.V - pump.sigma;
   annotation(
     experiment(StartTime = 0, StopTime = 1, Interval = 0.01, Tolerance = 1e-6),
     Documentation(info = "<html>
 <p>Time only carries the load pressure from 1 bar to <code>p_load</code>. Below <code>N_d</code> the pump covers its own leakage and gives no flow (dead zone); from there to <code>N_s</code> the flow grows with <code>slope</code> (load zone); above, the drive cannot follow (saturation zone). <code>N_s</code> is the least of what pump, motor,
-voltage, torque and cavitation allow.</p>
-<p>Voltage: <code>(R_s i_q + p w psi)^2 + (p w L i_q)^2 = U_max^2</code>; torque: <code>D dp + T_loss(w) = T_max</code>; cavitation: <code>p_low - R_suction Q^2 = p_cav</code>. The suction line is assumed, the paper gives none.</p></html>"));
+voltage, torque and cavitation allow, <code>SpeedLimits</code>. The flow over speed at one pressure is <code>FlowZones</code>.</p></html>"));
 end FlowPartition;

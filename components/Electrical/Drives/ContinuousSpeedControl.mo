@@ -9,5 +9,5 @@ equation
   v = K_p*(w_ref - w) + x;
   T = min(max(v, -T_max), T_max);
   der(x) = K_i*(w_ref - w) + K_i/K_p*(T - v);
-  annotation(Documentation(info = "<html><p><code>T = K_p e + x</code> with limits, <code>dx/dt = K_i (e + (T - v)/K_p)</code>: back calculation keeps the integral part from winding up. Interchangeable with <code>SampledSpeedControl</code>.</p></html>"));
+  annotation(Documentation(info = "<html><p><code>T = K_p e + x</code> with limits, <code>dx/dt = K_i (e + (T - v)/K_p)</code>: back calculation keeps the integral part from winding up. Interchangeable with <code>SampledSpeedControl</code>. Source: K. J. Astrom and T. Hagglund, PID Controllers, 1995, section 3.5.</p></html>"));
 end ContinuousSpeedControl;

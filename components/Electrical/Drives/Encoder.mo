@@ -14,5 +14,5 @@ equation
     counts = floor(N_c*flange.phi/(2*Modelica.Constants.pi));
     w = 2*Modelica.Constants.pi/N_c*(counts - pre(counts))/T_s;
   end when;
-  annotation(Documentation(info = "<html><p>Resolution <code>60/(N_c T_s)</code> r/min: 9.6 r/min with the defaults.</p></html>"));
+  annotation(Documentation(info = "<html><p>Resolution <code>60/(N_c T_s)</code> r/min: 9.6 r/min with the defaults. Below one line per sample the speed is told in pulses. No errors of the lines themselves.</p></html>"));
 end Encoder;

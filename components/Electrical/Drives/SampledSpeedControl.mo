@@ -11,5 +11,5 @@ equation
     x = min(max(pre(x) + K_i*T_s*e, -T_max), T_max);
     T = min(max(K_p*e + x, -T_max), T_max);
   end when;
-  annotation(Documentation(info = "<html><p>As <code>ContinuousSpeedControl</code>, carried out every <code>T_s</code>, the output held in between; integral part and output are limited.</p></html>"));
+  annotation(Documentation(info = "<html><p>As <code>ContinuousSpeedControl</code>, carried out every <code>T_s</code>, the output held in between; integral part and output are limited. Valid while the loop is slower than some ten samples.</p></html>"));
 end SampledSpeedControl;

@@ -11,5 +11,5 @@ equation
   assert(U_max > 0, "U_max must be positive");
   f = f_ref;
   U = min(U_b*Smooth.step(abs(f)/f_boost) + k_f*abs(f), U_max)/sqrt(3);
-  annotation(Documentation(info = "<html><p><code>U_LL = min(U_b + k_f f, U_max)</code>: constant flux but for the drop at the stator resistance, which the boost covers at low frequency. Switching is left out. Slip compensation: <code>VfSlipInverter</code>.</p></html>"));
+  annotation(Documentation(info = "<html><p><code>U_LL = min(U_b + k_f f, U_max)</code>: constant flux but for the drop at the stator resistance, which the boost covers at low frequency. Switching is left out. Slip compensation: <code>VfSlipInverter</code>. Source: W. Leonhard, Control of Electrical Drives, 2001.</p></html>"));
 end VfInverter;

@@ -17,5 +17,5 @@ equation
   tau*der(f_sl) = min(max(k_sl*T, -f_max), f_max) - f_sl;
   f = f_ref + f_sl;
   U = min(U_b*Smooth.step(abs(f)/f_boost) + k_f*abs(f), U_max)/sqrt(3);
-  annotation(Documentation(info = "<html><p>As <code>VfInverter</code>, with <code>f = f_ref + k_sl T</code> behind a lag: the drop of speed under load shrinks, and so does the damping that it gives. <code>k_sl = 1/(2 pi K_m/p)</code> with the stiffness <code>K_m</code> of the motor compensates the slip fully; real inverters stop at 80 % of that.</p></html>"));
+  annotation(Documentation(info = "<html><p>As <code>VfInverter</code>, with <code>f = f_ref + k_sl T</code> behind a lag: the drop of speed under load shrinks, and so does the damping that it gives. <code>k_sl = 1/(2 pi K_m/p)</code> with the stiffness <code>K_m</code> of the motor compensates the slip fully; real inverters stop at 80 % of that. Valid for slow changes of the torque, against <code>tau</code>. Source: W. Leonhard, Control of Electrical Drives, 2001.</p></html>"));
 end VfSlipInverter;

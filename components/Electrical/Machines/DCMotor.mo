@@ -17,5 +17,5 @@ equation
   p.v - n.v = R*i + L*der(i) + k*w;
   T_e = k*i;
   flange.tau = -T_e;
-  annotation(Documentation(info = "<html><p><code>v = R i + L di/dt + k w</code>, <code>T = k i</code>. Armature reaction and brushes are left out.</p></html>"));
+  annotation(Documentation(info = "<html><p><code>v = R i + L di/dt + k w</code>, <code>T = k i</code>. Armature reaction and brushes are left out. Valid without field weakening. Source: P. C. Krause, Analysis of Electric Machinery, chapter 2.</p></html>"));
 end DCMotor;

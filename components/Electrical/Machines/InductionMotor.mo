@@ -58,5 +58,5 @@ equation
   T_e = 1.5*p*(psi_ds*i_qs - psi_qs*i_ds);
   P_cu = 1.5*(R_1*(i_ds^2 + i_qs^2) + R_2*(i_dr^2 + i_qr^2));
   flange.tau = -T_e + B*w;
-  annotation(Documentation(info = "<html><p>Peak values, d axis along the supply voltage. In steady state equal to <code>InductionMotorSteady</code>. Defaults: 50 hp, 460 V, 60 Hz, four poles. Joined to a heat capacity (<code>useHeatPort</code>) the windings warm up: the rotor slips more under load. Source: P. C. Krause, Analysis of Electric Machinery, chapter 4.</p></html>"));
+  annotation(Documentation(info = "<html><p>Peak values, d axis along the supply voltage. In steady state equal to <code>InductionMotorSteady</code>. Defaults: 50 hp, 460 V, 60 Hz, four poles. Joined to a heat capacity (<code>useHeatPort</code>) the windings warm up: the rotor slips more under load. Source: P. C. Krause, Analysis of Electric Machinery, chapter 4. Saturation, iron loss and harmonics are left out.</p></html>"));
 end InductionMotor;

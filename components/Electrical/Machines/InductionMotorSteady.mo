@@ -51,5 +51,5 @@ equation
   P_cu = 3*R_1*I_1^2 + T_e*w_sl/p;
   flange.tau = -T_e + B*w;
   annotation(Documentation(info = "<html><p>T circuit: stator <code>R_s + j w_e L_ls</code>, magnetizing <code>j w_e L_m</code>, rotor <code>R_r w_e/w_sl + j w_e L_lr</code>, multiplied through with the slip so that nothing is singular at no load. <code>T_e = 3 p I_2^2 R_r/w_sl</code>.
-The rotor loses the share of the slip in the power of the air gap. No electrical transients. Source: P. C. Krause, Analysis of Electric Machinery, chapter 4.</p></html>"));
+The rotor loses the share of the slip in the power of the air gap. No electrical transients. Source: P. C. Krause, Analysis of Electric Machinery, chapter 4. Valid where speed and supply change slowly against the leakage time constants (some 10 ms).</p></html>"));
 end InductionMotorSteady;

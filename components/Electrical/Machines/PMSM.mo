@@ -41,5 +41,5 @@ equation
   P_cu = 1.5*R*(i_d^2 + i_q^2);
   flange.tau = -T_e + P_fe/w_nom^2*w + T_cog*sin(h_c*flange.phi);
   annotation(Documentation(info = "<html><p>Currents and voltages are peak values of a phase; <code>T_e = 3/2 p (psi_f i_q + (L_d - L_q) i_d i_q)</code>. Iron loss is a resistor across the EMF, in torque a viscous term.
-Defaults: motor of Zhang et al., Processes 2021, 9, 814, table 1, with eight pole pairs and 0.08 Wb (0.8 Wb as printed would give 2 kV). Source: P. C. Krause, Analysis of Electric Machinery.</p></html>"));
+Defaults: motor of Zhang et al., Processes 2021, 9, 814, table 1, with eight pole pairs and 0.08 Wb (0.8 Wb as printed would give 2 kV). Source: P. C. Krause, Analysis of Electric Machinery. Saturation and harmonics of the flux are left out.</p></html>"));
 end PMSM;

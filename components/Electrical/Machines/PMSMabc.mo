@@ -41,5 +41,5 @@ equation
   T_e = -p*(psi_f*sum(sin(theta - (j - 1)*third)*i[j] for j in 1:3) + L_B*sum(sum(sin(2*theta - (j + k - 2)*third)*i[k]*i[j] for k in 1:3) for j in 1:3));
   flange.tau = -T_e;
   annotation(Documentation(info = "<html><p><code>v = R_s i + d psi/dt</code> in phases, <code>psi = L(theta) i + psi_f(theta)</code> with <code>L_jj = L_ls + L_A + L_B cos(2 theta - 2 j 2pi/3)</code> and <code>L_jk = -L_A/2 + L_B cos(2 theta - (j + k) 2pi/3)</code>, j and k from 0;
-with currents that sum to zero the constant part is <code>(L_ls + 3/2 L_A) i_j</code>. The two independent currents are given in rotor axes. Source: Zhang et al., Processes 2021, 9, 814, section 3.1; P. C. Krause, Analysis of Electric Machinery.</p></html>"));
+with currents that sum to zero the constant part is <code>(L_ls + 3/2 L_A) i_j</code>. The two independent currents are given in rotor axes. Source: Zhang et al., Processes 2021, 9, 814, section 3.1; P. C. Krause, Analysis of Electric Machinery. Saturation, iron loss and heat are left out: they are in <code>PMSM</code>.</p></html>"));
 end PMSMabc;

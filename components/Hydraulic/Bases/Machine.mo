@@ -15,10 +15,11 @@ partial model Machine "Displacement machine in four quadrants: delivery and torq
   parameter SI.Pressure p_fill(min = 100, max = 1e6, nominal = 1e4) = 3e4 "Inlet pressure above p_cav from which on the chambers fill";
   parameter SI.Pressure p_film0(nominal = 1e5) = oil.p_0 "Pressure above which the mean pressure of the gaps thickens the oil";
   parameter Boolean useInput = false "true: the displacement follows u, -1 to 1" annotation(Evaluate = true);
-  parameter Boolean useHeatPort = false "true: losses heat what is joined to heatPort" annotation(Evaluate = true);
+  parameter Boolean useHeatPort = false "true: losses heat what is joined to heatPort, and the oil in the gaps has the temperature there" annotation(Evaluate = true);
   Interfaces.RealInput u(unit = "1") if useInput "Displacement over V";
-  Interfaces.HeatPort heatPort(Q_flow = -lossPower) if useHeatPort "Heat of the losses";
+  Interfaces.HeatPort heatPort(T = T_case, Q_flow = -lossPower) if useHeatPort "Case: heat of the losses";
   SI.AngularVelocity w(nominal = 100) "Speed of the shaft";
+  SI.Temperature T_case(nominal = 300) "Temperature of the case and of the oil in the gaps";
   SI.Pressure dp(nominal = 1e6) "Pressure of A above B";
   SI.VolumeFlowRate Q_A(nominal = 1e-4) "Volume flow out of port A";
   SI.VolumeFlowRate Q_leak(nominal = 1e-7) "Internal leakage from A to B, at the density of the high side";
@@ -33,6 +34,7 @@ protected
   Real n_abs(unit = "Hz") "Its magnitude, rounded over 1e-3 rev/s";
   Real side(unit = "1") "1: A is the high side, 0: B is";
   Real fill(unit = "1") "Filling of the chambers";
+  SI.DynamicViscosity mu_case(nominal = 0.03) "Viscosity at the temperature of the case and low pressure";
   SI.DynamicViscosity mu(nominal = 0.03) "Viscosity in the gaps";
   Real thin(unit = "1") "Leakage over that at mu_G";
   SI.Density rho_a(nominal = 1000) "Density at A";
@@ -57,7 +59,13 @@ equation
   rho_b = oil.density(port_b.p);
   side = (1 + Smooth.sgn(dp, 2e4))/2;
   rho_high = side*rho_a + (1 - side)*rho_b;
-  mu = oil.thickening(oil.mu, (port_a.p + port_b.p)/2 - p_film0);
+  if useHeatPort then
+    mu_case = oil.viscosity(T_case);
+  else
+    T_case = oil.T;
+    mu_case = oil.mu;
+  end if;
+  mu = oil.thickening(mu_case, (port_a.p + port_b.p)/2 - p_film0);
   thin = if followViscosity then mu_G/mu else 1;
   if starvation then
     fill = Smooth.step(((port_a.p + port_b.p)/2 - Smooth.sgn(n*u_used, 1e-2)*dp/2 - p_cav)/p_fill);
@@ -89,6 +97,7 @@ equation
 <code>n (V + V_d) dp/beta</code>, motoring <code>n V_d dp/beta</code>; mass is conserved exactly. Without <code>compression</code> the displacement counts at the high side.</p>
 <p><b>Variable displacement</b>: u scales the displacement; half the swept volume and the dead volume together, which compression sees, do not change with it.</p>
 <p><b>Starvation</b>: delivery falls smoothly between <code>p_cav + p_fill</code> and <code>p_cav</code> of inlet pressure, and the torque with it.</p>
+<p><b>Heat</b>: with <code>useHeatPort</code> the losses go to what is joined to <code>heatPort</code>, and leakage and friction follow the temperature there: join it to the oil (<code>Thermal.OilMass</code>), or to a heat capacity for a case of its own with a conductor to the oil. Without, the gaps have the temperature of the circuit.</p>
 <p><b>Power lost</b>: <code>T_sh w - m_flow dp/rho_mean</code>. Brought from one side to the other without loss, oil takes <code>m_flow (h_A - h_B)</code>, h being the integral of dp/rho and <code>dp/rho_mean</code> its trapezoidal form: what valves count as lost and volumes store, so that the powers of a circuit add up. Compression costs <code>V n (1/2 + V_d/V) dp^2/beta</code>, just what opening the chambers to the ports dissipates. Without <code>compression</code> the shaft does not pay for compressing the oil, and <code>V n dp^2/(2 beta)</code> is missing in the loss.</p>
 <p>Sources: J. Ivantysyn and M. Ivantysynova, Hydrostatic Pumps and Motors, 2001; compression: D. McCandlish and R. E. Dorey, Proc. IMechE B 198 (1984) 165.</p></html>"));
 end Machine;

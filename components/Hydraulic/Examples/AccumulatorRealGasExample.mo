@@ -1,7 +1,7 @@
 within Hydraulic.Examples;
 model AccumulatorRealGasExample "An accumulator of high pressure charged and discharged"
   inner Oil.ISOVG46 oil "Oil";
-  Signal.Sine sine(amplitude = 2e-4, f = 0.2);
+  Signal.Sine sine(amplitude = 1.2e-4, f = 0.2);
   FlowSource source(useInput = true);
   AccumulatorRealGas accumulator(V_0 = 1e-3, p_pre = 200e5, fill = 0.8);
 equation

@@ -25,5 +25,5 @@ equation
   der(z) = z_dot;
   f = sigma_0*z + sigma_1*exp(-(v/v_d)^2)*z_dot + B*v;
   annotation(Documentation(info = "<html><p><code>dz/dt = v - |v| sigma_0 z/g(v)</code>, <code>f = sigma_0 z + sigma_1 exp(-(v/v_d)^2) dz/dt + B v</code>; the fading damping keeps it passive.
-Source: C. Canudas de Wit, H. Olsson, K. J. Astrom, P. Lischinsky, IEEE Trans. Automat. Contr. 40 (1995) 419.</p></html>"));
+Source: C. Canudas de Wit, H. Olsson, K. J. Astrom, P. Lischinsky, IEEE Trans. Automat. Contr. 40 (1995) 419. Valid for holds of hours: a load near the limit creeps by some 20 um an hour.</p></html>"));
 end LuGre;

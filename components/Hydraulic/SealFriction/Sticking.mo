@@ -22,5 +22,5 @@ equation
   f_dry = F_c*(1 + (k_st - 1)*exp(-(v/v_s)^2));
   f_visc = B*v;
   f = f_fric;
-  annotation(Documentation(info = "<html><p>Coulomb friction that grows with both pressures, Stribeck curve, and exact sticking by events (Karnopp's idea without its band). For holding loads; <code>Stribeck</code> is smoother, <code>LuGre</code> has bristles.</p></html>"));
+  annotation(Documentation(info = "<html><p>Coulomb friction that grows with both pressures, Stribeck curve, and exact sticking by events (Karnopp's idea without its band). For holding loads; <code>Stribeck</code> is smoother, <code>LuGre</code> has bristles. Valid for seals without bristles: before it slides nothing moves. Source: D. Karnopp, J. Dyn. Syst. Meas. Control 107 (1985) 100; curve: B. Armstrong-Helouvry, P. Dupont, C. Canudas de Wit, Automatica 30 (1994) 1083.</p></html>"));
 end Sticking;

@@ -7,5 +7,5 @@ initial equation
 equation
   assert(tau > 0, "The time constant tau must be positive");
   tau*der(y) = min(max(u, -1), 1) - y;
-  annotation(Documentation(info = "<html><p><code>tau dy/dt + y = u</code>, u limited to -1 to 1.</p></html>"));
+  annotation(Documentation(info = "<html><p><code>tau dy/dt + y = u</code>, u limited to -1 to 1. For valves without a measured position, up to some <code>1/tau</code>. Source: H. Murrenhoff, Grundlagen der Fluidtechnik 1: Hydraulik, 2012, switching valves.</p></html>"));
 end FirstOrder;

@@ -11,5 +11,5 @@ equation
   assert(h >= 0 and tau > 0, "h must not be negative, tau must be positive");
   tau_h*der(z) = max(u - h/2 - z, 0) + min(u + h/2 - z, 0);
   tau*der(y) = min(max(z, -1), 1) - y;
-  annotation(Documentation(info = "<html><p>Play of the width h (friction of the spool) before a lag: y follows only when the command has passed the play.</p></html>"));
+  annotation(Documentation(info = "<html><p>Play of the width h (friction of the spool) before a lag: y follows only when the command has passed the play. Valid for play that does not depend on the rate. Source: H. Murrenhoff, Grundlagen der Fluidtechnik 1: Hydraulik, 2012, proportional valves without measured position.</p></html>"));
 end Hysteretic;

@@ -11,5 +11,5 @@ equation
   assert(w_0 > 0 and D > 0 and rate > 0, "w_0, D and rate must be positive");
   der(y) = yd;
   der(yd) = 2*D*w_0*(min(max(w_0/(2*D)*(min(max(u, -1), 1) - y), -rate), rate) - yd);
-  annotation(Documentation(info = "<html><p>The command of rate, <code>w_0/(2 D)(u - y)</code>, is limited and followed by a lag: within the limit that is <code>y'' + 2 D w_0 y' + w_0^2 y = w_0^2 u</code>.</p></html>"));
+  annotation(Documentation(info = "<html><p>The command of rate, <code>w_0/(2 D)(u - y)</code>, is limited and followed by a lag: within the limit that is <code>y'' + 2 D w_0 y' + w_0^2 y = w_0^2 u</code>. Source: frequency and step responses as data sheets of servo and proportional valves give them.</p></html>"));
 end SecondOrder;

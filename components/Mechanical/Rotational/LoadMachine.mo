@@ -21,5 +21,5 @@ equation
   T_L = (c_00 + c_10*u_f + c_20*u_f^2)*Smooth.sgn(w, w_s) + (c_01 + c_11*u_f)*w + c_02*w*sqrt(w^2 + 1e-6);
   flange.tau = T_L;
   annotation(Documentation(info = "<html><p><code>T_L = (c_00 + c_10 u + c_20 u^2) sign(w) + (c_01 + c_11 u) w + c_02 w |w|</code>, the sign rounded over <code>w_s</code>: a brake, passive as long as the brackets stay positive. A pump against a proportional relief valve, an eddy current brake and a fan have this form.
-The command is dimensionless or in the unit of its source.</p></html>"));
+The command is dimensionless or in the unit of its source. Polynomials hold within the range that they were fitted to.</p></html>"));
 end LoadMachine;

@@ -21,5 +21,5 @@ equation
   eta_ab = 1 - (1 - eta)*noEvent(max(side, 0)) - (1/eta - 1)*noEvent(min(side, 0));
   flange_b.tau = -ratio*eta_ab*flange_a.tau;
   lossPower = power*(1 - eta_ab);
-  annotation(Documentation(info = "<html><p>Torque at b is <code>eta</code> times the ideal one where a drives and <code>1/eta</code> times where b drives. Around zero power the loss sets in over <code>P_0</code>; it is negative nowhere.</p></html>"));
+  annotation(Documentation(info = "<html><p>Torque at b is <code>eta</code> times the ideal one where a drives and <code>1/eta</code> times where b drives. Around zero power the loss sets in over <code>P_0</code>; it is negative nowhere. Valid in motion: at rest nothing holds, where real gears of low efficiency lock. Source: C. Pelchen, C. Schweiger, M. Otter, Modeling and simulating the efficiency of gearboxes, Modelica Conference 2002.</p></html>"));
 end LossyGear;

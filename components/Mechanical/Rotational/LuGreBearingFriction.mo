@@ -15,5 +15,5 @@ equation
   z_dot = w - sqrt(w*w + (w_s*1e-6)^2)*sigma_0*z/g;
   der(z) = z_dot;
   tau = sigma_0*z + sigma_1*exp(-(w/w_d)^2)*z_dot + d*w;
-  annotation(Documentation(info = "<html><p>Source: C. Canudas de Wit, H. Olsson, K. J. Astrom, P. Lischinsky, IEEE Trans. Automat. Contr. 40 (1995) 419; the damping fades with speed, which keeps it passive.</p></html>"));
+  annotation(Documentation(info = "<html><p>Source: C. Canudas de Wit, H. Olsson, K. J. Astrom, P. Lischinsky, IEEE Trans. Automat. Contr. 40 (1995) 419; the damping fades with speed, which keeps it passive. Valid for motions of rigid bodies: held long it creeps, at a millionth of <code>w_s</code>.</p></html>"));
 end LuGreBearingFriction;

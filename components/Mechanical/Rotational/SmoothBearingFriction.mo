@@ -9,5 +9,5 @@ equation
   assert(w_c > 0, "w_c must be positive");
   x = w/w_s;
   tau = e_2*(tau_s - tau_c)*exp(-x*x)*x + tau_c*Smooth.sgn(w, w_c) + d*w;
-  annotation(Documentation(info = "<html><p><code>sqrt(2 e)(tau_s - tau_c) exp(-x^2) x + tau_c tanh(v/w_c) + d v</code>. A load below the Coulomb torque moves it with <code>w_c atanh(load/tau_c)</code>. Choose <code>w_c</code> such that inertia times <code>w_c/tau_c</code> stays at some milliseconds.</p></html>"));
+  annotation(Documentation(info = "<html><p><code>sqrt(2 e)(tau_s - tau_c) exp(-x^2) x + tau_c tanh(v/w_c) + d v</code>. A load below the Coulomb torque moves it with <code>w_c atanh(load/tau_c)</code>. Choose <code>w_c</code> such that inertia times <code>w_c/tau_c</code> stays at some milliseconds. Source: form of the rotational friction in MathWorks' Simscape documentation.</p></html>"));
 end SmoothBearingFriction;

@@ -6,5 +6,5 @@ algorithm
   rho := rho_0;
   beta := beta_0;
   annotation(Inline = true, Documentation(info = "<html><p>Volume flows balance instead of masses, as in most textbooks: the oil that compression stores is not carried along, an error of dp/beta. For comparison with such models;
-<code>constantModulus</code> is the same oil with consistent density.</p></html>"));
+<code>constantModulus</code> is the same oil with consistent density. Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, chapter 2.</p></html>"));
 end constantDensity;

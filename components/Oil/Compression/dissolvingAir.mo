@@ -30,5 +30,5 @@ algorithm
   annotation(Inline = true, Documentation(info = "<html>
 <p>As <code>entrainedAir</code>, with the undissolved share <code>x_eq(p)</code> falling smoothly from 1 at p_0 to 0 at p_sat. The last term of the modulus is the air that
 goes into solution: it makes the oil softer in the transition. The argument <code>x_u</code> is not used. Suitable for slow processes only;
-dissolving takes seconds to minutes.</p></html>"));
+dissolving takes seconds to minutes. Source: Henry's law for the equilibrium, its transition rounded; the modulus is the exact derivative.</p></html>"));
 end dissolvingAir;
