@@ -131,10 +131,24 @@ fn an_orifice_opens_at_once_behind_a_closed_compensator() {
     assert!((least..most).contains(&q), "{q} m3/s");
 }
 
-/// Oil that comes from a source and goes into another, with no pressure given anywhere: of the loop that has no value,
-/// the operation is told that spoils it, not what reads it.
+/// Of a loop that has no value where it begins, the operation is told that spoils it, not what reads it.
 #[test]
 fn what_is_not_finite_in_a_loop_is_told_where_it_is_made() {
+    let simulation = circuit(
+        "Real x(start = 2);
+         Real rho;
+         Real q;",
+        "rho = min(x, 0);
+         q = sin(2/rho);
+         x + 0.1*sin(x) = 3 + 0.1*q;",
+    );
+    let told = simulation.run().expect_err("it divides by zero wherever it looks").to_string();
+    assert!(told.contains("2/rho") && told.contains("2/0"), "{told}");
+}
+
+/// Oil that comes from a source and goes into another, with no pressure given anywhere.
+#[test]
+fn oil_between_flow_sources_has_no_level() {
     let simulation = circuit(
         "inner Oil.ISOVG46 oil;
          Hydraulic.FlowSource into(q = 1e-4), out_of(q = -1e-4);
@@ -143,7 +157,18 @@ fn what_is_not_finite_in_a_loop_is_told_where_it_is_made() {
          connect(between.port_b, out_of.port);",
     );
     let told = simulation.run().expect_err("no pressures fit").to_string();
-    assert!(told.contains("2/between.rho") && told.contains("2/0"), "{told}");
+    assert!(told.contains("E302") && told.contains("{into, between, out_of}"), "{told}");
+    // a volume anywhere is a level: what else is wrong is told as before
+    let held = circuit(
+        "inner Oil.ISOVG46 oil;
+         Hydraulic.FlowSource into(q = 1e-4), out_of(q = -1e-4);
+         Hydraulic.Volume volume(V = 1e-4);
+         Hydraulic.Orifice between;",
+        "connect(into.port, between.port_a);
+         connect(between.port_b, volume.port);
+         connect(volume.port, out_of.port);",
+    );
+    held.run().expect("it runs");
 }
 
 /// A rod is pulled out of a closed cylinder with more than the pressure of the air holds.

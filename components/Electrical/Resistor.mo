@@ -2,7 +2,7 @@ within Electrical;
 model Resistor "Resistor, temperature dependent where a heat port is used"
   extends Bases.OnePort;
   parameter SI.Resistance R(min = 1e-6, max = 1e12, nominal = 1) = 1 "Resistance at T_ref";
-  parameter SI.LinearTemperatureCoefficient alpha = 0 "Temperature coefficient; copper 0.0039";
+  parameter SI.LinearTemperatureCoefficient alpha(min = -0.02, max = 0.02) = 0 "Temperature coefficient; copper 0.0039";
   parameter SI.Temperature T_ref(min = 1) = 293.15 "Temperature of R";
   parameter Boolean useHeatPort = false "true: heats what is joined to heatPort and follows its temperature" annotation(Evaluate = true);
   Interfaces.HeatPort heatPort(T = T, Q_flow = -lossPower) if useHeatPort "Heat";

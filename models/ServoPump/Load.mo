@@ -64,8 +64,8 @@ equation
   Q_A = pump.Q_A;
   T_e = drive.T_e;
   T_sh = pump.T_sh;
-  reserve_ideal = 1 - pump.V*pump.dp/(2*Modelica.Constants.pi)/T_rated;
-  reserve = 1 - (pump.T_sh + friction.tau)/T_rated;
+  reserve_ideal = 1 - pump.V*abs(pump.dp)/(2*Modelica.Constants.pi)/T_rated;
+  reserve = 1 - abs(pump.T_sh + friction.tau)/T_rated;
   annotation(
     experiment(StartTime = 0, StopTime = 8, Interval = 0.000625, Tolerance = 1e-5),
     Documentation(info = "<html><p>The standard deviation of <code>N_meas</code> over the last 2 s, all samples of the drive, is that of tables 3 (600 r/min, 2 to 19 MPa) and 4 (10 MPa, 300 to 3000 r/min). It comes from a torque ripple once per revolution in proportion to the load, passed on by the speed loop, and from the resolution of the encoder; Stribeck friction adds little.</p><p>The throttle is at A: with a negative speed the pump delivers into B, where nothing but the relief valve takes its flow.</p></html>"));

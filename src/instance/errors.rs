@@ -154,6 +154,16 @@ impl<'a> Instance<'a, '_> {
         self.report(d);
     }
 
+    /// `break connect(a, b)` of a connection that the class has not.
+    pub(super) fn unknown_connection(&mut self, a: &ast::Expr, b: &ast::Expr, class: &str) {
+        self.report(
+            Diagnostic::new(Code::UnknownModifier, format!("`{class}` has no `connect({a}, {b})` to leave out"))
+                .at(a.span, "not a connection of this class")
+                .class(class)
+                .help("write both ports as they stand there, in either order"),
+        );
+    }
+
     pub(super) fn unknown_attribute(&mut self, name: Symbol, span: Span, builtin: Builtin) {
         const ALL: [&str; 13] = [
             "start",

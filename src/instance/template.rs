@@ -317,6 +317,10 @@ impl<'a> Instance<'a, '_> {
                     continue;
                 }
                 ArgumentKind::BreakConnect(a, b) => {
+                    if !t.broken && !t.bases[inner as usize..].iter().any(|base| connects(base.ast, (a, b))) {
+                        let class = self.library.full_name(t.bases[inner as usize].class);
+                        self.unknown_connection(a, b, &class);
+                    }
                     for i in inner as usize..t.bases.len() {
                         t.bases[i].broken_connects.push((a, b));
                     }
@@ -387,6 +391,28 @@ impl<'a> Instance<'a, '_> {
             }
         }
     }
+}
+
+/// Whether a class connects two ports, written so.
+fn connects(class: &ast::Class, pair: (&ast::Expr, &ast::Expr)) -> bool {
+    fn among(equations: &[ast::Equation], pair: (&ast::Expr, &ast::Expr)) -> bool {
+        equations.iter().any(|equation| match &equation.kind {
+            ast::EquationKind::Connect(a, b) => same_pair((a, b), pair),
+            ast::EquationKind::If { branches, otherwise } => {
+                branches.iter().any(|(_, body)| among(body, pair)) || among(otherwise, pair)
+            }
+            ast::EquationKind::For { body, .. } => among(body, pair),
+            _ => false,
+        })
+    }
+    matches!(&class.body, ClassBody::Long(body) if among(&body.equations, pair))
+}
+
+/// Whether two pairs of ports are written alike, subscripts included (MLS 7.4).
+pub fn same_pair(a: (&ast::Expr, &ast::Expr), b: (&ast::Expr, &ast::Expr)) -> bool {
+    let text = |pair: (&ast::Expr, &ast::Expr)| (pair.0.to_string(), pair.1.to_string());
+    let (a, b) = (text(a), text(b));
+    a == b || (a.0 == b.1 && a.1 == b.0)
 }
 
 /// Whether two declarations of one name say the same, as inheriting an element twice requires (MLS 5.6.1.2).

@@ -6,7 +6,7 @@ use crate::flat::{Type, Variability};
 use crate::instance::deduce::Body;
 use crate::instance::lookup::Found;
 use crate::instance::reference::Selection;
-use crate::instance::template::{Base, Kind};
+use crate::instance::template::{Base, Kind, same_pair};
 use crate::instance::{Instance, Node, NodeId, ScopeId, View};
 use crate::syntax::ast::{self, ClassBody, ClassKind, Equation, EquationKind, Expr, ExprKind};
 use crate::syntax::symbol::Symbol;
@@ -457,11 +457,4 @@ fn is_broken(base: &Base<'_>, a: &Expr, b: &Expr) -> bool {
         _ => false,
     };
     names(a) || names(b) || base.broken_connects.iter().any(|(x, y)| same_pair((a, b), (x, y)))
-}
-
-/// Whether two pairs of ports are written alike, subscripts included (MLS 7.4).
-fn same_pair(a: (&Expr, &Expr), b: (&Expr, &Expr)) -> bool {
-    let text = |pair: (&Expr, &Expr)| (pair.0.to_string(), pair.1.to_string());
-    let (a, b) = (text(a), text(b));
-    a == b || (a.0 == b.1 && a.1 == b.0)
 }

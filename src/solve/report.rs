@@ -6,7 +6,7 @@ use crate::diag::{Code, Diagnostic};
 use crate::expr::{ExprId, VarId};
 use crate::flat::{Message, MessagePart, Origin, Type};
 use crate::lower::{System, Trap};
-use crate::structure::{Block, Dae, Unknown};
+use crate::structure::{Block, Dae, Loop, Unknown, places};
 
 /// Rows of a table in a message at most.
 const ROWS: usize = 8;
@@ -161,6 +161,10 @@ fn equation_diagnostic(dae: &Dae, code: Code, text: String, equation: u32) -> Di
 }
 
 fn loop_failure(system: &System, code: Code, failure: &NewtonFailure, values: &[f64], when: &str) -> Diagnostic {
+    let equation = failure.residuals.first().map(|r| r.0).or_else(|| failure.non_finite.first().copied());
+    if let Some(told) = equation.and_then(|e| no_pressure_level(&system.dae, loop_of(&system.dae, e)?)) {
+        return told;
+    }
     if let (Reason::NonFinite, Some(&equation)) = (&failure.reason, failure.non_finite.first())
         && let Some(trap) = trap_in_loop(system, equation, values)
     {
@@ -194,20 +198,63 @@ fn loop_failure(system: &System, code: Code, failure: &NewtonFailure, values: &[
 /// before the residual that reads it.
 fn trap_in_loop(system: &System, equation: u32, values: &[f64]) -> Option<(Trap, u32)> {
     let dae = &system.dae;
-    let blocks = dae.initial.iter().chain(&dae.event).flat_map(|block| match block {
-        Block::Mixed(mixed) => mixed.continuous.as_slice(),
-        other => std::slice::from_ref(other),
-    });
-    let mut inner = blocks.filter_map(|block| match block {
-        Block::Loop(l) if l.residuals.iter().any(|r| r.1 == equation) => Some(&l.inner),
-        _ => None,
-    });
-    let behind = inner.next().into_iter().flatten().find_map(|a| Some((system.trap(a.value, values)?, a.equation)));
+    let inner = loop_of(dae, equation).into_iter().flat_map(|l| &l.inner);
+    let behind = inner.clone().find_map(|a| Some((system.trap(a.value, values)?, a.equation)));
     behind.or_else(|| {
         let e = dae.equations.get(equation as usize)?;
         let trap = system.trap(e.lhs, values).or_else(|| system.trap(e.rhs, values))?;
         Some((trap, equation))
     })
+}
+
+/// The loop that an equation is a residual of.
+fn loop_of(dae: &Dae, equation: u32) -> Option<&Loop> {
+    let blocks = dae.initial.iter().chain(&dae.event).flat_map(|block| match block {
+        Block::Mixed(mixed) => mixed.continuous.as_slice(),
+        other => std::slice::from_ref(other),
+    });
+    let mut loops = blocks.filter_map(|block| match block {
+        Block::Loop(l) if l.residuals.iter().any(|r| r.1 == equation) => Some(l),
+        _ => None,
+    });
+    loops.next()
+}
+
+/// E302: a loop solves for pressures of ports, and none of another port enters it. That densities depend on them makes
+/// the equations regular, but fixes nothing: two flow sources with an orifice between need a tank.
+fn no_pressure_level(dae: &Dae, l: &Loop) -> Option<Diagnostic> {
+    let variable = |v: VarId| &dae.variables[v.index()];
+    let is_connector = |v: VarId| places::is_connector(&dae.variables, variable(v).origin.instance);
+    let names =
+        |v: VarId| std::iter::once(v).chain(dae.aliases.iter().filter(move |a| a.target == v).map(|a| a.variable));
+    let ports = |v: VarId| names(v).filter(|&v| !variable(v).flow && is_connector(v)).collect::<Vec<VarId>>();
+    let is_pressure = |v: &VarId| matches!(variable(*v).unit.as_deref(), Some("Pa" | "bar"));
+    let unknowns = l.tearing.iter().copied().chain(l.inner.iter().map(|a| a.unknown));
+    let solved: Vec<VarId> = unknowns.filter_map(|u| if let Unknown::Var(v) = u { Some(v) } else { None }).collect();
+    let levels: Vec<VarId> = solved.iter().copied().filter(is_pressure).flat_map(ports).collect();
+    let first = *levels.first()?;
+    let roots: Vec<ExprId> = l.inner.iter().map(|a| a.value).chain(l.residuals.iter().map(|r| r.0)).collect();
+    let mut read = dae.exprs.dependencies(&roots).vars.into_iter().filter(|v| !solved.contains(v));
+    if read.any(|v| is_pressure(&v) && !ports(v).is_empty()) {
+        return None;
+    }
+    let mut owners: Vec<&str> = Vec::new();
+    for &v in &levels {
+        let connector = dae.instances[variable(v).origin.instance as usize].parent;
+        let owner = dae.instances[connector as usize].name.as_str();
+        if !owner.is_empty() && !owners.contains(&owner) {
+            owners.push(owner);
+        }
+    }
+    let text = format!("nothing fixes the pressure level of {{{}}}", owners.join(", "));
+    let place = places::place_of(&dae.variables, &dae.instances, first);
+    let label = format!("`{}` and the others hang on each other alone", variable(first).name);
+    Some(
+        Diagnostic::new(Code::NoReference, text)
+            .at(place, label)
+            .note("no pressure from elsewhere enters their equations, and what the density changes with pressure does not fix it")
+            .help("connect a tank, a volume or a fixed pressure to one of these nodes"),
+    )
 }
 
 /// Discrete values without which something is undetermined, as the shares of two dry frictions that hold one shaft.

@@ -32,6 +32,6 @@ pub(crate) fn place_of(variables: &[Variable], instances: &[InstanceInfo], v: Va
 }
 
 /// Whether an instance has a flow variable of its own.
-pub(super) fn is_connector(variables: &[Variable], instance: u32) -> bool {
+pub(crate) fn is_connector(variables: &[Variable], instance: u32) -> bool {
     variables.iter().any(|v| v.flow && v.origin.instance == instance)
 }

@@ -17,9 +17,9 @@ model PMSM "Permanent magnet synchronous motor in rotor axes (dq, amplitude inva
   parameter SI.Temperature T(min = 200, max = 500) = 293.15 "Temperature of windings and magnets, without heatPort";
   parameter Boolean useHeatPort = false "true: temperature and losses go through heatPort" annotation(Evaluate = true);
   Interfaces.HeatPort heatPort(T = T_w, Q_flow = -(P_cu + P_fe/w_nom^2*w^2)) if useHeatPort "Windings and magnets";
-  parameter SI.Temperature T_ref = 293.15 "Temperature of R_s and psi_f";
-  parameter SI.LinearTemperatureCoefficient alpha_R = 0.0039 "Temperature coefficient of the resistance";
-  parameter SI.LinearTemperatureCoefficient alpha_psi = -0.0012 "Temperature coefficient of the flux";
+  parameter SI.Temperature T_ref(min = 200, max = 500) = 293.15 "Temperature of R_s and psi_f";
+  parameter SI.LinearTemperatureCoefficient alpha_R(min = 0, max = 0.02) = 0.0039 "Temperature coefficient of the resistance";
+  parameter SI.LinearTemperatureCoefficient alpha_psi(min = -0.01, max = 0) = -0.0012 "Temperature coefficient of the flux";
   SI.AngularVelocity w(nominal = 100) "Speed";
   SI.Torque T_e "Electromagnetic torque";
   SI.Power P_cu "Copper loss";
