@@ -290,7 +290,7 @@ def picture(rows, model, path):
 # --- the stiff set ----------------------------------------------------------------------------------------------------
 
 IN_C = ['Robertson', 'HiRes', 'VanDerPol', 'Pollution', 'E5', 'RingModulator', 'AkzoNobel', 'TransistorAmplifier', 'MedicalAkzo',
-        'Brusselator']
+        'Brusselator', 'CarAxis', 'Squeezer', 'SliderCrank', 'WaterTubes', 'Brusselator2D']
 
 def stiff_set(binary, program, full):
     """Steps and errors of the problems that are written in C too: medians over tolerances around each, the same for both,

@@ -6,6 +6,7 @@ mod disk;
 
 use bramah::results::Trajectory;
 use bramah::solve::{End, Statistics};
+use bramah::world::MemoryWorld;
 use bramah::{Request, Simulation};
 use disk::Disk;
 use std::path::{Path, PathBuf};
@@ -91,5 +92,26 @@ fn the_error_follows_the_tolerance() {
         assert!(errors[0] < 2e-2 && errors[2] < 1e-4, "{source}: {errors:?}");
         assert!(errors[1] < errors[0] / 1.5 && errors[2] < errors[1] / 1.5, "{source}: {errors:?}");
         assert!(errors[2] < errors[0] / 36.0, "{source}: {errors:?}");
+    }
+}
+
+/// Rows of masses with dry friction, hundreds of them sticking and slipping: they pass (one contact used to chatter to the
+/// end of the run), with as many events as they have, and a tight run says the same.
+#[test]
+fn chains_of_frictions_pass() {
+    for (n, events, within) in [(10, 29, 2e-3), (100, 344, 2e-2)] {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/models/Networks.mo");
+        let networks = std::fs::read_to_string(path).expect("the file is there");
+        let text = format!("{networks}model Run\n  extends Networks.Frictions(N = {n});\nend Run;\n");
+        let model = Some("Run".to_owned());
+        let request = Request { source: "run.mo".into(), model, ..Request::default() };
+        let world = MemoryWorld::single("run.mo", text);
+        let mut simulation = Simulation::compile(&world, &request).unwrap_or_else(|e| panic!("{e}"));
+        simulation.settings().event_rows = false;
+        let (usual, s) = run(&mut simulation, 1e-6);
+        assert!(s.events.abs_diff(events) * 20 <= events, "{n}: {} events", s.events);
+        let (tight, _) = run(&mut simulation, 1e-8);
+        let apart = difference(&usual, &tight, &["mass[1].s", "mass[1].v"]);
+        assert!(apart < within, "{n}: {apart}");
     }
 }

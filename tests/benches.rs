@@ -5,6 +5,8 @@
 
 mod rig;
 
+use std::process::Command;
+
 use bramah::Simulation;
 use bramah::results::Trajectory;
 use rig::{at, circuit, column, last, line, mean_from, near, run, shipped, shipped_with};
@@ -483,5 +485,21 @@ fn the_complete_bench_stays_near_the_reduced_circuit() {
         near(last(&t, "n_p"), n_p, 0.02);
         near(last(&t, "n_m"), n_m, 0.02);
         near(last(&t, "p"), p, 0.07);
+    }
+}
+
+/// The operating point that `steady` finds is the one to which the run leads.
+#[test]
+fn the_complete_bench_has_an_operating_point() {
+    let asked = ["steady", "ClosedCircuit.Bench", "--variables", "n_p,n_m,p"];
+    let found = Command::new(env!("CARGO_BIN_EXE_bramah")).args(asked).output().expect("it starts");
+    let (said, wrong) = (String::from_utf8_lossy(&found.stdout), String::from_utf8_lossy(&found.stderr));
+    assert!(found.status.success(), "{wrong}");
+    let mut simulation = shipped("ClosedCircuit.Bench");
+    let t = run(simulation.stop_time(240.0));
+    for name in ["n_p", "n_m", "p"] {
+        let line = said.lines().find_map(|l| l.trim().strip_prefix(&format!("{name} = "))).expect("told");
+        let value: f64 = line.split(' ').next().expect("a number").parse().expect("a number");
+        near(value, last(&t, name), 1e-4);
     }
 }

@@ -114,6 +114,24 @@ fn the_axis_follows_force_and_position() {
     }
 }
 
+/// Closed loop with the sampled controller and friction that sticks: 4.5 % of the force is published for it, 38 % without
+/// dry friction. The recording begins in motion: 7.45 um and, as its first voltage tells, 5.65 mm/s.
+#[test]
+fn the_sampled_loop_follows_the_force() {
+    let mut in_loop = study("Emps/gap.toml");
+    in_loop.class = Some("Emps.ClosedLoop".into());
+    in_loop.parameters.clear();
+    for (dry, share) in [(20.3935, 0.046), (0.0, 0.38)] {
+        let (bound, mut simulation) = tied(&in_loop, None);
+        let Some(train) = recordings(&bound, "data/emps", Role::Train) else { return };
+        for (name, value) in [("F_c", dry), ("q_start", 7.45e-6), ("v_start", 5.65e-3)] {
+            simulation.set(name, value).expect("a parameter");
+        }
+        let found = errors(&mut simulation, &bound, &train[0]);
+        assert!((found[1].0 / found[1].1 - share).abs() < 0.003, "{dry}: force {:?}", found[1]);
+    }
+}
+
 #[test]
 fn the_drives_follow_the_held_record_with_the_rectifying_pick_up() {
     for (class, wanted) in [("CoupledDrives.Nominal", 2.5), ("CoupledDrives.Complete", 0.5)] {

@@ -23,8 +23,8 @@ pub struct Sensitivity {
     pub parameters: Vec<(String, f64)>,
     /// By parameter: one column a variable, the change of the variable per change of the parameter by its size.
     pub columns: Vec<Vec<Vec<f64>>>,
-    /// Why they are differences; `None` where the run carried them along.
-    pub differences: Option<String>,
+    /// By parameter: why its columns are differences; `None` where the run carried them along.
+    pub differences: Vec<Option<String>>,
 }
 
 /// A parameter that is moved.
@@ -43,6 +43,12 @@ pub struct Moved {
 /// Step of the differences as a part of a parameter's size.
 const STEP: f64 = 1e-4;
 
+/// Trials that may fail before the rest of the parameters is left to differences.
+const MOST_DOUBTS: usize = 16;
+
+/// Per parameter: its columns as the run carried them along, or why it could not.
+type Carried = Vec<Result<Vec<Vec<f64>>, String>>;
+
 /// Sensitivities to `moved`, each with respect to a relative change.
 ///
 /// # Errors
@@ -54,15 +60,49 @@ pub fn sensitivity(
     interrupt: &AtomicBool,
 ) -> Result<Sensitivity, String> {
     let settings = Settings { event_rows: false, ..settings.clone() };
-    let parameters = moved.iter().map(|m| (m.name.clone(), m.size)).collect();
-    match by_equations(model, &settings, moved, interrupt) {
-        Ok((plain, columns)) => Ok(Sensitivity { plain, parameters, columns, differences: None }),
-        Err(why) => {
-            let plain = run(model, &settings, None, interrupt)?;
-            let tight = Settings { tolerance: settings.tolerance.min(TIGHT), ..settings.clone() };
-            let columns = by_differences(model, &tight, moved, interrupt)
-                .or_else(|_| by_differences(model, &settings, moved, interrupt))?;
-            Ok(Sensitivity { plain, parameters, columns, differences: Some(why) })
+    let (mut plain, mut doubts) = (None, MOST_DOUBTS);
+    let carried = carried(model, &settings, moved, (&mut plain, &mut doubts), interrupt);
+    let plain = plain.map_or_else(|| run(model, &settings, None, interrupt), Ok)?;
+    let doubtful = moved.iter().zip(&carried).filter(|(_, c)| c.is_err()).map(|(m, _)| m.clone());
+    let doubtful: Vec<Moved> = doubtful.collect();
+    let tight = Settings { tolerance: settings.tolerance.min(TIGHT), ..settings.clone() };
+    let mut others = by_differences(model, &tight, &doubtful, interrupt)
+        .or_else(|_| by_differences(model, &settings, &doubtful, interrupt))?
+        .into_iter();
+    let mut found = Sensitivity {
+        plain,
+        parameters: moved.iter().map(|m| (m.name.clone(), m.size)).collect(),
+        columns: Vec::new(),
+        differences: Vec::new(),
+    };
+    for carried in carried {
+        found.differences.push(carried.as_ref().err().cloned());
+        found.columns.push(carried.unwrap_or_else(|_| others.next().expect("one for each doubtful parameter")));
+    }
+    Ok(found)
+}
+
+/// By the equations, all at once where that holds. Where it does not, each half by itself and so on: one parameter that a
+/// run cannot carry along leaves the others exact.
+fn carried(
+    model: &Model,
+    settings: &Settings,
+    moved: &[Moved],
+    (plain, doubts): (&mut Option<Trajectory>, &mut usize),
+    interrupt: &AtomicBool,
+) -> Carried {
+    match by_equations(model, settings, moved, interrupt) {
+        Ok((rows, columns)) => {
+            plain.get_or_insert(rows);
+            columns.into_iter().map(Ok).collect()
+        }
+        Err(why) if moved.len() < 2 || *doubts == 0 => moved.iter().map(|_| Err(why.clone())).collect(),
+        Err(_) => {
+            *doubts -= 1;
+            let (first, second) = moved.split_at(moved.len() / 2);
+            let mut found = carried(model, settings, first, (plain, doubts), interrupt);
+            found.extend(carried(model, settings, second, (plain, doubts), interrupt));
+            found
         }
     }
 }
@@ -317,7 +357,7 @@ mod tests {
             assert!((s.columns[1][0][row] + 2.0 * t * x).abs() < 3e-4, "{t}");
             assert!((s.columns[2][0][row] - x).abs() < 3e-4, "{t}");
         }
-        assert_eq!((s.ranking(), s.differences.as_deref()), (vec![2, 1, 0], None));
+        assert_eq!((s.ranking(), s.differences.as_slice()), (vec![2, 1, 0], [None, None, None].as_slice()));
         assert_eq!(s.weight(0, 0), 0.0);
     }
 
@@ -352,7 +392,7 @@ mod tests {
                  equation assert({law}, \"beyond\"); der(x) = -k*p*noEvent(abs(x)); end M;"
             );
             let s = found(&text, &["p", "k"], "x", 1.0);
-            assert_eq!(s.differences, None, "{bound}");
+            assert_eq!(s.differences, [None, None], "{bound}");
             for (row, &t) in s.plain.times.iter().enumerate() {
                 let exact = -2.0 * t * 3.0 * (-2.0 * t).exp();
                 assert!((0..2).all(|p| (s.columns[p][0][row] - exact).abs() < 1e-4), "{bound} {t}");
@@ -377,10 +417,20 @@ mod tests {
                 "model M parameter Real p = 1; Real x(start = 0, fixed = true); equation der(x) = {law}; end M;"
             );
             let s = found(&text, &["p"], "x", 2.0);
-            assert_eq!(s.differences.as_deref(), why);
+            assert_eq!(s.differences[0].as_deref(), why);
             // x = p + 3 (t - p) in the end
             assert!((s.columns[0][0][50] + 2.0).abs() < 1e-3, "{}", s.columns[0][0][50]);
         }
+    }
+
+    /// A parameter that a run cannot carry along leaves the others exact.
+    #[test]
+    fn one_parameter_alone_is_left_to_differences() {
+        let text = "model M parameter Real p = 1, k = 2, q = 3, c = 1; Real x(start = 0, fixed = true), y(start = q, fixed = true);
+            equation der(x) = noEvent(if x < p then 1 else 3); der(y) = c - k*y + 0.01*x; end M;";
+        let s = found(text, &["k", "q", "p", "c"], "y", 2.0);
+        let why: Vec<bool> = s.differences.iter().map(Option::is_some).collect();
+        assert_eq!(why, [false, false, true, false], "{:?}", s.differences);
     }
 
     /// Across events against differences of tight runs: a mass that sticks and slips on a belt, and relief valves that open.
@@ -413,7 +463,7 @@ mod tests {
             "model M parameter Real g = 9.81, e = 0.7; Real h(start = 1, fixed = true), v(start = 0, fixed = true);
             equation der(h) = v; der(v) = -g; when h < 0 then reinit(v, -e*pre(v)); end when; end M;";
         let s = found(text, &["g", "e"], "h", 0.8);
-        assert_eq!(s.differences, None);
+        assert_eq!(s.differences, [None, None]);
         let height = |g: f64, e: f64, t: f64| {
             let fall = (2.0 / g).sqrt();
             if t < fall { 1.0 - g * t * t / 2.0 } else { e * g * fall * (t - fall) - g * (t - fall).powi(2) / 2.0 }

@@ -120,9 +120,7 @@ fn parameters(args: &SensitivityArgs, model: &Model) -> Result<Vec<Moved>, Failu
 fn words(found: &Sensitivity) -> String {
     let names: Vec<&str> = found.plain.signals.iter().map(|s| s.name.as_str()).collect();
     let mut out = format!("per cent of the range for 1 % of the parameter: {}\n", names.join(", "));
-    if let Some(why) = &found.differences {
-        out += &format!("by differences of runs: {why}\n");
-    }
+    out += &differences(found);
     let width = found.parameters.iter().map(|p| p.0.len()).max().unwrap_or(0);
     let order = found.ranking();
     for &p in order.iter().take(RANKED) {
@@ -134,6 +132,24 @@ fn words(found: &Sensitivity) -> String {
         out += &format!("  and {} weaker ones\n", order.len() - RANKED);
     }
     out
+}
+
+/// Which parameters are differences of runs, by reason.
+fn differences(found: &Sensitivity) -> String {
+    let mut reasons: Vec<(&str, Vec<&str>)> = Vec::new();
+    for ((name, _), why) in found.parameters.iter().zip(&found.differences) {
+        let Some(why) = why.as_deref() else { continue };
+        match reasons.iter_mut().find(|r| r.0 == why) {
+            Some((_, names)) => names.push(name),
+            None => reasons.push((why, vec![name])),
+        }
+    }
+    let all = found.parameters.len();
+    let line = |(why, names): (&str, Vec<&str>)| {
+        let which = if names.len() == all { String::new() } else { format!(", {}", names.join(", ")) };
+        format!("by differences of runs{which}: {why}\n")
+    };
+    reasons.into_iter().map(line).collect()
 }
 
 fn csv(found: &Sensitivity) -> Result<String, Failure> {

@@ -13,6 +13,8 @@ use rustc_hash::FxHashSet;
 const SHIFT: f64 = 1e-12;
 /// The shift where both sides have always been zero.
 const SMALLEST_SHIFT: f64 = 1e-300;
+/// Error of the solution, in tolerances: what IDA has seen cross may lie so far on the old side.
+const NEAR: f64 = 10.0;
 /// A time event is reached when time is this close, relative to the larger of both.
 const SAME_TIME: f64 = 1e-12;
 const NONE: u32 = u32::MAX;
@@ -118,7 +120,19 @@ impl Modes {
 
     /// The forced value while the difference is within the error of the solution.
     fn keep(&self, c: usize, computed: f64, distance: f64, size: f64) -> f64 {
-        if distance <= 10.0 * self.tolerance * size { self.forced[c] } else { computed }
+        if distance <= NEAR * self.tolerance * size { self.forced[c] } else { computed }
+    }
+
+    /// Takes note of a difference, for the size of a crossing.
+    pub fn seen(&mut self, crossing: usize, difference: f64) {
+        if difference.is_finite() {
+            self.size[crossing] = self.size[crossing].max(difference.abs());
+        }
+    }
+
+    /// Whether a difference is within the error of the solution, as far as its sizes so far tell.
+    pub fn near(&self, crossing: usize, difference: f64) -> bool {
+        difference.abs() <= NEAR * self.tolerance * self.size[crossing]
     }
 }
 
@@ -234,9 +248,8 @@ impl RootFunctions {
                 CrossingKind::Time(..) => 1.0,
             };
             let d = self.raw[f.raw] - f.base;
-            let size = &mut modes.size[f.crossing];
-            *size = size.max(if d.is_finite() { d.abs() } else { 0.0 });
-            let shift = SHIFT * size.max(f.base.abs()) + SMALLEST_SHIFT;
+            modes.seen(f.crossing, d);
+            let shift = SHIFT * modes.size[f.crossing].max(f.base.abs()) + SMALLEST_SHIFT;
             f.shift = side * if d * side < 0.0 { 2.0 * d.abs() + shift } else { shift };
         }
     }

@@ -75,11 +75,17 @@ impl Bound {
     }
 }
 
-/// The sensors' ranges in the units of the variables: as the study says, or peak to peak over `train`.
+/// The sensors' ranges in the units of the variables: as the study says, or peak to peak over `train`; of a signal that
+/// stands still its size.
 pub fn full_scales(bound: &Bound, train: &[Recording]) -> Vec<f64> {
     let range = |k: usize| {
         let values = || train.iter().flat_map(|r| r.signals[k].iter().copied()).filter(|v| !v.is_nan());
-        values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
+        let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+        match high - low {
+            range if range > 0.0 => range,
+            _ if high == 0.0 => 1.0,
+            _ => high.abs(),
+        }
     };
     bound.signals.iter().enumerate().map(|(k, s)| s.full_scale.unwrap_or_else(|| range(k))).collect()
 }

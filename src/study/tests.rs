@@ -82,6 +82,19 @@ fn a_study_becomes_recordings_in_the_units_of_the_model() {
     assert_eq!(bound.parameters[1].knowledge, Knowledge::Exact);
 }
 
+/// A sensor that stands still has its size for a range, so that errors have a measure.
+#[test]
+fn the_range_of_a_signal_that_stands_still() {
+    let study = STUDY.replace(", full_scale = \"2 bar\"", "");
+    for (cells, range) in [("1,1,1", 1e5), ("0,0,0", 1.0), ("0,1,1", 1e5)] {
+        let mut world = world(&study);
+        let rows: String = cells.split(',').zip(0..).map(|(cell, t)| format!("{t},60,{cell},1\n")).collect();
+        world.add("lab/a.csv", format!("t_s,q,level,T\n{rows}"));
+        let (bound, recordings) = load(&world).0.expect("readable");
+        assert_eq!(full_scales(&bound, &recordings), [range], "{cells}");
+    }
+}
+
 #[test]
 fn held_recordings_are_read_only_when_asked_for() {
     let mut world = world(STUDY);

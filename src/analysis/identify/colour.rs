@@ -24,6 +24,8 @@ pub struct Spread {
 
 /// Highest order of a model.
 const ORDER: usize = 12;
+/// Samples beyond what the unknowns can meet that tell at least something about the errors.
+const LEFT_OVER: f64 = 0.5;
 /// Errors below this part of their deviation are no errors: exact data.
 const NOTHING: f64 = 1e-12;
 /// Largest partial autocorrelation with which a model begins.
@@ -41,10 +43,16 @@ pub fn spread(weights: &Weights, minimum: &Minimum) -> Spread {
     let largest = jacobian.rows(0, data).column_iter().map(|c| c.norm_squared()).fold(f64::MIN_POSITIVE, f64::max);
     let small = 1e-12 * largest;
     (0..unknowns).for_each(|j| information[(j, j)] += small);
+    let nothing = || DMatrix::from_element(unknowns, unknowns, f64::INFINITY);
+    let degrees = vec![f64::INFINITY; unknowns];
     let Some(plain) = information.cholesky().map(|c| c.inverse()) else {
-        let nothing = DMatrix::from_element(unknowns, unknowns, f64::INFINITY);
-        return Spread { covariance: nothing.clone(), plain: nothing, degrees: vec![f64::INFINITY; unknowns] };
+        return Spread { covariance: nothing(), plain: nothing(), degrees };
     };
+    // how many samples the unknowns alone can meet: with no more of them nothing tells how large their errors are
+    let met = jacobian.rows(0, data).row_iter().map(|row| (row * &plain).dot(&row)).sum::<f64>();
+    if data as f64 - met < LEFT_OVER {
+        return Spread { covariance: nothing(), plain, degrees };
+    }
     let colour = Colour::new(weights, minimum);
     let at = colour.found(small);
     let covariance = |at: &[f64]| &plain * colour.scores(at) * &plain;
@@ -148,7 +156,7 @@ impl<'a> Colour<'a> {
         let logarithms = slopes(&mut |at| variances(at).map(|v| v.max(f64::MIN_POSITIVE).ln()), at, STEP);
         let one = |row: nalgebra::RowDVector<f64>| {
             let spread = row.dot(&curvature.solve(&row.transpose()).transpose());
-            (2.0 / spread.max(f64::MIN_POSITIVE)).max(1.0)
+            (2.0 / spread).max(1.0)
         };
         logarithms.row_iter().map(|row| one(row.into_owned())).collect()
     }

@@ -51,8 +51,9 @@ const STEP: f64 = 1e-4;
 const AGREE: f64 = 2e-3;
 /// The part of the samples that may lie between the moved times of an event.
 const BETWEEN: f64 = 0.02;
-/// Step of that difference: long, so that the error of the runs does not show.
-const CHECK: f64 = 1e-3;
+/// Steps of that difference: a long one, so that the error of the runs does not show, and a shorter one where the signals
+/// are strongly curved.
+const CHECKS: [f64; 2] = [1e-3, 1e-4];
 
 impl<'a> OutputError<'a> {
     /// For recordings: with parameters among the unknowns, or with parameters at `fixed` and initial states alone.
@@ -443,15 +444,28 @@ impl OutputError<'_> {
         let largest = columns.iter().map(size).fold(0.0, f64::max);
         let reach = |c: &Vec<f64>| if largest > 0.0 { (largest / size(c).max(1e-3 * largest)).min(10.0) } else { 1.0 };
         let share: Vec<f64> = columns.iter().enumerate().map(|(k, c)| reach(c) * (1.0 + k as f64).cos()).collect();
+        let mut checks = CHECKS.iter().map(|&step| self.agrees_over(case, z, (columns, &share), step));
+        let first = checks.next().expect("there are some");
+        first.or_else(|why| checks.find_map(Result::ok).ok_or(why))
+    }
+
+    /// Compares over one step, in which each unknown takes its share.
+    fn agrees_over(
+        &self,
+        case: usize,
+        z: &[f64],
+        (columns, share): (&[Vec<f64>], &[f64]),
+        step: f64,
+    ) -> Result<(), String> {
         let at = |step: f64| {
             let mut moved = z.to_vec();
-            self.moves(case).zip(&share).for_each(|(j, s)| moved[j] += step * s);
+            self.moves(case).zip(share).for_each(|(j, s)| moved[j] += step * s);
             self.errors(case, &moved).map_err(|_| "a run with moved parameters failed".to_owned())
         };
-        let (up, down) = (at(CHECK)?, at(-CHECK)?);
+        let (up, down) = (at(step)?, at(-step)?);
         let pairs = (0..up.len()).map(|i| {
-            let sum: f64 = columns.iter().zip(&share).map(|(c, s)| s * c[i]).sum();
-            ((up[i] - down[i]) / (2.0 * CHECK), sum)
+            let sum: f64 = columns.iter().zip(share).map(|(c, s)| s * c[i]).sum();
+            ((up[i] - down[i]) / (2.0 * step), sum)
         });
         let pairs: Vec<(f64, f64)> = pairs.collect();
         let most = pairs.iter().fold(0.0f64, |m, p| m.max(p.1.abs()));

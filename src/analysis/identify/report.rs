@@ -189,10 +189,15 @@ pub fn fit_words(problem: &Problem<'_>, fit: &Fit, held: &[SignalFit]) -> String
     for (free, _) in problem.free.iter().zip(&fit.at_bound).filter(|(_, at)| **at) {
         let _ = writeln!(text, "`{}` ended at a bound: its deviation is that of the bounded problem", free.name);
     }
+    if fit.deviations.iter().all(|d| d.is_infinite()) {
+        text.push_str(
+            "the recordings have no more to say than the unknowns take up: nothing tells how sure the values are\n",
+        );
+    }
     let width = problem.free.iter().map(|f| f.name.len()).max().unwrap_or(0);
     for (j, free) in problem.free.iter().enumerate() {
         let value = rounded(fit.values[j], 6);
-        let deviation = rounded(fit.deviations[j], 2);
+        let deviation = finite(fit.deviations[j]).map_or_else(|| "unknown".to_owned(), |d| rounded(d, 2));
         let _ = writeln!(text, "  {:width$}  {value} +- {deviation} {}", free.name, free.unit);
     }
     for (role, fits) in [("train", fit.train.as_slice()), ("held", held)] {

@@ -253,6 +253,24 @@ fn pieces_of_an_unstable_recording() {
     });
 }
 
+/// As many unknowns as samples (two parameters and the start) meet them whatever they are: no deviation is told.
+#[test]
+fn no_more_samples_than_unknowns_tell_nothing_about_deviations() {
+    let few = |samples: usize| -> String {
+        let all = lag_recording(1, 0.01);
+        all.lines().take(1 + samples).flat_map(|line| [line, "\n"]).collect()
+    };
+    let parameters = "T = { min = 0.1, max = 10.0 }\nk = { min = 0.1, max = 10.0 }";
+    for (samples, known) in [(3, false), (60, true)] {
+        let world = world(LAG, &study(parameters), few(samples), few(samples));
+        identified(&world, Method::Output, |report, words| {
+            let finite = |key: &str| ["T", "k"].map(|name| report.parameters[name][key].is_number());
+            assert_eq!((finite("std"), finite("degrees")), ([known; 2], [known; 2]), "{words}");
+            assert_eq!(words.contains("nothing tells how sure the values are"), !known, "{words}");
+        });
+    }
+}
+
 /// A sampled value that depends on a parameter is left to differences, which is said.
 #[test]
 fn sampled_models_are_fitted_by_differences() {

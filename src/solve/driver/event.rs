@@ -88,10 +88,10 @@ impl<'a> Driver<'a, '_> {
         Ok(())
     }
 
-    /// An event where the integrator stands.
+    /// An event where the integrator stands; what has crossed is noted already.
     pub(super) fn event(&mut self, cause: Cause) -> Flow {
         self.statistics.events += 1;
-        let crossing = self.find_roots(cause);
+        let crossing = self.first_crossing(cause);
         let t = self.t;
         self.last_step = self.ida().step_lengths().0;
         self.take_tangents();
@@ -132,15 +132,19 @@ impl<'a> Driver<'a, '_> {
         self.look_outside()
     }
 
-    /// Notes which root functions have crossed; the first crossing among them.
-    pub(super) fn find_roots(&mut self, cause: Cause) -> Option<u32> {
-        self.roots.clear();
-        if cause != Cause::Root {
-            return None;
-        }
+    /// Notes which root functions have crossed.
+    pub(super) fn find_roots(&mut self) {
         let mut roots = std::mem::take(&mut self.roots);
+        roots.clear();
         roots.extend_from_slice(self.ida().found());
         self.roots = roots;
+    }
+
+    /// The first crossing among those that cause the event.
+    fn first_crossing(&mut self, cause: Cause) -> Option<u32> {
+        if cause != Cause::Root {
+            self.roots.clear();
+        }
         let first = self.roots.iter().position(|&d| d != 0)?;
         u32::try_from(self.ida().equations().roots.crossing(first)).ok()
     }

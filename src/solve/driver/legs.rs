@@ -3,7 +3,7 @@
 use super::{Cause, Driver, Flow};
 use crate::expr::Node;
 use crate::solve::Progress;
-use crate::solve::ida::{Failure, Reached};
+use crate::solve::ida::{Equations, Failure, Reached};
 use crate::solve::model::Model;
 use crate::solve::modes::same_time;
 use crate::solve::selection;
@@ -96,8 +96,11 @@ impl<'a> Driver<'a, '_> {
                 Ok((Reached::Stop, _)) => {
                     self.t = to;
                     self.remember();
+                    self.roots.clear();
                     return if event <= to || same_time(event, to) {
                         self.event(Cause::Time)
+                    } else if self.crosses_at_the_end() {
+                        self.event(Cause::Root)
                     } else {
                         self.pass_kink()
                     };
@@ -105,6 +108,8 @@ impl<'a> Driver<'a, '_> {
                 Ok((Reached::Root, t)) => {
                     self.t = t;
                     self.remember();
+                    self.find_roots();
+                    self.crosses_at_the_end();
                     return self.event(Cause::Root);
                 }
                 Err((failure, t)) => {
@@ -117,6 +122,38 @@ impl<'a> Driver<'a, '_> {
                 }
             }
         }
+    }
+
+    /// Whether something crosses where the run ends, but for the error of the solution, which decides by chance on which
+    /// side of the end the integrator sees it; notes what does, beside what is noted already. By a straight line a little
+    /// beyond the end.
+    fn crosses_at_the_end(&mut self) -> bool {
+        let (t, stop, tolerance) = (self.t, self.settings.stop_time, self.settings.tolerance);
+        if !same_time(t, stop) {
+            return false;
+        }
+        let beyond = tolerance * (stop - self.settings.start_time);
+        let (mut earlier, mut rates) = (Vec::new(), Vec::new());
+        let step = self.ida().step_lengths().0;
+        let known = self.ida().at(t - step, &mut earlier, &mut rates);
+        let (model, y, yp) = self.ida().parts();
+        let ahead: Vec<f64> = y.iter().zip(yp).map(|(y, rate)| y + beyond * rate).collect();
+        let mut course = |t: f64, y: &[f64]| {
+            let mut g = vec![0.0; model.roots.len()];
+            model.crossings(t, y, yp, &mut g);
+            g
+        };
+        let before = if known { course(t - step, &earlier) } else { Vec::new() };
+        let (now, then) = (course(t, y), course(t + beyond, &ahead));
+        let crossings: Vec<usize> = (0..now.len()).map(|i| model.roots.crossing(i)).collect();
+        before.iter().zip(&crossings).for_each(|(g, &c)| self.modes.seen(c, *g));
+        self.roots.resize(now.len(), 0);
+        for (i, root) in self.roots.iter_mut().enumerate().filter(|(_, root)| **root == 0) {
+            if now[i] * then[i] < 0.0 && self.modes.near(crossings[i], now[i]) {
+                *root = if then[i] > 0.0 { 1 } else { -1 };
+            }
+        }
+        self.roots.iter().any(|&d| d != 0)
     }
 
     /// Where the corrector finds no step, algebraic unknowns may have drifted from their equations within what the error
