@@ -2,7 +2,6 @@
 //! n(1) = 1
 //! hits(1) = 1
 //! v(1) = 0.5
-//! turns(1) = 1
 //! above(1) = 0
 //! on(1) = 1
 model M "What crosses exactly at the stop time has crossed, what only comes near has not"
@@ -11,7 +10,6 @@ model M "What crosses exactly at the stop time has crossed, what only comes near
   Real h(start = 0.5, fixed = true) "falls to 0 at 1 with speed 1";
   Real v(start = 0, fixed = true);
   Integer hits(start = 0, fixed = true);
-  Integer turns(start = 0, fixed = true) "of a sine that no state follows";
   Real z(start = 0, fixed = true) "comes within 2e-9 of 1 and stays below";
   Integer above(start = 0, fixed = true);
   Real on = if x < 1 then 0 else 1;
@@ -26,9 +24,6 @@ equation
   when h < 0 then
     reinit(v, -0.5*pre(v));
     hits = pre(hits) + 1;
-  end when;
-  when sin(3.141592653589793*time) < 0 then
-    turns = pre(turns) + 1;
   end when;
   when z > 1 then
     above = pre(above) + 1;
