@@ -57,7 +57,8 @@ impl Tangent {
         let base = self.start(&at, inputs, None)?;
         let directions: Result<Vec<_>, String> =
             (0..self.raised.len()).into_par_iter().map(|k| self.direction(&at, inputs, &base, k)).collect();
-        Ok(Tangents { still: self.raised.iter().map(|r| r.state).collect(), starts: directions? })
+        let still = self.raised.iter().map(|r| r.state).collect();
+        Ok(Tangents { still, starts: directions?, controlled: false })
     }
 
     /// What a run carries along that starts at given states: the parameters alone move.
@@ -66,6 +67,7 @@ impl Tangent {
         Tangents {
             still: self.raised.iter().map(|r| r.state).collect(),
             starts: raised.map(|(r, &size)| vec![(r.state, size)]).collect(),
+            controlled: false,
         }
     }
 

@@ -349,6 +349,7 @@ impl<'a> Driver<'a, '_> {
     pub(super) fn hand_over_tangents(&mut self, first: bool) -> bool {
         let (Some(carried), Some(ida)) = (&self.carried, &mut self.ida) else { return true };
         let (values, rates) = (&carried.values, &carried.rates);
-        if first { ida.begin_tangents(values, rates) } else { ida.restart_tangents(values, rates) }.is_ok()
+        let controlled = self.settings.tangents.as_ref().is_some_and(|asked| asked.controlled);
+        if first { ida.begin_tangents(values, rates, controlled) } else { ida.restart_tangents(values, rates) }.is_ok()
     }
 }

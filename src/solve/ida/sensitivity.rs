@@ -11,11 +11,11 @@ use sundials_sys as s;
 
 impl<E: Differentiable> Ida<E> {
     /// Carries sensitivities along from where the integrator starts: per direction values and rates, consistent with the
-    /// equations.
+    /// equations. Their errors count in the choice of steps where they are `controlled`.
     ///
     /// # Errors
     /// [`Failure::Code`] when SUNDIALS refuses the input.
-    pub fn begin_tangents(&mut self, values: &[Vec<f64>], rates: &[Vec<f64>]) -> Result<(), Failure> {
+    pub fn begin_tangents(&mut self, values: &[Vec<f64>], rates: &[Vec<f64>], controlled: bool) -> Result<(), Failure> {
         let count = c_int::try_from(values.len()).expect("fewer than 2^31 directions");
         self.tangents.extend(values.iter().chain(rates).map(|v| new_vector(v, self.sundials)));
         let (first, second) = self.tangents.split_at_mut(values.len());
@@ -23,7 +23,8 @@ impl<E: Differentiable> Ida<E> {
         unsafe {
             let (first, second) = (first.as_mut_ptr(), second.as_mut_ptr());
             check(s::IDASensInit(self.memory, count, s::IDA_STAGGERED, Some(on_tangents::<E>), first, second))?;
-            check(s::IDASensEEtolerances(self.memory))
+            check(s::IDASensEEtolerances(self.memory))?;
+            check(s::IDASetSensErrCon(self.memory, c_int::from(controlled)))
         }
     }
 
