@@ -4,7 +4,7 @@
 use super::tests::{Model, check_jacobian, point, values_of};
 use super::*;
 use crate::expr::function::{Function, Stmt, Term};
-use crate::expr::{Binary, Exprs, FunctionId, Node, Rel, Unary};
+use crate::expr::{Binary, Exprs, FunctionId, Rel, Unary};
 use crate::structure::Block;
 use approx::relative_eq;
 use proptest::prelude::*;
