@@ -12,7 +12,7 @@ pub mod predict;
 use super::begin;
 use super::data::{Inputs, Recording};
 use super::passive::{Passive, passive_states};
-use super::step::Exponential;
+use super::step::{Exponential, add_outer, apply};
 use crate::analysis::local::{Local, LocalError, Plan};
 use colour::{Colour, Past};
 use nalgebra::{DMatrix, DVector};
@@ -521,7 +521,7 @@ impl<'a> Filter<'a> {
         let mut e = DVector::zeros(width);
         for (row, &i) in here.iter().enumerate() {
             let direction = c.row(row).transpose();
-            pc.gemv(1.0, &self.p, &direction, 0.0);
+            apply(&mut pc, &self.p, &direction, 0.0);
             let (spread, noise) = (direction.dot(&pc), self.setting.noise[i] * self.setting.noise[i]);
             if spread < -ROUNDING * noise {
                 // an undamped mode far faster than the samples: nothing is known of it any more
@@ -536,14 +536,14 @@ impl<'a> Filter<'a> {
             // how predicted outputs depend on the parameters; innovations do with the opposite sign
             let own = &self.local.linear.d;
             e.iter_mut().zip(&self.setting.columns).for_each(|(e, &j)| *e = own[(i, j)]);
-            e.gemv(1.0, &self.s, &direction, 1.0);
+            apply(&mut e, &self.s, &direction, 1.0);
             self.row.clear();
             self.row.extend(e.iter().map(|e| e / root));
             self.row.push(left / root);
             self.weigh(k, i, root);
             self.z.axpy(left / variance, &pc, 1.0);
-            self.s.ger(-1.0 / variance, &e, &pc, 1.0);
-            self.p.ger(-1.0 / variance, &pc, &pc, 1.0);
+            add_outer(&mut self.s, -1.0 / variance, e.as_slice(), pc.as_slice());
+            add_outer(&mut self.p, -1.0 / variance, pc.as_slice(), pc.as_slice());
         }
         Ok((here, innovation, c))
     }

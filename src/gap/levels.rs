@@ -2,7 +2,7 @@
 
 use super::filter::predict::{source_noise, symmetrize};
 use super::filter::{Setting, Step};
-use super::step::multiply;
+use super::step::{add_outer, apply, multiply};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -197,17 +197,17 @@ fn replay(setting: &Setting, tape: &[Step], factors: &[f64], each: &mut impl FnM
     for step in tape {
         for (row, &signal) in step.here.iter().enumerate() {
             (0..nz).for_each(|j| direction[j] = step.output[(row, j)]);
-            pc.gemv(1.0, &p, &direction, 0.0);
+            apply(&mut pc, &p, &direction, 0.0);
             let variance = direction.dot(&pc) + setting.noise[signal] * setting.noise[signal];
             let left = step.innovation[row] - direction.dot(&d);
             if step.counted {
                 each(Sample { signal, left, variance });
             }
             d.axpy(left / variance, &pc, 1.0);
-            p.ger(-1.0 / variance, &pc, &pc, 1.0);
+            add_outer(&mut p, -1.0 / variance, pc.as_slice(), pc.as_slice());
         }
         d -= &step.correction;
-        moved.gemv(1.0, &step.transition, &d, 0.0);
+        apply(&mut moved, &step.transition, &d, 0.0);
         std::mem::swap(&mut d, &mut moved);
         multiply(&mut next, &step.transition, &p, 0.0);
         step.transition.transpose_to(&mut transposed);
@@ -215,7 +215,7 @@ fn replay(setting: &Setting, tape: &[Step], factors: &[f64], each: &mut impl FnM
         for (j, f) in factors.iter().enumerate() {
             let noise = f * f * source_noise(setting.sources[j].tau, step.h);
             let column = step.transition.column(n + j);
-            p.ger(0.5 * noise, &column, &column, 1.0);
+            add_outer(&mut p, 0.5 * noise, column.as_slice(), column.as_slice());
             p[(n + j, n + j)] += 0.5 * noise;
         }
         symmetrize(&mut p);

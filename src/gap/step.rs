@@ -13,28 +13,77 @@ const MOST_HALVINGS: i32 = 40;
 
 /// `out = a b + beta out` without the packing that pays for large matrices only.
 pub fn multiply(out: &mut DMatrix<f64>, a: &DMatrix<f64>, b: &DMatrix<f64>, beta: f64) {
-    let (rows, inner) = a.shape();
-    if inner > LARGE {
+    if a.ncols() > LARGE {
         out.gemm(1.0, a, b, beta);
-        return;
+    } else {
+        product(out.as_mut_slice(), a, b.as_slice(), beta);
     }
-    let (out, a, b) = (out.as_mut_slice(), a.as_slice(), b.as_slice());
+}
+
+/// `out = a x + beta out`.
+pub fn apply(out: &mut DVector<f64>, a: &DMatrix<f64>, x: &DVector<f64>, beta: f64) {
+    product(out.as_mut_slice(), a, x.as_slice(), beta);
+}
+
+fn product(out: &mut [f64], a: &DMatrix<f64>, b: &[f64], beta: f64) {
+    let (rows, inner) = a.shape();
     if beta == 0.0 {
         out.fill(0.0);
     } else if beta != 1.0 {
         out.iter_mut().for_each(|v| *v *= beta);
     }
-    if rows == 0 || inner == 0 {
-        return;
+    if rows > 0 && inner > 0 {
+        pulp::Arch::new().dispatch(Product { out, a: a.as_slice(), b, rows, inner });
     }
-    // compiled once for every instruction set; the best one is chosen where it runs
-    pulp::Arch::new().dispatch(
-        #[inline(always)]
-        || add_product(out, a, b, rows, inner),
-    );
 }
 
-/// `out += a b` in bands of eight rows, whose sums stay in registers.
+/// `out += a b`, compiled once for every instruction set; the best one is chosen where it runs.
+struct Product<'a> {
+    out: &'a mut [f64],
+    a: &'a [f64],
+    b: &'a [f64],
+    rows: usize,
+    inner: usize,
+}
+
+// what is no closure is compiled into the function that may use the wide registers
+impl pulp::WithSimd for Product<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        add_product(self.out, self.a, self.b, self.rows, self.inner);
+    }
+}
+
+/// `out += factor x y'`.
+pub fn add_outer(out: &mut DMatrix<f64>, factor: f64, x: &[f64], y: &[f64]) {
+    if !x.is_empty() {
+        pulp::Arch::new().dispatch(Outer { out: out.as_mut_slice(), factor, x, y });
+    }
+}
+
+/// `out += factor x y'`, likewise.
+struct Outer<'a> {
+    out: &'a mut [f64],
+    factor: f64,
+    x: &'a [f64],
+    y: &'a [f64],
+}
+
+impl pulp::WithSimd for Outer<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        for (column, y) in self.out.chunks_exact_mut(self.x.len()).zip(self.y) {
+            let factor = self.factor * y;
+            column.iter_mut().zip(self.x).for_each(|(v, x)| *v += factor * x);
+        }
+    }
+}
+
+/// `out += a b` in bands of eight rows and one of what remains, whose sums stay in registers.
 #[inline(always)]
 fn add_product(out: &mut [f64], a: &[f64], b: &[f64], rows: usize, inner: usize) {
     for (to, factors) in out.chunks_exact_mut(rows).zip(b.chunks_exact(inner)) {
@@ -43,13 +92,15 @@ fn add_product(out: &mut [f64], a: &[f64], b: &[f64], rows: usize, inner: usize)
             add_band::<8>(to, a, factors, rows, row);
             row += 8;
         }
-        if row + 4 <= rows {
-            add_band::<4>(to, a, factors, rows, row);
-            row += 4;
-        }
-        while row < rows {
-            add_band::<1>(to, a, factors, rows, row);
-            row += 1;
+        match rows - row {
+            0 => {}
+            1 => add_band::<1>(to, a, factors, rows, row),
+            2 => add_band::<2>(to, a, factors, rows, row),
+            3 => add_band::<3>(to, a, factors, rows, row),
+            4 => add_band::<4>(to, a, factors, rows, row),
+            5 => add_band::<5>(to, a, factors, rows, row),
+            6 => add_band::<6>(to, a, factors, rows, row),
+            _ => add_band::<7>(to, a, factors, rows, row),
         }
     }
 }
@@ -119,10 +170,10 @@ impl Exponential {
             let rate = -a[(j, j)];
             let decayed = -(-rate * h).exp_m1();
             let mean = decayed / (rate * h);
+            product(self.moved.as_mut_slice(), &self.area, &a.column(j).as_slice()[..n], 0.0);
             for i in 0..n {
-                let driven: f64 = (0..n).map(|k| self.area[(i, k)] * a[(k, j)]).sum();
-                self.transition[(i, j)] = driven * mean;
-                self.integral[(i, j)] = driven * (1.0 - mean) / rate;
+                self.transition[(i, j)] = self.moved[i] * mean;
+                self.integral[(i, j)] = self.moved[i] * (1.0 - mean) / rate;
             }
             self.transition[(j, j)] = 1.0 - decayed;
             self.integral[(j, j)] = decayed / rate;
@@ -252,6 +303,13 @@ mod tests {
             multiply(&mut out, &a, &b, 2.0);
             let exact = &a * &b + DMatrix::from_element(rows, columns, 2.0);
             assert!((out - exact).amax() < 1e-12);
+            let x = DVector::from_fn(inner, |i, _| i as f64 - 1.5);
+            let mut out = DVector::from_element(rows, 1.0);
+            apply(&mut out, &a, &x, 2.0);
+            assert!((&out - (&a * &x).add_scalar(2.0)).amax() < 1e-12);
+            let mut outer = a.clone();
+            add_outer(&mut outer, 3.0, out.as_slice(), x.as_slice());
+            assert!((outer - (&a + 3.0 * &out * x.transpose())).amax() < 1e-12 * out.amax() * x.amax());
         }
     }
 }

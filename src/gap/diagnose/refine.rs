@@ -249,7 +249,7 @@ pub(super) fn promising(
     candidates: Vec<Candidate>,
 ) -> (Vec<Candidate>, Vec<Candidate>) {
     let h = |c: &Candidate| &problem.hypotheses[c.chosen.hypothesis];
-    let front = candidates.iter().find(|c| !h(c).is_shape()).map_or(0.0, |c| c.gain);
+    let front = candidates.iter().find(|c| !h(c).is_shape() && !h(c).is_bounded()).map_or(0.0, |c| c.gain);
     let (mut effects, mut switched) = (0, 0);
     let mut kinds = BTreeSet::new();
     candidates.into_iter().partition(|c| {

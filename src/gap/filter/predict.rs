@@ -1,7 +1,7 @@
 //! The prediction of the filter: state, covariance and columns from one sample to the next, in one linear step, or in
 //! several where the model bends within it.
 
-use super::super::step::{self, multiply};
+use super::super::step::{self, add_outer, multiply};
 use super::{Filter, Work};
 use nalgebra::{DMatrix, DVector};
 use std::ops::AddAssign;
@@ -21,8 +21,10 @@ const LOST: f64 = 0.3;
 const DEEPEST: u32 = 9;
 /// A step in which a state would run away by this factor is cut even where another model did without.
 const RUNAWAY: f64 = 10.0;
-/// Parts for each sample on the average, beyond which no part is halved any more.
+/// Parts for each sample so far on the average, beyond which no part is halved any more; the first samples may have as many
+/// as these.
 const MOST_PARTS: usize = 8;
+const FIRST: usize = 100;
 /// A corrected state counts as out of the model's reach when its rates differ by so many sizes of the states over a step
 /// from what was expected.
 const STRANGE: f64 = 10.0;
@@ -83,7 +85,7 @@ impl Filter<'_> {
         self.temper(t, &rate, correction, h);
         self.work.total.fill_with_identity();
         let (start, part) = (self.z.clone(), h / PARTS as f64);
-        (0..PARTS).for_each(|i| self.advance(t, i as f64 * part, part, 0));
+        (0..PARTS).for_each(|i| self.advance(k, i as f64 * part, part, 0));
         let change = &self.z - start;
         self.carry(&change, correction, h);
     }
@@ -115,10 +117,10 @@ impl Filter<'_> {
         }
     }
 
-    /// A part of a cut step that begins `after` the sample, linearised there; halved where the model has no value at its
+    /// A part of a cut step that begins `after` sample `k`, linearised there; halved where the model has no value at its
     /// end, or one far from what the linear model says.
-    fn advance(&mut self, sampled: f64, after: f64, h: f64, depth: u32) {
-        let (start, t) = (self.z.clone(), sampled + after);
+    fn advance(&mut self, k: usize, after: f64, h: f64, depth: u32) {
+        let (start, t) = (self.z.clone(), self.recording.times[k] + after);
         self.inputs.at(after + 0.5 * h, &mut self.between);
         if !self.possible(t) {
             // the state waits at the edge of where the model has values
@@ -135,11 +137,11 @@ impl Filter<'_> {
         self.z += &change;
         let bend = if self.possible(t + h) { self.bend(&rate, &change, h) } else { Bend::UNKNOWN };
         self.parts += 1;
-        let deepest = if self.parts > MOST_PARTS * self.recording.len() { 0 } else { DEEPEST };
+        let deepest = if self.parts > MOST_PARTS * (k + FIRST) { 0 } else { DEEPEST };
         if depth < deepest && (bend.lost || depth < FINEST && bend.times > FAR) {
             self.z = start;
-            self.advance(sampled, after, 0.5 * h, depth + 1);
-            self.advance(sampled, after + 0.5 * h, 0.5 * h, depth + 1);
+            self.advance(k, after, 0.5 * h, depth + 1);
+            self.advance(k, after + 0.5 * h, 0.5 * h, depth + 1);
             return;
         }
         if bend.lost {
@@ -225,7 +227,7 @@ impl Filter<'_> {
         for (j, source) in self.setting.sources.iter().enumerate() {
             let q = source_noise(source.tau, h);
             let column = m.column(n + j);
-            self.p.ger(0.5 * q, &column, &column, 1.0);
+            add_outer(&mut self.p, 0.5 * q, column.as_slice(), column.as_slice());
             self.p[(n + j, n + j)] += 0.5 * q;
         }
         symmetrize(&mut self.p);
