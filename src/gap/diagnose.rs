@@ -382,15 +382,20 @@ impl Search {
     }
 
     /// Whether an effect is the remainder of an accepted one of its family at its place, or a small one of its family or at
-    /// its place: the machine's form may differ from that one's.
+    /// a node of its: the machine's form may differ from that one's.
     fn mends_form(&self, problem: &Problem<'_>, best: &Accepted, gain: f64) -> bool {
         let h = &problem.hypotheses[best.chosen.hypothesis];
+        let site = &h.attachments[0].site;
         let least = |a: &Accepted, gain: f64| {
             let other = &problem.hypotheses[a.chosen.hypothesis];
-            match (other.family == h.family, other.attachments[0].site.is_at(&h.attachments[0].site)) {
-                (true, true) => f64::INFINITY,
-                (true, false) | (false, true) => FORM * gain,
-                (false, false) => 0.0,
+            let place = &other.attachments[0].site;
+            let kin = other.family == h.family;
+            if kin && place.is_at(site) {
+                f64::INFINITY
+            } else if kin || place.is_at(site) || place.meets(site, &problem.circuit) {
+                FORM * gain
+            } else {
+                0.0
             }
         };
         let least = self.accepted.iter().zip(&self.found).map(|(a, f)| least(a, f.gain)).fold(0.0, f64::max);
@@ -471,12 +476,15 @@ impl Search {
         self.shape = Some(Shaped { hypothesis, gain, closes });
     }
 
-    /// Takes parameters that simulate better, where there are such.
+    /// Takes parameters that simulate better, where there are such; with effects, if they are still more likely than the
+    /// model without: a course may come near where disturbances are taken for parameters and the effect is gone.
     fn simulate(&mut self, problem: &Problem<'_>) {
         let (last, model) = (driven::simulating(problem, self.last.clone()), self.last_model.clone());
-        self.base =
-            if self.accepted.is_empty() { last.clone() } else { driven::simulating(problem, self.base.clone()) };
-        self.adopt(last, model);
+        let base = if self.accepted.is_empty() { last.clone() } else { driven::simulating(problem, self.base.clone()) };
+        if self.accepted.is_empty() || fit::likelihood(&last.setting, &problem.train) > Some(self.base.likelihood) {
+            self.adopt(last, model);
+        }
+        self.base = base;
     }
 
     /// Drops again what closes little of the simulated gap now that everything else is there: one effect hides another,

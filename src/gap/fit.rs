@@ -93,6 +93,11 @@ pub fn passes(setting: &Setting, train: &[Recording], samples: usize, tape: Tape
     train.par_iter().enumerate().map(one).collect()
 }
 
+/// Log likelihood of the recordings, not scaled; `None` where the model has no value on the way.
+pub fn likelihood(setting: &Setting, train: &[Recording]) -> Option<f64> {
+    Some(total(&passes(&setting.alone(), train, usize::MAX, Tape::Nothing)?).0)
+}
+
 fn total(passes: &[Pass]) -> (f64, DMatrix<f64>) {
     let likelihood = passes.iter().map(|p| p.likelihood).sum();
     let width = passes.first().map_or(0, |p| p.gram.nrows());

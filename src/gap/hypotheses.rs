@@ -107,6 +107,20 @@ impl Site {
             _ => self == other,
         }
     }
+
+    /// Whether two effects act on one node whose potential is not given.
+    pub fn meets(&self, other: &Site, circuit: &Circuit) -> bool {
+        let nodes = |site: &Site| {
+            let ports = match site {
+                Site::Node(p) | Site::Into(p) => vec![*p],
+                Site::Across(a, b) => vec![*a, *b],
+                Site::Sensor(_) | Site::Command(_) | Site::Parameter(_) => Vec::new(),
+            };
+            ports.into_iter().map(|p| circuit.ports[p].node).filter(|n| !circuit.nodes[*n].fixed).collect::<Vec<_>>()
+        };
+        let own = nodes(self);
+        nodes(other).iter().any(|n| own.contains(n))
+    }
 }
 
 /// One effect at one place.
