@@ -225,7 +225,7 @@ fn anchor(problem: &Problem<'_>, noise: &[f64]) -> Result<(Fit, Assembled), Trou
     let nominal = model.setting(&sources, noise, Vec::new());
     let mut silent = model.setting(&[], &problem.full_scale, Vec::new());
     silent.sources.clear();
-    let near = driven::fitted(problem, silent, &priors, None).map(|f| {
+    let near = driven::fitted(&problem.train, silent, &priors, None).map(|f| {
         let mut setting = nominal.clone();
         setting.theta[model.free.clone()].copy_from_slice(&f.setting.theta[model.free.clone()]);
         (setting, f.setting.noise)

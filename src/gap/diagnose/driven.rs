@@ -2,10 +2,11 @@
 //! the colour of a disturbance. The model's errors are taken as autoregressive noise (Box, Jenkins, Time Series
 //! Analysis, 1970, ch. 7).
 
+use super::super::data::Recording;
 use super::super::filter::colour::{Colour, ORDER};
 use super::super::filter::{SILENT, Setting};
 use super::super::fit::{self, Fit, Prior};
-use super::super::held;
+use super::super::held::{self, Residuals};
 use super::super::problem::{Chosen, Problem};
 use super::super::screen::{Accepted, Candidate, Screen};
 use super::refine::{Refined, best_first, fitted as followed, make_whole, ready, switched_off, values};
@@ -13,6 +14,7 @@ use super::{CLAIMED, CONSISTENT, Found, Search, Trial, simplest};
 use crate::analysis::autoregression;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// Turns of parameters and noise.
 const TURNS: usize = 3;
@@ -114,8 +116,8 @@ impl Search {
 
 /// A model fitted by what it says from the inputs alone; its sources must be silent. All its errors count as noise, as much
 /// of it independent as `share` says or as is found.
-pub(super) fn fitted(problem: &Problem<'_>, setting: Setting, priors: &[Prior], share: Option<f64>) -> Option<Fit> {
-    in_turns(problem, setting, priors, share, |setting, found| {
+pub(super) fn fitted(train: &[Recording], setting: Setting, priors: &[Prior], share: Option<f64>) -> Option<Fit> {
+    in_turns(train, setting, priors, share, |setting, found| {
         for (i, noise) in setting.noise.iter_mut().enumerate() {
             let (sum, count) =
                 found.white.iter().fold((0.0, 0), |(s, n), w| (s + w.column(i).norm_squared(), n + w.nrows()));
@@ -128,9 +130,9 @@ pub(super) fn fitted(problem: &Problem<'_>, setting: Setting, priors: &[Prior], 
 /// and colour, then with errors that tell the next ones. These weigh what is fast and small as much as what is slow and
 /// large, and lead astray from afar.
 fn plain_and_coloured(problem: &Problem<'_>, setting: Setting, priors: &[Prior]) -> Option<(Fit, Fit)> {
-    let mut plain = fitted(problem, setting, priors, Some(1.0))?;
+    let mut plain = fitted(&problem.train, setting, priors, Some(1.0))?;
     (plain.setting.noise, plain.setting.colours) = errors(&plain);
-    let coloured = in_turns(problem, plain.setting.clone(), priors, Some(1.0), |setting, found| {
+    let coloured = in_turns(&problem.train, plain.setting.clone(), priors, Some(1.0), |setting, found| {
         (setting.noise, setting.colours) = errors(found);
     })?;
     Some((plain, coloured))
@@ -138,7 +140,7 @@ fn plain_and_coloured(problem: &Problem<'_>, setting: Setting, priors: &[Prior])
 
 /// Fits parameters and noise in turn; the last fit is at the noise that the one before left.
 fn in_turns(
-    problem: &Problem<'_>,
+    train: &[Recording],
     mut setting: Setting,
     priors: &[Prior],
     share: Option<f64>,
@@ -146,7 +148,7 @@ fn in_turns(
 ) -> Option<Fit> {
     let mut best = None;
     for _ in 0..TURNS {
-        let found = fit::fit(setting, priors, &problem.train, share, fit::ITERATIONS)?;
+        let found = fit::fit(setting, priors, train, share, fit::ITERATIONS)?;
         setting = found.setting.clone();
         renew(&mut setting, &found);
         best = Some(found);
@@ -170,24 +172,42 @@ fn errors(fit: &Fit) -> (Vec<f64>, Vec<Colour>) {
     fit.setting.noise.iter().enumerate().map(signal).unzip()
 }
 
-/// A fit with the parameters of output error where these simulate the train recordings clearly better: where sources follow
-/// all that moves slowly, the filter cares little for how the model goes on without them.
+/// A fit with the parameters of output error where these simulate clearly better what they were not fitted to: where sources
+/// follow all that moves slowly, the filter cares little for how the model goes on without them, but what disturbances did
+/// in one recording they do not do in the next.
 pub(super) fn simulating(problem: &Problem<'_>, fit: Fit) -> Fit {
-    let gap = |setting: &Setting| held::gap_of(problem, setting, &problem.train, &fit.setting.noise);
-    let before = gap(&fit.setting);
-    if !before.is_plain(&fit.setting.noise, &problem.full_scale) {
+    let (train, noise) = (&problem.train, &fit.setting.noise);
+    let before = held::gap_of(problem, &fit.setting, train, noise);
+    if !before.is_plain(noise, &problem.full_scale) {
         return fit;
     }
-    let mut setting = fit.setting.clone();
-    setting.sources = setting.sources_times(SILENT);
-    for ((noise, gap), scale) in setting.noise.iter_mut().zip(&before.signals).zip(&problem.full_scale) {
+    let mut silent = fit.setting.clone();
+    silent.sources = silent.sources_times(SILENT);
+    for ((noise, gap), scale) in silent.noise.iter_mut().zip(&before.signals).zip(&problem.full_scale) {
         *noise = noise.max(gap * scale);
     }
-    let Some(found) = fitted(problem, setting, &fit.priors, Some(1.0)) else { return fit };
-    let covariance = &found.covariance / found.own_share();
-    let setting = Setting { theta: found.setting.theta, ..fit.setting.clone() };
-    let better = gap(&setting).total < (1.0 - BETTER) * before.total;
-    if better { Fit { setting, covariance, ..fit } } else { fit }
+    let fitted_to = |train: &[Recording]| {
+        let found = fitted(train, silent.clone(), &fit.priors, Some(1.0))?;
+        let covariance = &found.covariance / found.own_share();
+        let setting = Setting { theta: found.setting.theta, ..fit.setting.clone() };
+        Some(Fit { setting, covariance, ..fit.clone() })
+    };
+    let Some(found) = fitted_to(train) else { return fit };
+    let others = |k: usize| {
+        let others = if train.len() > 1 { fitted_to(&without(train, k))? } else { found.clone() };
+        held::simulate_all(&others.setting, train).swap_remove(k)
+    };
+    let runs: Vec<Option<Residuals>> = (0..train.len()).into_par_iter().map(others).collect();
+    let after = held::gap(&runs, train, noise, &problem.full_scale);
+    if after.total < (1.0 - BETTER) * before.total { found } else { fit }
+}
+
+/// The recordings, of one of them only the samples that tell where it begins.
+fn without(train: &[Recording], number: usize) -> Vec<Recording> {
+    let mut train = train.to_vec();
+    let settled = train[number].settled();
+    train[number].signals.iter_mut().for_each(|s| Arc::make_mut(s)[settled..].fill(f64::NAN));
+    train
 }
 
 /// Nats that a refined candidate gains by the course that the inputs alone bring about, over the model before and over

@@ -124,7 +124,7 @@ fn output_error(problem: &Problem<'_>, from: &Fit, accepted: &[Accepted]) -> Opt
     // where the errors are not known yet, they are as large as the signals
     let noise: Vec<f64> = problem.full_scale.iter().zip(&from.setting.noise).map(|(f, n)| f.max(*n)).collect();
     let setting = assembled.setting(&sources, &noise, Vec::new());
-    Some((driven::fitted(problem, setting, &priors, None)?, assembled))
+    Some((driven::fitted(&problem.train, setting, &priors, None)?, assembled))
 }
 
 /// The same fit where the effect is off again, from the parameters found with it.
@@ -132,5 +132,5 @@ fn without(problem: &Problem<'_>, r: &Refined, fit: &Fit, assembled: &Assembled)
     let own = assembled.attached.last()?;
     let setting = switched_off(problem, &r.accepted, assembled, fit);
     let priors: Vec<Prior> = fit.priors.iter().filter(|p| !own.contains(&p.parameter)).cloned().collect();
-    driven::fitted(problem, setting, &priors, None)
+    driven::fitted(&problem.train, setting, &priors, None)
 }
