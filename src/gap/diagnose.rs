@@ -48,6 +48,8 @@ const RARE_RATIO: f64 = 4.0;
 /// Part of the gain of an accepted effect that a further one of its family or at its place must reach: less is a form
 /// other than the library's, not another cause.
 const FORM: f64 = 0.25;
+/// And any other effect: of a strong effect's form so much remains anywhere.
+const REMAINS: f64 = 0.01;
 /// Part of the simulated gap that opens again without it, of what all effects together close.
 const CLOSES: f64 = 0.07;
 /// Candidates this near are equally good: the simpler one stands first, nats.
@@ -381,8 +383,8 @@ impl Search {
         h.is_bounded() && h.coefficients.iter().enumerate().any(at_bound)
     }
 
-    /// Whether an effect is the remainder of an accepted one of its family at its place, or a small one of its family or at
-    /// a node of its: the machine's form may differ from that one's.
+    /// Whether an effect is the remainder of an accepted one of its family at its place, or a small one of its family, at a
+    /// node of its, or a tiny one anywhere: the machine's form may differ from that one's.
     fn mends_form(&self, problem: &Problem<'_>, best: &Accepted, gain: f64) -> bool {
         let h = &problem.hypotheses[best.chosen.hypothesis];
         let site = &h.attachments[0].site;
@@ -395,7 +397,7 @@ impl Search {
             } else if kin || place.is_at(site) || place.meets(site, &problem.circuit) {
                 FORM * gain
             } else {
-                0.0
+                REMAINS * gain
             }
         };
         let least = self.accepted.iter().zip(&self.found).map(|(a, f)| least(a, f.gain)).fold(0.0, f64::max);
