@@ -49,7 +49,7 @@ const RARE_RATIO: f64 = 4.0;
 /// other than the library's, not another cause.
 const FORM: f64 = 0.25;
 /// And any other effect: of a strong effect's form so much remains anywhere.
-const REMAINS: f64 = 0.01;
+const REMAINS: f64 = 0.003;
 /// Part of the simulated gap that opens again without it, of what all effects together close.
 const CLOSES: f64 = 0.07;
 /// Candidates this near are equally good: the simpler one stands first, nats.
