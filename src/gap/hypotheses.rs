@@ -595,3 +595,31 @@ fn drift(free: &Free) -> Hypothesis {
         changes_order: false,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::circuit::NodeSet;
+    use super::*;
+
+    #[test]
+    fn effects_meet_at_nodes_but_not_at_a_reservoir() {
+        let quantity = || Quantity { name: String::new(), unit: String::new() };
+        let port = |node| Port {
+            name: String::new(),
+            class: String::new(),
+            component: 0,
+            potential: quantity(),
+            through: quantity(),
+            node,
+        };
+        // two chambers, the first with a second port, and the tank
+        let nodes = vec![NodeSet::default(), NodeSet::default(), NodeSet { fixed: true, ..NodeSet::default() }];
+        let circuit = Circuit { ports: vec![port(0), port(1), port(2), port(0)], nodes, ..Circuit::default() };
+        let meet = |a: Site, b: Site| a.meets(&b, &circuit) && b.meets(&a, &circuit);
+        assert!(meet(Site::Node(0), Site::Across(3, 2)), "air and the leak of the same chamber");
+        assert!(meet(Site::Across(0, 1), Site::Into(3)));
+        assert!(!meet(Site::Across(0, 2), Site::Across(1, 2)), "both end in the tank");
+        assert!(!meet(Site::Node(0), Site::Node(1)));
+        assert!(!meet(Site::Sensor("p".into()), Site::Sensor("p".into())), "which `is_at` tells");
+    }
+}
