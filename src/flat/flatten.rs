@@ -22,6 +22,7 @@ pub fn flatten(instance: &mut Instance<'_, '_>, network: &Network) -> Checked<Fl
     flat.instances = scopes.iter().map(|&s| instance_info(instance, s, &numbers)).collect();
     flat.experiment = experiment(instance);
     variables(instance, &numbers, &mut flat);
+    instance.check_texts();
     Walker::new(instance, &numbers, &mut flat).walk(&scopes);
     connections(instance, network, &numbers, &mut flat);
     discrete::check(instance, &flat);
@@ -100,10 +101,16 @@ fn attributes(instance: &mut Instance<'_, '_>, i: u32, v: &mut Variable) {
             "displayUnit" => {
                 v.display_unit = instance.text_attribute(i, "displayUnit").filter(|u| !u.is_empty()).map(Into::into);
             }
+            "quantity" => {
+                instance.text_attribute(i, "quantity");
+            }
             "fixed" => {
-                if let Some(x) = instance.binding_value(&b, true).and_then(|x| x.as_number(&instance.exprs)) {
+                if let Some(x) = instance.known_attribute(i, name, &b, Type::Boolean) {
                     v.fixed = x != 0.0;
                 }
+            }
+            "unbounded" => {
+                instance.known_attribute(i, name, &b, Type::Boolean);
             }
             "start" | "min" | "max" | "nominal" => {
                 let Some(value) = instance.bound(i, &b, false) else { continue };

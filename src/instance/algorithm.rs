@@ -226,7 +226,8 @@ impl<'a> Instance<'a, '_> {
         let Val::Array { dims, elements } = old else {
             return self.fail(Code::BadIndex, &format!("`{}` is not an array", p.name.name), span);
         };
-        let picks = self.picks(dims, p, view, span)?;
+        let by = if part == 0 { self.counted_by(view, p.name.name) } else { Vec::new() };
+        let picks = self.picks(dims, &by, p, view, span)?;
         if picks.iter().any(|p| matches!(p, Pick::Symbolic(_))) {
             return self.replaced_somewhere(dims, elements, &picks, last, &value, span);
         }
@@ -277,14 +278,21 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// What the subscripts of a target pick, all dimensions of the array included.
-    fn picks(&mut self, dims: &[usize], p: &'a ReferencePart, view: View, span: Span) -> Option<Vec<Pick>> {
+    fn picks(
+        &mut self,
+        dims: &[usize],
+        by: &[Type],
+        p: &'a ReferencePart,
+        view: View,
+        span: Span,
+    ) -> Option<Vec<Pick>> {
         if p.subscripts.len() > dims.len() {
             let message = format!("{} indices for an array of size {}", p.subscripts.len(), size_text(dims));
             return self.fail(Code::BadIndex, &message, span);
         }
         let mut picks = Vec::with_capacity(dims.len());
-        for (s, &n) in p.subscripts.iter().zip(dims) {
-            picks.push(self.index(s, n, view, span)?);
+        for (i, (s, &n)) in p.subscripts.iter().zip(dims).enumerate() {
+            picks.push(self.index(s, (n, by.get(i).copied()), view, span)?);
         }
         picks.extend(dims[picks.len()..].iter().map(|&n| Pick::Many((0..n).collect())));
         Some(picks)

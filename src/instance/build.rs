@@ -1,8 +1,8 @@
 //! Components: from declarations with their modifiers to nodes, on demand and then all.
 
-use super::errors::builtin_name;
-use super::lookup::{Builtin, Found, predefined_enumerations};
-use super::modifiers::{Access, Arg, ArgKind, Binding, Reached, extended, indexed};
+use super::evaluate::Extent;
+use super::lookup::{Builtin, Found, STATE_SELECT, predefined_enumerations};
+use super::modifiers::{Access, Arg, ArgKind, At, Binding, Reached, extended, indexed};
 use super::template::{Kind, Template, What};
 use super::{ClassRef, ElementState, Inherited, Instance, Node, NodeId, ROOT, ScopeId, VarData, View, evaluate};
 use crate::diag::{Code, Diagnostic, Span};
@@ -390,11 +390,11 @@ impl<'a> Instance<'a, '_> {
         view: View,
         binding: Option<&Binding<'a>>,
         skip: usize,
-    ) -> Option<Vec<usize>> {
+    ) -> Option<Vec<Extent>> {
         let mut dims = Vec::with_capacity(subscripts.len());
         for (i, s) in subscripts.iter().enumerate() {
-            let size = match s {
-                Subscript::Expr(e) => self.dimension(e, view)?,
+            let extent = match s {
+                Subscript::Expr(e) => self.extent(e, view)?,
                 Subscript::All(span) => {
                     let Some(b) = binding else {
                         self.report(
@@ -406,7 +406,7 @@ impl<'a> Instance<'a, '_> {
                     };
                     let value = self.binding_value(b, true)?;
                     match value.dims().get(skip + i) {
-                        Some(&n) => n,
+                        Some(&size) => Extent { size, by: Type::Integer },
                         None => {
                             self.report(
                                 Diagnostic::new(Code::SizeMismatch, "the value has fewer dimensions than the array")
@@ -418,7 +418,7 @@ impl<'a> Instance<'a, '_> {
                     }
                 }
             };
-            dims.push(size);
+            dims.push(extent);
         }
         Some(dims)
     }
@@ -428,7 +428,7 @@ impl<'a> Instance<'a, '_> {
         &mut self,
         plan: &Plan<'a>,
         found: &Found<'a>,
-        dims: &[usize],
+        dims: &[Extent],
         reached: Reached<'a>,
     ) -> Option<NodeId> {
         let mut all = dims.to_vec();
@@ -443,7 +443,7 @@ impl<'a> Instance<'a, '_> {
             }
             _ => None,
         };
-        let count = all.iter().try_fold(1usize, |n, &d| n.checked_mul(d));
+        let count = all.iter().try_fold(1usize, |n, d| n.checked_mul(d.size));
         if count.is_none_or(|n| n + self.variables.len() > MOST_VARIABLES) {
             self.report(
                 Diagnostic::new(
@@ -468,18 +468,19 @@ impl<'a> Instance<'a, '_> {
         plan: &Plan<'a>,
         found: &Found<'a>,
         template: Option<&Rc<Template<'a>>>,
-        (dims, declared): (&[usize], usize),
+        (extents, declared): (&[Extent], usize),
         args: &Rc<[Arg<'a>]>,
         part: Part<'a>,
     ) -> Option<NodeId> {
-        if dims.is_empty() {
+        if extents.is_empty() {
             return self.build_one(plan, (&plan.name, &[]), found, template, args.clone(), part);
         }
+        let dims: Vec<usize> = extents.iter().map(|e| e.size).collect();
         let count: usize = dims.iter().product();
         let mut elements = Vec::with_capacity(count);
         for flat in 0..count {
-            let index = unravel(flat, dims);
-            let text: Vec<String> = index.iter().map(|i| (i + 1).to_string()).collect();
+            let index = unravel(flat, &dims);
+            let text: Vec<String> = index.iter().map(|i| (i.place + 1).to_string()).collect();
             let name = format!("{}[{}]", plan.name, text.join(","));
             let args = indexed(args, &index);
             let binding = part.binding.clone().map(|b| Binding { access: extended(&b.access, &index), ..b });
@@ -488,13 +489,13 @@ impl<'a> Instance<'a, '_> {
             let own = &index[declared..];
             elements.push(self.build_one(plan, (&name, own), found, template, args, part)?);
         }
-        Some(self.add_node(Node::Array { dims: dims.to_vec(), elements: elements.into() }))
+        Some(self.add_node(Node::Array { dims, by: extents.iter().map(|e| e.by).collect(), elements: elements.into() }))
     }
 
     fn build_one(
         &mut self,
         plan: &Plan<'a>,
-        (name, index): (&str, &[u32]),
+        (name, index): (&str, &[At]),
         found: &Found<'a>,
         template: Option<&Rc<Template<'a>>>,
         args: Rc<[Arg<'a>]>,
@@ -514,7 +515,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// Attribute modifications of a type chain, each seen from around the class it stands in.
-    fn type_args(&self, t: &Template<'a>, index: &[u32]) -> Vec<Arg<'a>> {
+    fn type_args(&self, t: &Template<'a>, index: &[At]) -> Vec<Arg<'a>> {
         let none: Rc<[Access]> = Rc::from([]);
         // A type is scalar inside the class that gives it its dimensions.
         let shaped = t.dims.iter().map(|(_, base)| *base).min().unwrap_or(0);
@@ -614,8 +615,8 @@ impl<'a> Instance<'a, '_> {
         if plan.declared.prefix.stream {
             self.unsupported(plan.declared.name.span, "a `stream` variable");
         }
-        let attributes = self.attributes(args.iter().chain(chain), builtin, name);
-        let mut data = VarData {
+        let attributes = self.attributes(args.iter().chain(chain), builtin);
+        let data = VarData {
             name: name.to_string(),
             ty,
             string: builtin == Builtin::String,
@@ -636,9 +637,10 @@ impl<'a> Instance<'a, '_> {
             busy: false,
             id: VarId(u32::MAX),
         };
-        data.state_select = self.state_select(&data);
         self.variables.push(data);
         let index = u32::try_from(self.variables.len() - 1).expect("limited above");
+        let state_select = self.state_select(index);
+        self.variables[index as usize].state_select = state_select;
         self.add_node(Node::Var(index))
     }
 
@@ -646,7 +648,6 @@ impl<'a> Instance<'a, '_> {
         &mut self,
         args: impl Iterator<Item = &'x Arg<'a>>,
         builtin: Builtin,
-        name: &str,
     ) -> Vec<(Symbol, Binding<'a>)>
     where
         'a: 'x,
@@ -655,8 +656,7 @@ impl<'a> Instance<'a, '_> {
         for arg in args {
             let ArgKind::Modify(path, modification) = arg.kind else { continue };
             let attribute = path[0].name;
-            if !known_attribute(attribute.as_str()) || path.len() > 1 {
-                let _ = builtin_name(builtin);
+            if !attributes_of(builtin).contains(&attribute.as_str()) || path.len() > 1 {
                 self.unknown_attribute(attribute, path[0].span, builtin);
                 continue;
             }
@@ -667,16 +667,15 @@ impl<'a> Instance<'a, '_> {
             let binding = Binding { expr, view: arg.view, access: arg.access.clone(), final_: arg.final_ };
             attributes.push((attribute, binding));
         }
-        let _ = name;
         attributes
     }
 
-    fn state_select(&mut self, data: &VarData<'a>) -> StateSelect {
-        let Some((_, b)) = data.attributes.iter().find(|(n, _)| *n == "stateSelect") else {
+    fn state_select(&mut self, i: u32) -> StateSelect {
+        let attributes = &self.variables[i as usize].attributes;
+        let Some((name, b)) = attributes.iter().find(|(n, _)| *n == "stateSelect").cloned() else {
             return StateSelect::Default;
         };
-        let b = b.clone();
-        match self.binding_value(&b, true).and_then(|v| v.as_number(&self.exprs)) {
+        match self.known_attribute(i, name, &b, Type::Enumeration(STATE_SELECT)) {
             Some(1.0) => StateSelect::Never,
             Some(2.0) => StateSelect::Avoid,
             Some(4.0) => StateSelect::Prefer,
@@ -796,20 +795,15 @@ struct Part<'a> {
     final_: bool,
 }
 
-fn known_attribute(name: &str) -> bool {
-    matches!(
-        name,
-        "start"
-            | "fixed"
-            | "min"
-            | "max"
-            | "nominal"
-            | "unit"
-            | "displayUnit"
-            | "quantity"
-            | "stateSelect"
-            | "unbounded"
-    )
+/// The attributes of a predefined type (MLS 4.9).
+pub(super) fn attributes_of(builtin: Builtin) -> &'static [&'static str] {
+    match builtin {
+        Builtin::Real => {
+            &["start", "fixed", "min", "max", "nominal", "unit", "displayUnit", "quantity", "stateSelect", "unbounded"]
+        }
+        Builtin::Integer | Builtin::Enumeration(_) => &["start", "fixed", "min", "max", "quantity"],
+        Builtin::Boolean | Builtin::String => &["start", "fixed", "quantity"],
+    }
 }
 
 fn joined(owner: &str, name: Symbol) -> String {
@@ -817,10 +811,11 @@ fn joined(owner: &str, name: Symbol) -> String {
 }
 
 /// Row-major index of an element.
-fn unravel(mut flat: usize, dims: &[usize]) -> Vec<u32> {
-    let mut index = vec![0; dims.len()];
+fn unravel(mut flat: usize, dims: &[usize]) -> Vec<At> {
+    let small = |n: usize| u32::try_from(n).expect("limited above");
+    let mut index = vec![At { place: 0, of: 0 }; dims.len()];
     for (i, &d) in dims.iter().enumerate().rev() {
-        index[i] = u32::try_from(flat % d).expect("limited above");
+        index[i] = At { place: small(flat % d), of: small(d) };
         flat /= d;
     }
     index

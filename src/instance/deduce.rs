@@ -1,9 +1,10 @@
 //! Loops without a range, `for i loop x[i] = ...`: it is `1:size(x, 1)`, after an array that the variable indexes alone
 //! (MLS 10.4.1.1, 11.2.2.1).
 
+use super::evaluate::Extent;
 use super::lookup::Found;
-use super::value::Val;
 use super::{Instance, Node, View};
+use crate::flat::Type;
 use crate::syntax::ast::{Equation, EquationKind, Expr, ExprKind, Reference, Statement, StatementKind, Subscript};
 use crate::syntax::symbol::Symbol;
 
@@ -20,7 +21,7 @@ pub enum Body<'a> {
 
 impl<'a> Instance<'a, '_> {
     /// How often a loop over `name` runs, where an array tells.
-    pub(super) fn deduced_count(&mut self, name: Symbol, body: Body<'a>, view: View) -> Option<usize> {
+    pub(super) fn deduced_extent(&mut self, name: Symbol, body: Body<'a>, view: View) -> Option<Extent> {
         let mut found: Vec<(&'a Reference, usize, usize)> = Vec::new();
         walk(body, &mut |r| {
             for (p, part) in r.parts.iter().enumerate() {
@@ -31,12 +32,14 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// The size of the array that `parts[..=part]` names without its subscripts.
-    fn indexed_size(&mut self, r: &'a Reference, part: usize, dimension: usize, view: View) -> Option<usize> {
+    fn indexed_size(&mut self, r: &'a Reference, part: usize, dimension: usize, view: View) -> Option<Extent> {
         let first = r.parts[0].name.name;
         if part == 0
             && let Some(i) = self.local(first)
         {
-            return self.eval.locals[i].1.dims().get(dimension).copied();
+            let size = *self.eval.locals[i].1.dims().get(dimension)?;
+            let by = self.counted_by(view, first).get(dimension).copied().unwrap_or(Type::Integer);
+            return Some(Extent { size, by });
         }
         let Found::Component(mut scope, mut index) = self.lookup(view, first)? else { return None };
         for step in &r.parts[1..=part] {
@@ -47,8 +50,8 @@ impl<'a> Instance<'a, '_> {
         }
         let node = self.component(scope, index)?;
         match self.node(node) {
-            Node::Array { dims, .. } => dims.get(dimension).copied(),
-            _ => self.node_value(node, r.span).as_ref().map(Val::dims)?.get(dimension).copied(),
+            Node::Array { dims, by, .. } => Some(Extent { size: *dims.get(dimension)?, by: by[dimension] }),
+            _ => None,
         }
     }
 

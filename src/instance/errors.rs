@@ -165,29 +165,15 @@ impl<'a> Instance<'a, '_> {
     }
 
     pub(super) fn unknown_attribute(&mut self, name: Symbol, span: Span, builtin: Builtin) {
-        const ALL: [&str; 13] = [
-            "start",
-            "fixed",
-            "min",
-            "max",
-            "nominal",
-            "unit",
-            "displayUnit",
-            "quantity",
-            "stateSelect",
-            "unbounded",
-            "each",
-            "final",
-            "value",
-        ];
+        let known = super::build::attributes_of(builtin);
         let ty = builtin_name(builtin);
         let mut d =
             Diagnostic::new(Code::UnknownModifier, format!("`{}` is not an attribute of `{ty}`", short(name.as_str())))
                 .at(span, "not known here");
-        if let Some(near) = nearest(name.as_str(), ALL) {
+        if let Some(near) = nearest(name.as_str(), known.iter().copied()) {
             d = d.help(format!("did you mean `{near}`?"));
         } else {
-            d = d.help("attributes are: start, fixed, min, max, nominal, unit, displayUnit, quantity, stateSelect");
+            d = d.help(format!("attributes are: {}", known.join(", ")));
         }
         self.report(d);
     }

@@ -1,6 +1,7 @@
 //! Expressions of the language to values: symbolic in the flat model, by number where a value must be known.
 
 use super::deduce::Body;
+use super::errors::short;
 use super::modifiers::{Access, Binding};
 use super::value::{Val, size_text, stack, wider};
 use super::{Instance, View};
@@ -23,8 +24,8 @@ pub struct State {
     pub constant: bool,
     /// Relations make no events.
     pub no_event: bool,
-    /// Sizes that `end` means, innermost last.
-    pub ends: Vec<usize>,
+    /// Sizes that `end` means, and what counts along the dimension, innermost last.
+    pub ends: Vec<(usize, Type)>,
     /// Depth of function calls.
     pub depth: usize,
     /// Set when a function cannot be written as an expression and must become a procedure.
@@ -128,7 +129,9 @@ impl<'a> Instance<'a, '_> {
                 self.subscript(value, subscripts, view, e.span)
             }
             ExprKind::End => match self.eval.ends.last() {
-                Some(&n) => Some(self.integer(n as f64)),
+                // of an enumeration its last literal, of truth values `true` (MLS 10.5)
+                Some(&(_, Type::Boolean)) => Some(Val::Scalar(Exprs::ONE, Type::Boolean)),
+                Some(&(n, by)) => Some(Val::Scalar(self.exprs.num(n as f64), by)),
                 None => self.fail(Code::BadIndex, "`end` is only known inside brackets `[...]`", e.span),
             },
             ExprKind::PartialApplication { function, named } => self.partial_application(function, named, view),
@@ -156,11 +159,17 @@ impl<'a> Instance<'a, '_> {
         }
     }
 
-    /// A size that must be known: a whole number, or an enumeration type.
-    pub fn dimension(&mut self, e: &'a Expr, view: View) -> Option<usize> {
-        if let Some(literals) = self.enumeration_range(e, view) {
-            return Some(literals.len());
+    /// A dimension: a whole number that must be known, or a type whose values count.
+    pub(super) fn extent(&mut self, e: &'a Expr, view: View) -> Option<Extent> {
+        if let Some(values) = self.enumeration_range(e, view) {
+            let by = values.first().and_then(Val::element_type)?;
+            return Some(Extent { size: values.len(), by });
         }
+        Some(Extent { size: self.dimension(e, view)?, by: Type::Integer })
+    }
+
+    /// A size that must be known.
+    pub(super) fn dimension(&mut self, e: &'a Expr, view: View) -> Option<usize> {
         let value = self.constant(e, view)?;
         match (value.scalar(), value.as_number(&self.exprs)) {
             (Some((_, Type::Integer)), Some(x)) if (0.0..1e9).contains(&x) => Some(x as usize),
@@ -221,7 +230,10 @@ impl<'a> Instance<'a, '_> {
     fn access(&mut self, mut value: Val, access: &[Access], span: Span) -> Option<Val> {
         for step in access {
             let next = match step {
-                Access::Index(i) => value.slice(*i as usize),
+                Access::Index(at) if value.dims().first().is_some_and(|&n| n == at.of as usize) => {
+                    value.slice(at.place as usize)
+                }
+                Access::Index(_) => None,
                 Access::Field(name) => match &value {
                     Val::Record(fields) => fields.iter().find(|(n, _)| n == name).map(|(_, v)| v.clone()),
                     _ => None,
@@ -229,18 +241,8 @@ impl<'a> Instance<'a, '_> {
             };
             value = match (next, step) {
                 (Some(v), _) => v,
-                (None, Access::Index(i)) => {
-                    let d = Diagnostic::new(
-                        Code::SizeMismatch,
-                        format!(
-                            "an array of at least {} elements is needed here, and this is {}",
-                            i + 1,
-                            value.describe()
-                        ),
-                    )
-                    .at(span, "the value for an array")
-                    .help("give one value for each element, or write `each` to give all of them the same");
-                    self.report(d);
+                (None, Access::Index(at)) => {
+                    self.wrong_count(at.of, &value, span);
                     return None;
                 }
                 (None, Access::Field(name)) => {
@@ -250,6 +252,19 @@ impl<'a> Instance<'a, '_> {
             };
         }
         Some(value)
+    }
+
+    /// A value for an array of another size, told once for all its elements.
+    fn wrong_count(&mut self, wanted: u32, value: &Val, span: Span) {
+        let message = format!("an array of {wanted} elements is needed here, and this is {}", value.describe());
+        if self.diagnostics.iter().any(|d| d.message == message && d.labels.first().is_some_and(|l| l.span == span)) {
+            return;
+        }
+        self.report(
+            Diagnostic::new(Code::SizeMismatch, message)
+                .at(span, "the value for an array")
+                .help("give one value for each element, or write `each` to give all of them the same"),
+        );
     }
 
     pub(super) fn stacked(&mut self, values: Vec<Val>, span: Span) -> Option<Val> {
@@ -574,6 +589,10 @@ impl<'a> Instance<'a, '_> {
         }
     }
 
+    fn truth_values(&mut self) -> Vec<Val> {
+        [false, true].map(|b| Val::Scalar(self.exprs.boolean(b), Type::Boolean)).into()
+    }
+
     /// The literals when a range is an enumeration type or `Boolean`.
     pub(super) fn enumeration_range(&mut self, e: &'a Expr, view: View) -> Option<Vec<Val>> {
         use super::lookup::{Builtin, Found};
@@ -595,7 +614,7 @@ impl<'a> Instance<'a, '_> {
             Found::Component(..) => return None,
         };
         match builtin {
-            Builtin::Boolean => Some([false, true].map(|b| Val::Scalar(self.exprs.boolean(b), Type::Boolean)).into()),
+            Builtin::Boolean => Some(self.truth_values()),
             Builtin::Enumeration(i) => {
                 let n = self.enumerations[i as usize].literals.len();
                 Some((1..=n).map(|k| Val::Scalar(self.exprs.num(k as f64), Type::Enumeration(i))).collect())
@@ -637,8 +656,9 @@ impl<'a> Instance<'a, '_> {
         view: View,
     ) -> Option<Vec<Val>> {
         let name = iterator.name.name;
-        match self.deduced_count(name, body, view) {
-            Some(n) => Some((1..=n).map(|i| self.integer(i as f64)).collect()),
+        match self.deduced_extent(name, body, view) {
+            Some(Extent { by: Type::Boolean, .. }) => Some(self.truth_values()),
+            Some(Extent { size, by }) => Some((1..=size).map(|i| Val::Scalar(self.exprs.num(i as f64), by)).collect()),
             None => {
                 self.report(
                     Diagnostic::new(Code::BadIndex, format!("how often the loop over `{name}` runs is not said"))
@@ -712,6 +732,18 @@ impl<'a> Instance<'a, '_> {
 
     /// Applies subscripts to a value.
     pub(super) fn subscript(&mut self, value: Val, subscripts: &'a [Subscript], view: View, span: Span) -> Option<Val> {
+        self.subscript_by(value, subscripts, &[], view, span)
+    }
+
+    /// Applies subscripts to the value of an array of which is known what counts along its dimensions.
+    pub(super) fn subscript_by(
+        &mut self,
+        value: Val,
+        subscripts: &'a [Subscript],
+        by: &[Type],
+        view: View,
+        span: Span,
+    ) -> Option<Val> {
         if subscripts.is_empty() {
             return Some(value);
         }
@@ -724,7 +756,7 @@ impl<'a> Instance<'a, '_> {
         }
         let mut picks = Vec::new();
         for (i, s) in subscripts.iter().enumerate() {
-            picks.push(self.index(s, dims[i], view, span)?);
+            picks.push(self.index(s, (dims[i], by.get(i).copied()), view, span)?);
         }
         picks.extend(dims[subscripts.len()..].iter().map(|&n| Pick::Many((0..n).collect())));
         if picks.iter().any(|p| matches!(p, Pick::Symbolic(_))) {
@@ -733,16 +765,25 @@ impl<'a> Instance<'a, '_> {
         Some(pick(dims, elements, &picks))
     }
 
-    /// One subscript: a known place, several, or one only known at run time.
-    pub(super) fn index(&mut self, s: &'a Subscript, size: usize, view: View, span: Span) -> Option<Pick> {
+    /// One subscript: a known place, several, or one only known at run time. What counts along the dimension is not
+    /// known of an array that was computed.
+    pub(super) fn index(
+        &mut self,
+        s: &'a Subscript,
+        (size, by): (usize, Option<Type>),
+        view: View,
+        span: Span,
+    ) -> Option<Pick> {
         let Subscript::Expr(e) = s else { return Some(Pick::Many((0..size).collect())) };
         if let Some(all) = self.enumeration_range(e, view) {
+            self.check_index(all.first().and_then(Val::element_type), by, e.span)?;
             return Some(Pick::Many((0..all.len()).collect()));
         }
-        self.eval.ends.push(size);
+        self.eval.ends.push((size, by.unwrap_or(Type::Integer)));
         let value = self.eval(e, view);
         self.eval.ends.pop();
         let value = value?;
+        self.check_index(value.element_type(), by, e.span)?;
         match &value {
             Val::Scalar(id, Type::Boolean) if size == 2 => Some(self.boolean_index(*id)),
             Val::Scalar(id, ty @ (Type::Integer | Type::Enumeration(_))) => match self.exprs.as_num(*id) {
@@ -762,22 +803,41 @@ impl<'a> Instance<'a, '_> {
             },
             Val::Array { elements, .. } => {
                 let mut places = Vec::new();
-                for (k, v) in elements.iter().enumerate() {
+                for v in elements.iter() {
                     let Some(x) = v.as_number(&self.exprs) else {
                         return self.fail(Code::NotConstant, "an index must be known before the run", span);
                     };
-                    if v.element_type() == Some(Type::Boolean) {
-                        if x != 0.0 {
-                            places.push(self.in_range(k as f64 + 1.0, size, e.span)?);
-                        }
-                    } else {
-                        places.push(self.in_range(x, size, e.span)?);
-                    }
+                    let first = if v.element_type() == Some(Type::Boolean) { 0.0 } else { 1.0 };
+                    places.push(self.in_range(x - first + 1.0, size, e.span)?);
                 }
                 Some(Pick::Many(places))
             }
             _ => self.wrong_type("an Integer", &value, e.span),
         }
+    }
+
+    /// An array is indexed by what its declaration counts by (MLS 10.5): literals of an enumeration and numbers do not
+    /// stand for each other.
+    fn check_index(&mut self, given: Option<Type>, by: Option<Type>, span: Span) -> Option<()> {
+        let (Some(given), Some(by)) = (given, by) else { return Some(()) };
+        if given == by {
+            return Some(());
+        }
+        let (wanted, words) = (self.type_words(by), self.type_words(given));
+        let help = match (by, given) {
+            (Type::Enumeration(e), _) => {
+                let e = &self.enumerations[e as usize];
+                let name = short(&e.name);
+                let first = e.literals.first().map_or("", |l| l.as_str());
+                format!("give a literal, as in `[{name}.{first}]`, or loop with `for i in {name} loop`")
+            }
+            (Type::Boolean, _) => "give `false` or `true`, or a relation".into(),
+            (_, Type::Enumeration(_)) => "`Integer(e)` is the number of an enumeration value".into(),
+            _ => "give a whole number; `integer(x)` is the one below `x`".into(),
+        };
+        let message = format!("this dimension counts by {wanted}, and the index is {words}");
+        self.report(Diagnostic::new(Code::TypeMismatch, message).at(span, "the index").help(help));
+        None
     }
 
     /// `false` and `true` as indices of an array declared with `[Boolean]`.
@@ -844,6 +904,15 @@ impl<'a> Instance<'a, '_> {
         }
         result.or_else(|| self.fail(Code::BadIndex, "an index into an empty array", span))
     }
+}
+
+/// One dimension of an array.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Extent {
+    /// How many elements.
+    pub size: usize,
+    /// What counts: Integers, truth values or the literals of an enumeration.
+    pub by: Type,
 }
 
 /// A subscript after evaluation.

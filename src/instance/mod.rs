@@ -119,6 +119,8 @@ pub enum Node {
     Array {
         /// Sizes.
         dims: Vec<usize>,
+        /// What counts along each dimension: Integers, truth values or the literals of an enumeration.
+        by: Rc<[Type]>,
         /// Elements.
         elements: Rc<[NodeId]>,
     },

@@ -9,10 +9,19 @@ use std::rc::Rc;
 /// A step from the value of a modifier to the part meant for one element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Access {
-    /// The element of an array, counted from 0.
-    Index(u32),
+    /// The element of an array.
+    Index(At),
     /// The field of a record.
     Field(Symbol),
+}
+
+/// A place along one dimension of an array.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct At {
+    /// Counted from 0.
+    pub place: u32,
+    /// How many places there are.
+    pub of: u32,
 }
 
 /// An expression with the place in which its names mean something, and the part of its value that is meant.
@@ -160,7 +169,7 @@ impl<'a> Reached<'a> {
 }
 
 /// Adds an array index to the arguments and value meant for one element of an array.
-pub fn indexed<'a>(args: &[Arg<'a>], index: &[u32]) -> Rc<[Arg<'a>]> {
+pub fn indexed<'a>(args: &[Arg<'a>], index: &[At]) -> Rc<[Arg<'a>]> {
     let extend = |a: &Arg<'a>| {
         if a.each { a.clone() } else { Arg { access: extended(&a.access, index), ..a.clone() } }
     };
@@ -168,7 +177,7 @@ pub fn indexed<'a>(args: &[Arg<'a>], index: &[u32]) -> Rc<[Arg<'a>]> {
 }
 
 /// Appends indices to an access path.
-pub fn extended(access: &Rc<[Access]>, index: &[u32]) -> Rc<[Access]> {
+pub fn extended(access: &Rc<[Access]>, index: &[At]) -> Rc<[Access]> {
     if index.is_empty() {
         return access.clone();
     }

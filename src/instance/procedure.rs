@@ -406,8 +406,9 @@ impl<'a> Instance<'a, '_> {
             return Some(None);
         }
         let mut picks = Vec::new();
-        for (s, &n) in part.subscripts.iter().zip(dims) {
-            picks.push(self.index(s, n, view, span)?);
+        let by = if k == 0 { self.counted_by(view, part.name.name) } else { Vec::new() };
+        for (i, (s, &n)) in part.subscripts.iter().zip(dims).enumerate() {
+            picks.push(self.index(s, (n, by.get(i).copied()), view, span)?);
         }
         if !picks.iter().any(|p| matches!(p, Pick::Symbolic(_))) {
             return Some(None);

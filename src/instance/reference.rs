@@ -4,12 +4,13 @@ use super::deduce::Body;
 use super::errors::{list_names, nearest, short};
 use super::evaluate::{Pick, QUANTITY};
 use super::lookup::{Builtin, Found};
+use super::modifiers::Binding;
 use super::template::Kind;
 use super::value::Val;
 use super::{ElementState, Instance, Node, NodeId, ScopeId, View};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::flat::{Type, Variability};
-use crate::syntax::ast::{ClassKind, ExprKind, Reference, ReferencePart};
+use crate::syntax::ast::{ClassKind, ExprKind, Reference, ReferencePart, Subscript};
 use crate::syntax::symbol::Symbol;
 use std::rc::Rc;
 
@@ -20,6 +21,8 @@ pub struct Selection {
     pub dims: Vec<usize>,
     /// How many of the sizes, counted from the last, belong to the component named last.
     pub own: usize,
+    /// What counts along these.
+    pub by: Rc<[Type]>,
     /// The components, row-major; shared, for a reference to one element of a long array passes through the whole.
     pub nodes: Rc<[NodeId]>,
 }
@@ -63,12 +66,30 @@ impl<'a> Instance<'a, '_> {
 
     /// Fields and indices of a local.
     fn local_part(&mut self, mut value: Val, r: &'a Reference, view: View) -> Option<Val> {
-        value = self.subscript(value, &r.parts[0].subscripts, view, r.span)?;
+        let first = &r.parts[0];
+        if !first.subscripts.is_empty() {
+            let by = self.counted_by(view, first.name.name);
+            value = self.subscript_by(value, &first.subscripts, &by, view, r.span)?;
+        }
         for part in &r.parts[1..] {
             value = self.field(&value, part.name.name, part.name.span)?;
             value = self.subscript(value, &part.subscripts, view, r.span)?;
         }
         Some(value)
+    }
+
+    /// What counts along the dimensions with which a local of a function, or of an algorithm section, was declared.
+    pub(super) fn counted_by(&mut self, view: View, name: Symbol) -> Vec<Type> {
+        let Some(Found::Component(scope, index)) = self.lookup(view, name) else { return Vec::new() };
+        let template = self.scope(scope).template.clone();
+        let element = &template.elements[index as usize];
+        let Kind::Component(declared) = element.kind else { return Vec::new() };
+        let own = View { scope, base: element.base };
+        let by = |s: &'a Subscript| match s {
+            Subscript::Expr(e) => self.enumeration_range(e, own).and_then(|v| v.first().and_then(Val::element_type)),
+            Subscript::All(_) => None,
+        };
+        declared.subscripts.iter().map(by).map(|by| by.unwrap_or(Type::Integer)).collect()
     }
 
     /// A field of a record, or of every record of an array.
@@ -146,10 +167,10 @@ impl<'a> Instance<'a, '_> {
     /// A node as a selection.
     pub fn selection(&self, node: NodeId) -> Selection {
         match self.node(node) {
-            Node::Array { dims, elements } => {
-                Selection { dims: dims.clone(), own: dims.len(), nodes: elements.clone() }
+            Node::Array { dims, by, elements } => {
+                Selection { dims: dims.clone(), own: dims.len(), by: by.clone(), nodes: elements.clone() }
             }
-            _ => Selection { dims: Vec::new(), own: 0, nodes: Rc::from([node]) },
+            _ => Selection { dims: Vec::new(), own: 0, by: Rc::from([]), nodes: Rc::from([node]) },
         }
     }
 
@@ -180,7 +201,7 @@ impl<'a> Instance<'a, '_> {
 
     fn dynamic_selection(&mut self, at: &Selection, r: &'a Reference, part: usize, view: View) -> Option<Val> {
         let mut value = self.selection_value(at, r.span)?;
-        value = self.subscript(value, &r.parts[part].subscripts, view, r.span)?;
+        value = self.subscript_by(value, &r.parts[part].subscripts, &at.by, view, r.span)?;
         for p in &r.parts[part + 1..] {
             value = self.field(&value, p.name.name, p.name.span)?;
             value = self.subscript(value, &p.subscripts, view, r.span)?;
@@ -206,8 +227,8 @@ impl<'a> Instance<'a, '_> {
         // Indices belong to the component just named: the last dimensions came with it.
         let own = at.dims.len() - at.own;
         let mut picks: Vec<Pick> = at.dims[..own].iter().map(|&n| Pick::Many((0..n).collect())).collect();
-        for (s, &size) in p.subscripts.iter().zip(&at.dims[own..]) {
-            match self.index(s, size, view, span)? {
+        for ((s, &size), &by) in p.subscripts.iter().zip(&at.dims[own..]).zip(&*at.by) {
+            match self.index(s, (size, Some(by)), view, span)? {
                 Pick::Symbolic(_) => return Some(Err(())),
                 known => picks.push(known),
             }
@@ -215,14 +236,14 @@ impl<'a> Instance<'a, '_> {
         picks.extend(at.dims[picks.len()..].iter().map(|&n| Pick::Many((0..n).collect())));
         let (dims, places) = super::evaluate::places(&at.dims, &picks);
         let nodes = places.into_iter().map(|i| at.nodes[i]).collect();
-        Some(Ok(Selection { dims, own: 0, nodes }))
+        Some(Ok(Selection { dims, own: 0, by: Rc::from([]), nodes }))
     }
 
     /// One step down: a component or class inside the selected components.
     fn descend(&mut self, at: &Selection, p: &ReferencePart) -> Descent<'a> {
         let name = p.name.name;
         let mut nodes = Vec::new();
-        let mut inner: Option<Vec<usize>> = None;
+        let mut inner: Option<(Vec<usize>, Rc<[Type]>)> = None;
         for &node in &*at.nodes {
             let Node::Object(scope) = *self.node(node) else {
                 let whole = self.node_name(node);
@@ -264,7 +285,7 @@ impl<'a> Instance<'a, '_> {
                 }
             };
             let chosen = self.selection(child);
-            if inner.as_ref().is_some_and(|d| *d != chosen.dims) {
+            if inner.as_ref().is_some_and(|(d, _)| *d != chosen.dims) {
                 self.fail::<()>(
                     Code::SizeMismatch,
                     "the elements of this array have parts of different sizes",
@@ -272,13 +293,13 @@ impl<'a> Instance<'a, '_> {
                 );
                 return Descent::Failed;
             }
-            inner = Some(chosen.dims);
+            inner = Some((chosen.dims, chosen.by));
             nodes.extend_from_slice(&chosen.nodes);
         }
-        let inner = inner.unwrap_or_default();
+        let (inner, by) = inner.unwrap_or_else(|| (Vec::new(), Rc::from([])));
         let own = inner.len();
         let dims = at.dims.iter().copied().chain(inner).collect();
-        Descent::Nodes(Selection { dims, own, nodes: nodes.into() })
+        Descent::Nodes(Selection { dims, own, by, nodes: nodes.into() })
     }
 
     fn protected_element(&mut self, scope: ScopeId, name: Symbol, span: Span) {
@@ -539,7 +560,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// The value bound to a variable; a quantity given from outside is converted to the variable's unit.
-    pub fn bound(&mut self, i: u32, b: &super::modifiers::Binding<'a>, constant: bool) -> Option<Val> {
+    pub fn bound(&mut self, i: u32, b: &Binding<'a>, constant: bool) -> Option<Val> {
         if Some(b.expr.span.file) == self.eval.override_file
             && let Some(v) = self.outside_value(i, b)
         {
@@ -559,13 +580,20 @@ impl<'a> Instance<'a, '_> {
                 self.report(d);
                 None
             }
+            (true, other) if !matches!(other, Val::Text(_)) => {
+                let name = data.name.clone();
+                let message = format!("`{name}` is a String and cannot take {}", value.describe());
+                let d = Diagnostic::new(Code::TypeMismatch, message).at(b.expr.span, "the value").instance(name);
+                self.report(d.help("write a text in quotes; `String(x)` makes one of a number"));
+                None
+            }
             _ => Some(value),
         }
     }
 
     /// Values from outside may be quantities with units, literals of the variable's own enumeration, and texts without
     /// quotes.
-    fn outside_value(&mut self, i: u32, b: &super::modifiers::Binding<'a>) -> Option<Option<Val>> {
+    fn outside_value(&mut self, i: u32, b: &Binding<'a>) -> Option<Option<Val>> {
         let data = &self.variables[i as usize];
         if data.string && !matches!(b.expr.kind, ExprKind::String(_)) {
             return self.eval.texts.get(&data.name).map(|raw| Some(Val::text(raw.trim())));
@@ -615,10 +643,38 @@ impl<'a> Instance<'a, '_> {
         if let (ExprKind::String(s), true) = (&b.expr.kind, b.access.is_empty()) {
             return Some(s.to_string());
         }
-        self.binding_value(&b, true)?.as_text(&self.exprs)
+        let value = self.binding_value(&b, true)?;
+        let text = value.as_text(&self.exprs);
+        let told = |d: &Diagnostic| d.labels.first().is_some_and(|l| l.span == b.expr.span);
+        if text.is_none() && !self.diagnostics.iter().any(told) {
+            let name = self.variables[i as usize].name.clone();
+            let message = format!("`{attribute}` of `{name}` is a String and cannot take {}", value.describe());
+            let d = Diagnostic::new(Code::TypeMismatch, message).at(b.expr.span, "the value").instance(name);
+            self.report(d.help(format!("write a text in quotes, as in `{attribute} = \"...\"`")));
+        }
+        text
     }
 
-    fn type_words(&self, ty: Type) -> String {
+    /// An attribute that must be known while the model is built, such as `fixed`.
+    pub fn known_attribute(&mut self, i: u32, attribute: Symbol, b: &Binding<'a>, ty: Type) -> Option<f64> {
+        let value = self.binding_value(b, true)?;
+        let name = format!("{}.{attribute}", self.variables[i as usize].name);
+        self.coerce(value, ty, &name, b.expr.span)?.as_number(&self.exprs)
+    }
+
+    /// Texts have no place in the flat model: those of the model's own parameters are looked at here, read or not.
+    pub fn check_texts(&mut self) {
+        for i in 0..u32::try_from(self.variables.len()).expect("limited above") {
+            let data = &self.variables[i as usize];
+            let given = data.binding.is_some() || data.variability <= Variability::Parameter;
+            if data.string && given && data.constant.is_none() && self.scope(data.scope).component {
+                let span = data.span;
+                self.known_value(i, span);
+            }
+        }
+    }
+
+    pub(super) fn type_words(&self, ty: Type) -> String {
         match ty {
             Type::Enumeration(i) => format!("an enumeration `{}`", short(&self.enumerations[i as usize].name)),
             other => type_name(other).into(),

@@ -171,7 +171,7 @@ impl Collector {
     fn join(&mut self, instance: &mut Instance<'_, '_>, a: (NodeId, bool), b: (NodeId, bool), at: &Place) {
         match (instance.node(a.0).clone(), instance.node(b.0).clone()) {
             (Node::Var(x), Node::Var(y)) => self.join_variables(instance, (x, a.1), (y, b.1), at),
-            (Node::Array { dims: da, elements: x }, Node::Array { dims: db, elements: y }) if da == db => {
+            (Node::Array { dims: da, elements: x, .. }, Node::Array { dims: db, elements: y, .. }) if da == db => {
                 for (&x, &y) in x.iter().zip(y.iter()) {
                     self.join(instance, (x, a.1), (y, b.1), at);
                 }
