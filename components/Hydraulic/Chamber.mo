@@ -10,13 +10,13 @@ model Chamber "Chamber of a cylinder: oil behind a moving piston"
   parameter SI.Volume V_min(min = 1e-12, nominal = 1e-6) = 1e-6 "Least volume";
   parameter SI.Pressure p_ambient(nominal = 1e5) = 101325 "Pressure on the other side of the piston, absolute";
   parameter SI.Pressure p_start(nominal = 1e6) = 101325 "Pressure at the start";
+  replaceable model Air = EntrainedAir.Frozen constrainedby EntrainedAir.Law "What becomes of the air in the oil";
   SI.Pressure p(start = p_start, fixed = true, nominal = 1e6, stateSelect = StateSelect.prefer) "Pressure";
   SI.Volume V(nominal = 1e-4) "Volume";
   SI.Mass mass(nominal = 0.1) "Mass of the oil";
+  Air air(p = p, V = max(V, V_min), supply = noEvent(max(oil.density(p)*port.q, 0))*(oil.x_u - air.x)) "Air in the oil";
 protected
   SI.Velocity v(nominal = 0.1) "Velocity of the piston";
-  SI.Density rho(nominal = 1000) "Density";
-  SI.BulkModulus beta(nominal = 1e9) "Tangent bulk modulus";
 equation
   assert(A > 0, "The area A must be positive");
   assert(side == 1 or side == -1, "side must be 1 or -1");
@@ -25,9 +25,8 @@ equation
   p = port.p;
   v = der(flange.s);
   V = V_0 + side*A*(flange.s - s_0);
-  (rho, beta) = oil.density(p);
-  max(V, V_min)/beta*der(p) = port.q - side*A*v;
+  max(V, V_min)/air.beta*der(p) = air.port_density*port.q - side*A*v + air.swell;
   flange.f = -side*A*(p - p_ambient);
-  mass = rho*max(V, V_min);
-  annotation(Documentation(info = "<html><p><code>V/beta dp/dt = q - A v</code>, force <code>A (p - p_ambient)</code>. Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, section 6.1. Valid while the volume stays above <code>V_min</code>; the oil has one pressure throughout, so no waves.</p></html>"));
+  mass = air.rho*max(V, V_min);
+  annotation(Documentation(info = "<html><p><code>V/beta dp/dt = q - A v</code>, force <code>A (p - p_ambient)</code>. Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, section 6.1. Valid while the volume stays above <code>V_min</code>; the oil has one pressure throughout, so no waves. The air in the oil is frozen; <code>redeclare model Air = EntrainedAir.Dissolving</code> lets it dissolve and come out of solution with time.</p></html>"));
 end Chamber;

@@ -20,8 +20,9 @@ model Cylinder "Double-acting cylinder: two chambers, seal friction, leakage, en
   parameter SI.Velocity v_start = 0 "Velocity at the start";
   parameter SI.Pressure p_1_start(nominal = 1e6) = 101325 "Pressure of chamber 1 at the start";
   parameter SI.Pressure p_2_start(nominal = 1e6) = 101325 "Pressure of chamber 2 at the start";
-  Chamber chamber_1(A = A_1, side = 1, V_0 = V_01, s_0 = 0, p_ambient = p_ambient, p_start = p_1_start) "Chamber 1";
-  Chamber chamber_2(A = A_2, side = -1, V_0 = V_02, s_0 = stroke, p_ambient = p_ambient, p_start = p_2_start) "Chamber 2";
+  replaceable model Air = EntrainedAir.Frozen constrainedby EntrainedAir.Law "What becomes of the air in the oil";
+  Chamber chamber_1(redeclare model Air = Air, A = A_1, side = 1, V_0 = V_01, s_0 = 0, p_ambient = p_ambient, p_start = p_1_start) "Chamber 1";
+  Chamber chamber_2(redeclare model Air = Air, A = A_2, side = -1, V_0 = V_02, s_0 = stroke, p_ambient = p_ambient, p_start = p_2_start) "Chamber 2";
   LaminarGap leak(G = C_i, mu_G = mu_C, followViscosity = followViscosity) "Leakage past the piston";
   LaminarGap rodLeak(G = C_e, mu_G = mu_C, followViscosity = followViscosity) if rodLeakage "Leakage past the rod";
   Tank outside(p = p_ambient) if rodLeakage "What drips off";
@@ -55,6 +56,6 @@ equation
   annotation(Documentation(info = "<html>
 <p><code>V_1/beta dp_1/dt = q_1 - A_1 v - C_i (p_1 - p_2)</code>, <code>V_2/beta dp_2/dt = q_2 + A_2 v + C_i (p_1 - p_2)</code>,
 <code>m dv/dt = A_1 p_1 - A_2 p_2 - p_a (A_1 - A_2) - f + f_flange</code> (the rod outside carries the surroundings). The friction is replaceable: <code>SealFriction.None</code>, <code>Viscous</code>,
-<code>Stribeck</code> (default), <code>LuGre</code>, <code>Sticking</code>.</p>
+<code>Stribeck</code> (default), <code>LuGre</code>, <code>Sticking</code>. So is the law of the air in the oil of the chambers (<code>EntrainedAir</code>).</p>
 <p>Defaults: bore 80 mm, rod 40 mm, stroke 180 mm. For equal areas set A_2 = A_1. Source: Zhang et al., Processes 2021, 9, 814, section 3.3, with the two chambers apart.</p></html>"));
 end Cylinder;

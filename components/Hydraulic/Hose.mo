@@ -6,9 +6,10 @@ model Hose "Short hose: oil and wall as one volume between two resistances"
   parameter SI.Diameter d(min = 1e-4, max = 1, nominal = 1e-2) = 1e-2 "Inner diameter";
   parameter SI.BulkModulus beta_wall(min = 1e6, nominal = 1e9) = 7e8 "Modulus of the wall, 0.5 to 1 GPa";
   parameter SI.Pressure p_start(nominal = 1e6) = 101325 "Pressure at the start";
+  replaceable model Air = EntrainedAir.Frozen constrainedby EntrainedAir.Law "What becomes of the air in the oil";
   PipeResistance half_a(L = L/2, d = d) "First half";
   PipeResistance half_b(L = L/2, d = d) "Second half";
-  Volume volume(V = Modelica.Constants.pi*d^2/4*L, beta_wall = beta_wall, p_start = p_start) "Oil and wall";
+  Volume volume(redeclare model Air = Air, V = Modelica.Constants.pi*d^2/4*L, beta_wall = beta_wall, p_start = p_start) "Oil and wall";
 equation
   connect(port_a, half_a.port_a);
   connect(half_a.port_b, volume.port);

@@ -14,9 +14,11 @@ model Line "Pipe or hose of n cells: inertia of the oil, laminar and turbulent f
   parameter SI.Pressure p_start(nominal = 1e6) = 101325 "Pressure at the start, at port a";
   parameter SI.Pressure p_b_start(nominal = 1e6) = p_start "Pressure at the start, at port b";
   parameter SI.MassFlowRate m_flow_start(nominal = 0.1) = 0 "Mass flow at the start";
+  replaceable model Air = EntrainedAir.Frozen constrainedby EntrainedAir.Law "What becomes of the air in the oil";
   SI.Pressure p[N](start = {p_start + (p_b_start - p_start)*x[i] for i in 1:N}, each fixed = true, each nominal = 1e6) "Pressures of the cells";
   SI.MassFlowRate m_flow[M](each start = m_flow_start, each fixed = true, each nominal = 0.1) "Mass flows between the cells, from a to b";
   SI.Mass mass(nominal = 1) "Mass of the oil";
+  Air air[N](p = p, V = V_p, supply = supply) "Air in the cells";
   Friction friction[M](L = share*L, each d = d) "Friction between the cells";
 protected
   constant Real g = Modelica.Constants.g_n;
@@ -29,8 +31,9 @@ protected
   parameter Real x[N] = {if staggered then (i - a)/n else (i - 0.5)/n for i in 1:N} "Places of the cells over the length";
   parameter SI.Volume V[N] = {if volume_a and i == 1 or volume_b and i == N then 0.5*A*L/n else A*L/n for i in 1:N} "Volumes of the cells";
   parameter Real share[M] = {if not staggered and (i == 1 or i == M) then 0.5/n else 1/n for i in 1:M} "Share of the length between cells";
-  SI.Density rho[N](each nominal = 1000) "Densities";
-  SI.BulkModulus beta[N](each nominal = 1e9) "Moduli of the oil";
+  SI.MassFlowRate m_left[N](each nominal = 0.1) "Mass flows into the cells from the side of a";
+  SI.MassFlowRate m_right[N](each nominal = 0.1) "Mass flows out of the cells to the side of b";
+  SI.MassFlowRate supply[N](each nominal = 0.1) "What flows into the cells, by the share of its air above the one there";
   SI.Volume V_p[N](each nominal = 1e-4) "Volumes of the cells under pressure";
   SI.Density rho_m[M](each nominal = 1000) "Densities between the cells: that of the cell before, at the first that of the cell after";
   SI.MassFlowRate m_a(nominal = 0.1) "Mass flow into port a";
@@ -51,13 +54,15 @@ equation
     m_b = m_flow[M];
   end if;
   for i in 1:N loop
-    (rho[i], beta[i]) = oil.density(p[i]);
     V_p[i] = V[i]*(1 + (p[i] - oil.p_0)/beta_wall);
-    rho[i]*(V_p[i]/beta[i] + V[i]/beta_wall)*der(p[i]) =
-      (if i - a < 1 then m_a else m_flow[max(i - a, 1)]) - (if i - a + 1 > M then m_b else m_flow[min(i - a + 1, M)]);
+    m_left[i] = if i - a < 1 then m_a else m_flow[max(i - a, 1)];
+    m_right[i] = if i - a + 1 > M then m_b else m_flow[min(i - a + 1, M)];
+    supply[i] = noEvent(max(m_left[i], 0))*((if i > 1 then air[max(i - 1, 1)].x else oil.x_u) - air[i].x)
+      + noEvent(max(-m_right[i], 0))*((if i < N then air[min(i + 1, N)].x else oil.x_u) - air[i].x);
+    air[i].rho*(V_p[i]/air[i].beta + V[i]/beta_wall)*der(p[i]) = m_left[i] - m_right[i] + air[i].rho*air[i].swell;
   end for;
   for i in 1:M loop
-    rho_m[i] = rho[max(i - 1 + a, 1)];
+    rho_m[i] = air[max(i - 1 + a, 1)].rho;
     friction[i].m_flow = m_flow[i];
     friction[i].rho = rho_m[i];
     friction[i].mu = oil.mu;
@@ -65,10 +70,11 @@ equation
       (if i - 1 + a < 1 then port_a.p else p[max(i - 1 + a, 1)]) - (if i + a > N then port_b.p else p[min(i + a, N)])
       - friction[i].dp - share[i]*rho_m[i]*g*dh;
   end for;
-  mass = rho*V_p;
+  mass = air.rho*V_p;
   annotation(Documentation(info = "<html>
 <p>Each cell stores mass, <code>d(rho V)/dt = m_i - m_(i+1)</code>; between cells the oil is accelerated, <code>L/A dm/dt = p_i - p_(i+1) - dp_f - rho g dh</code>. As it stands, half a cell's length lies at both ends, which carry a flow as state: join them to sources, volumes, or components with resistance.
 Where a valve closes at an end, or a line ends blind, let a volume lie there: <code>volume_a</code>, <code>volume_b</code>; the pressure of that port is then a state.</p>
 <p>With laminar friction the line tends to the solution by characteristics with second order in the number of cells: a wave as long as the line comes out to 2 % with 20 cells, to 0.1 % with 80. Steeper fronts ring behind them, with a wave length of two cells. Friction is quasi-steady, which damps fast waves too little; <code>redeclare model Friction = LineFriction.Unsteady</code> weights the past of the flow. Valid for flows far below the speed of sound.</p>
+<p>The air in the oil is frozen; with <code>redeclare model Air = EntrainedAir.Dissolving</code> each cell has a share of its own that dissolves, comes out of solution, and is carried along with the flow.</p>
 <p>Source: E. B. Wylie and V. L. Streeter, Fluid Transients in Systems, 1993, chapters 2 and 12.</p></html>"));
 end Line;

@@ -18,6 +18,10 @@ model PistonMachine "Axial piston machine, chamber by chamber: port timing, comp
   parameter SI.Angle opening(min = 1e-3, max = 0.5) = 3*Modelica.Constants.pi/180 "Angle over which a port opens";
   parameter SI.Angle timing_a(min = -0.5, max = 0.5) = 0 "Delay of port A against the dead centres";
   parameter SI.Angle timing_b(min = -0.5, max = 0.5) = 0 "Delay of port B against the dead centres";
+  parameter SI.Area A_groove(min = 0, max = 1e-4, nominal = 1e-6, displayUnit = "mm2") = 0 "Cross section of a silencing groove where its port begins to open; 0: without grooves";
+  parameter SI.Angle groove(min = 1e-3, max = 0.5) = 8*Modelica.Constants.pi/180 "Angle over which a groove widens, ahead of its port";
+  parameter SI.Angle early(min = 0, max = 0.5) = 0 "Angle before the end of its half turn at which a port closes, to leave room for the groove of the other";
+  parameter Boolean oneWay = false "true: ports let oil pass in the direction of pumping only, as check valves" annotation(Evaluate = true);
   parameter Real C_d(unit = "1", min = 0.1, max = 1) = 0.65 "Discharge coefficient";
   parameter SI.Pressure t(min = 100, max = 1e6, nominal = 1e3) = 2e3 "Width of the laminar transition of the ports";
   parameter SI.Pressure p_start(nominal = 1e6) = 5e5 "Pressure of the chambers at the start";
@@ -46,9 +50,14 @@ protected
   parameter SI.Area A_p = pi*d^2/4 "Area of a piston";
   parameter SI.Area A_drag = if drag then pi*d*h/2 else 0 "Area that the dragged oil adds to that of a piston: up to the middle of the gap";
   parameter Real s_o = sin(opening) "Sine of the opening angle";
+  parameter Real s_g = sin(groove) "Sine of the angle of a groove";
   Interfaces.RealInput u_used "Displacement";
   SI.Angle phi[z] "Angles of the pistons, 0 at the outer dead centre";
   SI.Velocity v[z](each nominal = 0.1) "Velocities of the pistons inward";
+  SI.Area A_a[z](each nominal = 1e-5) "Cross sections to port A";
+  SI.Area A_b[z](each nominal = 1e-5) "Cross sections to port B";
+  SI.Pressure dp_a[z](each nominal = 1e6) "Pressure drops to port A";
+  SI.Pressure dp_b[z](each nominal = 1e6) "Pressure drops from port B";
   SI.Density rho[z](each nominal = 1000) "Densities of the chambers";
   SI.BulkModulus beta[z](each nominal = 1e9) "Moduli of the chambers";
   SI.Density rho_a(nominal = 1000) "Density at A";
@@ -71,8 +80,19 @@ equation
     V[i] = V_d + A_p*(H/2)*(1 + u_used*cos(phi[i]));
     v[i] = H/2*u_used*w*sin(phi[i]);
     (rho[i], beta[i]) = oil.density(p[i]);
-    q_a[i] = C_d*(A_leak + A_port*Smooth.step(sin(phi[i] - timing_a)/s_o))*sqrt(4/(rho[i] + rho_a))*Smooth.root(p[i] - port_a.p, t);
-    q_b[i] = C_d*(A_leak + A_port*Smooth.step(-sin(phi[i] - timing_b)/s_o))*sqrt(4/(rho[i] + rho_b))*Smooth.root(port_b.p - p[i], t);
+    if A_groove > 0 or early > 0 then
+      A_a[i] = A_leak + A_port*Smooth.step(sin(phi[i] - timing_a)/s_o)*Smooth.step(sin(phi[i] - timing_a + early)/s_o)
+        + A_groove*Smooth.step(1 + sin(phi[i] - timing_a)/s_g)*Smooth.step(0.5 + cos(phi[i] - timing_a));
+      A_b[i] = A_leak + A_port*Smooth.step(-sin(phi[i] - timing_b)/s_o)*Smooth.step(-sin(phi[i] - timing_b + early)/s_o)
+        + A_groove*Smooth.step(1 - sin(phi[i] - timing_b)/s_g)*Smooth.step(0.5 - cos(phi[i] - timing_b));
+    else
+      A_a[i] = A_leak + A_port*Smooth.step(sin(phi[i] - timing_a)/s_o);
+      A_b[i] = A_leak + A_port*Smooth.step(-sin(phi[i] - timing_b)/s_o);
+    end if;
+    dp_a[i] = if oneWay then noEvent(max(p[i] - port_a.p, 0)) else p[i] - port_a.p;
+    dp_b[i] = if oneWay then noEvent(max(port_b.p - p[i], 0)) else port_b.p - p[i];
+    q_a[i] = C_d*A_a[i]*sqrt(4/(rho[i] + rho_a))*Smooth.root(dp_a[i], t);
+    q_b[i] = C_d*A_b[i]*sqrt(4/(rho[i] + rho_b))*Smooth.root(dp_b[i], t);
     q_l[i] = pi*d*h^3*(1 + 1.5*eps^2)/(12*oil.thickening(oil.mu, (p[i] + port_case.p)/2 - oil.p_0)*L)*(p[i] - port_case.p) - A_drag*v[i];
     rho[i]*V[i]/beta[i]*der(p[i]) = rho[i]*A_p*v[i] - (rho[i] + rho_c)/2*q_l[i] - (rho[i] + rho_a)/2*q_a[i] + (rho[i] + rho_b)/2*q_b[i];
   end for;
@@ -88,6 +108,8 @@ equation
   annotation(Documentation(info = "<html>
 <p>Piston i at <code>phi_i = theta + 2 pi i/z</code>, chamber <code>V_d + A_p H/2 (1 + cos phi_i)</code>; <code>V_i/beta dp_i/dt = A_p v_i - q_leak - q_A + q_B</code> in masses. The ports open over the angle <code>opening</code> from the dead centres on, with flow in both directions,
 so that compression, backflow at opening and the ripple of flow and torque come out of the equations: averaged, the loss per stroke is <code>(V_s + V_d) dp/beta</code>. The kinematic ripple for an odd number of pistons is <code>pi/(2 z) tan(pi/(4 z))</code> of the mean, peak to peak; 2.5 % for seven.</p>
+<p><b>Silencing grooves</b> (<code>A_groove</code>) let a chamber meet its port <code>groove</code> before the edge of the kidney comes: at the ends where the ports begin to open in positive rotation, each opening from 0 over the angle. Let the ports close as much before (<code>early</code>), else the groove of one port meets the other one still open.</p>
+<p><b>One-way ports</b> (<code>oneWay</code>) are the switch <code>p_i >= p_A</code> of the paper: no oil comes back, and the piston compresses by itself, as in a pump with check valves. The flow lacks what is compressed all the same, but what is lost at a port plate when oil rushes back is not. It pumps whichever way it turns where A is the high side, and cannot be a motor.</p>
 <p>With <code>drag</code> a piston drags half of the oil in its gap along, and the pressure drop along the gap pulls at the piston: together the piston is as large as the middle of the gap, which neither loses nor gives energy. The shear of the film itself is in <code>b</code>.</p>
-<p>The input <code>u</code> scales the stroke about its middle (variable displacement, over centre when negative); what the pistons move while the plate itself swings is left out. Very stiff: nanoseconds at open ports. Inertia of the oil in the ports and squeeze of the films are left out too: valid up to some thousand revolutions per minute. Source: Zhang et al., Processes 2021, 9, 814, equations of section 4.2.2, with a port that lets oil back and with drag in the bore.</p></html>"));
+<p>The input <code>u</code> scales the stroke about its middle (variable displacement, over centre when negative); what the pistons move while the plate itself swings is left out. Very stiff: nanoseconds at open ports. Inertia of the oil in the ports and squeeze of the films are left out too: valid up to some thousand revolutions per minute. Source: Zhang et al., Processes 2021, 9, 814, equations of section 4.2.2, with a port that lets oil back (<code>oneWay = false</code>) and with drag in the bore. Grooves: J. Ivantysyn and M. Ivantysynova, Hydrostatic Pumps and Motors, 2001, section 5.3.</p></html>"));
 end PistonMachine;

@@ -12,7 +12,8 @@ model SingleActingCylinder "Single-acting cylinder: pressure extends, spring and
   parameter SI.Pressure p_ambient(nominal = 1e5) = 101325 "Pressure outside";
   parameter SI.Position s_start = 0.01 "Position at the start";
   parameter SI.Pressure p_start(nominal = 1e6) = 101325 "Pressure at the start";
-  Chamber chamber(A = A, side = 1, V_0 = V_0, p_ambient = p_ambient, p_start = p_start) "Chamber";
+  replaceable model Air = EntrainedAir.Frozen constrainedby EntrainedAir.Law "What becomes of the air in the oil";
+  Chamber chamber(redeclare model Air = Air, A = A, side = 1, V_0 = V_0, p_ambient = p_ambient, p_start = p_start) "Chamber";
   Mechanical.Translational.Mass piston(m = m, s(start = s_start)) "Piston and rod";
   Mechanical.Translational.EndStops stops(s_min = 0, s_max = stroke) "End stops";
   Mechanical.Translational.Spring spring(c = c, s_rel0 = -F_0/c) "Return spring";

@@ -43,6 +43,9 @@ protected
   SI.Density rho_mean(nominal = 1000) "Mean density of the two sides";
   SI.Density drho(nominal = 10) "Density at A less that at B";
   SI.MassFlowRate m_ideal(nominal = 0.1) "Mass flow from B to A by displacement";
+  SI.MassFlowRate m_out_a(nominal = 1e-3) = 0 "Mass flow from A to the case; for who extends it and has one";
+  SI.MassFlowRate m_out_b(nominal = 1e-3) = 0 "Mass flow from B to the case";
+  SI.Power casePower(nominal = 10) = 0 "Power that leaves with the oil to the case, against the mean of the ports";
 equation
   assert(V > 0, "The displacement V must be positive");
   assert(deadVolume >= 0, "The dead volume must not be negative");
@@ -84,12 +87,12 @@ equation
   else
     m_ideal = fill*V*n*u_used*rho_high;
   end if;
-  rho_a*Q_A = m_ideal - rho_high*Q_leak;
+  rho_a*Q_A = m_ideal - rho_high*Q_leak - m_out_a;
   port_a.q = -Q_A;
-  rho_a*port_a.q + rho_b*port_b.q = 0;
+  rho_a*port_a.q + rho_b*port_b.q = m_out_a + m_out_b;
   T_sh = fill*u_used*D*dp + T_loss;
   flange.tau = T_sh;
-  lossPower = T_sh*w - dp*Q_A*rho_a/((rho_a + rho_b)/2);
+  lossPower = T_sh*w - dp*Q_A*rho_a/((rho_a + rho_b)/2) - casePower;
   annotation(Documentation(info = "<html>
 <p>Positive speed pushes oil from B to A. With <code>dp = p_A - p_B</code>, dp and speed of equal sign are pumping, of opposite sign motoring; a motor is the same machine.</p>
 <p><b>Delivery.</b> A chamber closes at the inlet with the density there and its dead volume returns what it holds at the outlet, so that a revolution carries the mass

@@ -1,0 +1,10 @@
+within Hydraulic.EntrainedAir;
+model Frozen "The undissolved share of the air is that of the circuit's oil and does not change"
+  extends Law;
+equation
+  x = oil.x_u;
+  (rho, beta) = oil.density(p);
+  port_density = 1;
+  swell = 0;
+  annotation(Documentation(info = "<html><p>For processes that are fast against dissolving, seconds to minutes. Source: S. Kim and H. Murrenhoff, J. Fluids Eng. 134 (2012) 021201.</p></html>"));
+end Frozen;

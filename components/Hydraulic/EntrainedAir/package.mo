@@ -1,0 +1,3 @@
+within Hydraulic;
+package EntrainedAir "What becomes of the air in the oil of a volume"
+end EntrainedAir;
