@@ -13,9 +13,7 @@ pub(super) struct Passive {
 
 struct Group {
     states: Vec<usize>,
-    a: DMatrix<f64>,
     exponential: Exponential,
-    h: f64,
 }
 
 impl Passive {
@@ -33,7 +31,7 @@ impl Passive {
         }
         let group = |states: Vec<usize>| {
             let n = states.len();
-            Group { states, a: DMatrix::zeros(0, 0), exponential: Exponential::new(n, 0), h: 0.0 }
+            Group { states, exponential: Exponential::new(n, 0) }
         };
         Passive { groups: groups.into_iter().map(group).collect() }
     }
@@ -50,11 +48,7 @@ impl Group {
     fn step(&mut self, local: &Local, active: &[usize], moved: &[f64], x: &mut [f64], h: f64) {
         let (n, full) = (self.states.len(), &local.linear.a);
         let fresh = DMatrix::from_fn(n, n, |i, j| full[(self.states[i], self.states[j])]);
-        if (h - self.h).abs() > SAME_STEP * h || fresh != self.a {
-            self.exponential.compute(&fresh, h, None);
-            self.a = fresh;
-            self.h = h;
-        }
+        self.exponential.compute(&fresh, h, None);
         let rate = DVector::from_fn(n, |i, _| {
             let row = self.states[i];
             let along: f64 = active.iter().zip(moved).map(|(&j, dx)| full[(row, j)] * dx).sum();
@@ -64,9 +58,6 @@ impl Group {
         self.states.iter().zip(change.iter()).for_each(|(&i, dx)| x[i] += dx);
     }
 }
-
-/// Steps that differ by rounding of time stamps are the same.
-const SAME_STEP: f64 = 1e-9;
 
 /// Points at which dependences are looked for: at a single one a limiter may hide them.
 const POINTS: usize = 12;

@@ -8,8 +8,17 @@ const LARGE: usize = 64;
 const COEFFICIENTS: [f64; 7] = [1.0, 1.0 / 2.0, 1.0 / 6.0, 1.0 / 24.0, 1.0 / 120.0, 1.0 / 720.0, 1.0 / 5040.0];
 /// The largest norm at which the polynomial is used; larger ones are halved until they fit.
 const SMALL: f64 = 0.3;
+/// A step within so much of the last one's length is as long, and a system whose matrix times the step is so near to the
+/// last one's has its exponential: what that leaves of a step's change is less than a sensor shows of it.
+const SAME_LENGTH: f64 = 1e-9;
+const SAME_SYSTEM: f64 = 3e-4;
 /// Halvings at most: beyond, the step is far longer than any time constant that matters.
 const MOST_HALVINGS: i32 = 40;
+
+/// Whether a step is as long as another one: time stamps are rounded.
+pub fn as_long(h: f64, other: f64) -> bool {
+    (h - other).abs() <= SAME_LENGTH * h
+}
 
 /// `out = a b + beta out` without the packing that pays for large matrices only.
 pub fn multiply(out: &mut DMatrix<f64>, a: &DMatrix<f64>, b: &DMatrix<f64>, beta: f64) {
@@ -132,6 +141,11 @@ pub struct Exponential {
     power: DMatrix<f64>,
     area: DMatrix<f64>,
     moved: DVector<f64>,
+    /// Units of the coupled states in which they drive each other about as strongly as they are driven.
+    balance: Vec<f64>,
+    /// Matrix of the coupled states and step that `power` and `area` belong to; no step yet where it is 0.
+    known: DMatrix<f64>,
+    length: f64,
     /// exp(h A).
     pub transition: DMatrix<f64>,
     /// The integral of exp(s A) over s from 0 to h.
@@ -153,6 +167,9 @@ impl Exponential {
             power: zeros(),
             area: zeros(),
             moved: DVector::zeros(coupled),
+            balance: vec![1.0; coupled],
+            known: zeros(),
+            length: 0.0,
             ramped: DVector::zeros(coupled),
             transition: whole(),
             integral: whole(),
@@ -163,7 +180,15 @@ impl Exponential {
     /// with its mean over the step, an error of the order of (h/tau)(h A)/12 of what it does to the states.
     pub fn compute(&mut self, a: &DMatrix<f64>, h: f64, ramp: Option<&DVector<f64>>) {
         let n = self.small.nrows();
-        self.coupled(a, h, ramp);
+        let ramp = ramp.filter(|r| r.iter().any(|v| *v != 0.0));
+        if ramp.is_some() || !self.is_known(a, h) {
+            self.balanced(a);
+            self.coupled(a, h, ramp);
+            self.known.copy_from(&a.view((0, 0), (n, n)));
+            self.length = h;
+        } else {
+            self.ramped.fill(0.0);
+        }
         self.transition.view_mut((0, 0), (n, n)).copy_from(&self.power);
         self.integral.view_mut((0, 0), (n, n)).copy_from(&self.area);
         for j in n..a.nrows() {
@@ -180,17 +205,45 @@ impl Exponential {
         }
     }
 
+    /// Whether the exponential of the coupled states is that of the last step.
+    fn is_known(&self, a: &DMatrix<f64>, h: f64) -> bool {
+        let units = &self.balance;
+        let moved = |j: usize| {
+            let entry = |i: usize| (a[(i, j)] - self.known[(i, j)]).abs() * (units[j] / units[i]);
+            h * (0..units.len()).map(entry).sum::<f64>()
+        };
+        as_long(h, self.length) && (0..units.len()).all(|j| moved(j) <= SAME_SYSTEM)
+    }
+
+    /// Goes on with the balance: what comes from a state and what goes to it are to be about as much, for then the norm is
+    /// least (Parlett, Reinsch, Numerische Mathematik 13, 1969). Powers of two: nothing is rounded.
+    fn balanced(&mut self, a: &DMatrix<f64>) {
+        let n = self.balance.len();
+        for i in 0..n {
+            let (mut to, mut from) = (0.0, 0.0);
+            for j in (0..n).filter(|j| *j != i) {
+                let ratio = self.balance[j] / self.balance[i];
+                to += a[(i, j)].abs() * ratio;
+                from += a[(j, i)].abs() / ratio;
+            }
+            let wanted = (to / from).sqrt();
+            if wanted.is_normal() && !(0.5..=2.0).contains(&wanted) {
+                self.balance[i] *= wanted.log2().round().exp2();
+            }
+        }
+    }
+
     /// Scaling and squaring (Higham, Functions of Matrices, 2008, ch. 10): the integral is h phi(h A) with
     /// phi(z) = (e^z - 1)/z, and phi(2 z) = (e^z + 1) phi(z)/2.
     fn coupled(&mut self, a: &DMatrix<f64>, h: f64, ramp: Option<&DVector<f64>>) {
-        let Exponential { small, next, high, power, area, moved, ramped, .. } = self;
+        let Exponential { small, next, high, power, area, moved, ramped, balance: units, .. } = self;
         let n = small.nrows();
-        let a = a.view((0, 0), (n, n));
-        let norm = h * (0..n).map(|j| a.column(j).iter().map(|v| v.abs()).sum::<f64>()).fold(0.0, f64::max);
+        (0..n).for_each(|j| (0..n).for_each(|i| small[(i, j)] = a[(i, j)] * (units[j] / units[i])));
+        let norm = h * small.column_iter().map(|c| c.iter().map(|v| v.abs()).sum::<f64>()).fold(0.0, f64::max);
         let halvings = if norm > SMALL { ((norm / SMALL).log2().ceil() as i32).min(MOST_HALVINGS) } else { 0 };
         let scale = h / 2.0_f64.powi(halvings);
-        small.copy_from(&a);
         *small *= scale;
+        let ramp = ramp.map(|r| DVector::from_fn(n, |i, _| r[i] / units[i]));
         // phi = p(X) + X^3 q(X), both quadratic (Paterson and Stockmeyer): three products for degree six
         let c = |k: usize| COEFFICIENTS[k];
         multiply(next, small, small, 0.0);
@@ -210,7 +263,7 @@ impl Exponential {
         multiply(power, small, area, 1.0);
         *area *= scale;
         ramped.fill(0.0);
-        if let Some(ramp) = ramp {
+        if let Some(ramp) = &ramp {
             // h^2 (1/2 + X/6 + X^2/24 + ...) ramp, by Horner's rule
             for c in COEFFICIENTS[1..].iter().rev() {
                 moved.copy_from(ramp);
@@ -221,7 +274,7 @@ impl Exponential {
         }
         let mut length = scale;
         for _ in 0..halvings {
-            if let Some(ramp) = ramp {
+            if let Some(ramp) = &ramp {
                 // the double integral over 2 s = (exp(s A) + 1) that over s + s times the integral over s
                 moved.copy_from(ramped);
                 moved.gemv(1.0, power, ramped, 1.0);
@@ -235,6 +288,14 @@ impl Exponential {
             std::mem::swap(area, next);
             multiply(next, power, power, 0.0);
             std::mem::swap(power, next);
+        }
+        for j in 0..n {
+            for i in 0..n {
+                let unit = units[i] / units[j];
+                power[(i, j)] *= unit;
+                area[(i, j)] *= unit;
+            }
+            ramped[j] *= units[j];
         }
     }
 }

@@ -10,7 +10,7 @@ use super::super::held::{self, Residuals};
 use super::super::problem::{Chosen, Problem};
 use super::super::screen::{Accepted, Candidate, Screen};
 use super::refine::{Refined, best_first, fitted as followed, make_whole, ready, switched_off, values};
-use super::{CLAIMED, CONSISTENT, Found, Search, Trial, simplest};
+use super::{CERTAIN, CLAIMED, Found, Search, Trial, simplest};
 use crate::analysis::autoregression;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -71,8 +71,9 @@ impl Search {
     }
 
     /// Accepts an effect that explains the course where the filter, whose sources follow all that moves slowly or that many
-    /// samples in a row have in common, is not sure of it. It must come clearly nearer to the recordings, more surely than
-    /// by chance, and the filter must not speak against it. True when there was one.
+    /// samples in a row have in common, is not sure of it. It must come clearly nearer to the recordings, for certain (what
+    /// a disturbance left stands in many blocks in a row), and the filter must not speak against it. True when there was
+    /// one.
     pub(super) fn course_explained(
         &mut self,
         problem: &Problem<'_>,
@@ -98,7 +99,7 @@ impl Search {
         }
         let best = refined.remove(simplest(problem, &refined, before.evidence));
         let found = Found::over(before, &best, &refined);
-        let sure = found.gain > CLAIMED && found.t > CONSISTENT;
+        let sure = found.gain > CLAIMED && found.t > CERTAIN;
         if !sure || self.mends_form(problem, &best.accepted, found.gain) {
             return false;
         }
