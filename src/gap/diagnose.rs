@@ -30,6 +30,8 @@ const AHEAD_PART: f64 = 0.2;
 const DRIVEN: f64 = 0.25;
 /// Mean square of whitened innovations beyond which the levels of the nominal model are no levels.
 const BROKEN: f64 = 100.0;
+/// And beyond which the filter has gone where the model means nothing: what it says there is rounding.
+const ASTRAY: f64 = 1e6;
 /// Rounds at most in which the levels of the nominal model settle.
 const SETTLING: usize = 5;
 /// Factor by which they grow in one of them.
@@ -233,7 +235,8 @@ fn anchor(problem: &Problem<'_>, noise: &[f64]) -> Result<(Fit, Assembled), Trou
         (setting, f.setting.noise)
     });
     let starts: Vec<Setting> = std::iter::once(nominal).chain(near.iter().map(|n| n.0.clone())).collect();
-    let mut fits: Vec<Fit> = starts.into_par_iter().filter_map(|s| settled(problem, s, &priors)).collect();
+    let followed = |s| settled(problem, s, &priors).filter(|fit| fit.misfit() < ASTRAY);
+    let mut fits: Vec<Fit> = starts.into_par_iter().filter_map(followed).collect();
     if let (true, Some((setting, noise))) = (fits.is_empty(), near) {
         // a sensor that folds its signal may drive sources to where the filter has no values: then what the model does not
         // know is noise

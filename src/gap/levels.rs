@@ -2,7 +2,7 @@
 
 use super::filter::predict::{source_noise, symmetrize};
 use super::filter::{Setting, Step};
-use super::step::{add_outer, apply, multiply};
+use super::step::{add_outer, advance, advance_across, apply};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -209,9 +209,9 @@ fn replay(setting: &Setting, tape: &[Step], factors: &[f64], each: &mut impl FnM
         d -= &step.correction;
         apply(&mut moved, &step.transition, &d, 0.0);
         std::mem::swap(&mut d, &mut moved);
-        multiply(&mut next, &step.transition, &p, 0.0);
+        advance(&mut next, &step.transition, n, &p);
         step.transition.transpose_to(&mut transposed);
-        multiply(&mut p, &next, &transposed, 0.0);
+        advance_across(&mut p, &next, &transposed, n, 0.0);
         for (j, f) in factors.iter().enumerate() {
             let noise = f * f * source_noise(setting.sources[j].tau, step.h);
             let column = step.transition.column(n + j);

@@ -29,6 +29,33 @@ pub fn multiply(out: &mut DMatrix<f64>, a: &DMatrix<f64>, b: &DMatrix<f64>, beta
     }
 }
 
+/// `out = m a` with a transition: behind the coupled states, a row holds its diagonal only.
+pub fn advance(out: &mut DMatrix<f64>, m: &DMatrix<f64>, coupled: usize, a: &DMatrix<f64>) {
+    if m.ncols() > LARGE {
+        return out.gemm(1.0, m, a, 0.0);
+    }
+    let rows = m.nrows();
+    for (to, from) in out.as_mut_slice().chunks_exact_mut(rows).zip(a.as_slice().chunks_exact(rows)) {
+        to[..coupled].fill(0.0);
+        (coupled..rows).for_each(|i| to[i] = m[(i, i)] * from[i]);
+    }
+    dispatch(Product { out: out.as_mut_slice(), a: m.as_slice(), b: a.as_slice(), rows, inner: rows, used: coupled });
+}
+
+/// `out = a m' + beta out` with the transposed transition, likewise.
+pub fn advance_across(out: &mut DMatrix<f64>, a: &DMatrix<f64>, transposed: &DMatrix<f64>, coupled: usize, beta: f64) {
+    if transposed.ncols() > LARGE {
+        return out.gemm(1.0, a, transposed, beta);
+    }
+    let (rows, inner) = a.shape();
+    let (some, others) = out.as_mut_slice().split_at_mut(coupled * rows);
+    product(some, a, &transposed.as_slice()[..coupled * inner], beta);
+    for (i, to) in others.chunks_exact_mut(rows.max(1)).enumerate() {
+        let (j, m) = (coupled + i, transposed[(coupled + i, coupled + i)]);
+        to.iter_mut().zip(a.column(j).iter()).for_each(|(to, a)| *to = m * a + beta * *to);
+    }
+}
+
 /// `out = a x + beta out`.
 pub fn apply(out: &mut DVector<f64>, a: &DMatrix<f64>, x: &DVector<f64>, beta: f64) {
     product(out.as_mut_slice(), a, x.as_slice(), beta);
@@ -41,18 +68,23 @@ fn product(out: &mut [f64], a: &DMatrix<f64>, b: &[f64], beta: f64) {
     } else if beta != 1.0 {
         out.iter_mut().for_each(|v| *v *= beta);
     }
-    if rows > 0 && inner > 0 {
-        pulp::Arch::new().dispatch(Product { out, a: a.as_slice(), b, rows, inner });
+    dispatch(Product { out, a: a.as_slice(), b, rows, inner, used: rows });
+}
+
+fn dispatch(product: Product) {
+    if product.rows > 0 && product.inner > 0 {
+        pulp::Arch::new().dispatch(product);
     }
 }
 
-/// `out += a b`, compiled once for every instruction set; the best one is chosen where it runs.
+/// `out += a b` in the first rows, compiled once for every instruction set; the best one is chosen where it runs.
 struct Product<'a> {
     out: &'a mut [f64],
     a: &'a [f64],
     b: &'a [f64],
     rows: usize,
     inner: usize,
+    used: usize,
 }
 
 // what is no closure is compiled into the function that may use the wide registers
@@ -61,7 +93,7 @@ impl pulp::WithSimd for Product<'_> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) {
-        add_product(self.out, self.a, self.b, self.rows, self.inner);
+        add_product(self);
     }
 }
 
@@ -94,14 +126,15 @@ impl pulp::WithSimd for Outer<'_> {
 
 /// `out += a b` in bands of eight rows and one of what remains, whose sums stay in registers.
 #[inline(always)]
-fn add_product(out: &mut [f64], a: &[f64], b: &[f64], rows: usize, inner: usize) {
+fn add_product(product: Product) {
+    let Product { out, a, b, rows, inner, used } = product;
     for (to, factors) in out.chunks_exact_mut(rows).zip(b.chunks_exact(inner)) {
         let mut row = 0;
-        while row + 8 <= rows {
+        while row + 8 <= used {
             add_band::<8>(to, a, factors, rows, row);
             row += 8;
         }
-        match rows - row {
+        match used - row {
             0 => {}
             1 => add_band::<1>(to, a, factors, rows, row),
             2 => add_band::<2>(to, a, factors, rows, row),

@@ -1,7 +1,7 @@
 //! The prediction of the filter: state, covariance and columns from one sample to the next, in one linear step, or in
 //! several where the model bends within it.
 
-use super::super::step::{self, add_outer, multiply};
+use super::super::step::{self, add_outer, advance, advance_across};
 use super::{Filter, Work};
 use nalgebra::{DMatrix, DVector};
 use std::ops::AddAssign;
@@ -216,13 +216,14 @@ impl Filter<'_> {
         let n = self.active.len();
         let Work { b, exponential, next_p, next_s, transposed, .. } = &mut self.work;
         let m = &exponential.transition;
+        // parameters move no source
         exponential.integral.transpose_to(transposed);
-        multiply(next_s, b, transposed, 0.0);
+        advance_across(next_s, b, transposed, n, 0.0);
         m.transpose_to(transposed);
-        multiply(next_s, &self.s, transposed, 1.0);
+        advance_across(next_s, &self.s, transposed, n, 1.0);
         std::mem::swap(&mut self.s, next_s);
-        multiply(next_p, m, &self.p, 0.0);
-        multiply(&mut self.p, next_p, transposed, 0.0);
+        advance(next_p, m, n, &self.p);
+        advance_across(&mut self.p, next_p, transposed, n, 0.0);
         // noise of the sources by the trapezoidal rule over the step
         for (j, source) in self.setting.sources.iter().enumerate() {
             let q = source_noise(source.tau, h);
