@@ -388,6 +388,58 @@ mod tests {
         }
     }
 
+    /// The states in units a million apart: balanced, the norm is what it was, and so is the exponential.
+    #[test]
+    fn units_make_no_difference() {
+        let a = DMatrix::from_row_slice(2, 2, &[0.0, 1.0, -100.0, -2.0]);
+        let scaled = DMatrix::from_fn(2, 2, |i, j| a[(i, j)] * 1e6_f64.powi(j as i32 - i as i32));
+        let (mut own, mut other) = (Exponential::new(2, 0), Exponential::new(2, 0));
+        // the balance goes on from step to step
+        (0..4).for_each(|i| other.compute(&scaled, 0.3 + 0.01 * f64::from(i), None));
+        own.compute(&a, 0.33, None);
+        for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+            let back = 1e6_f64.powi(i as i32 - j as i32);
+            assert!((own.transition[(i, j)] - back * other.transition[(i, j)]).abs() < 1e-7, "{i} {j}");
+            assert!((own.integral[(i, j)] - back * other.integral[(i, j)]).abs() < 1e-7, "{i} {j}");
+        }
+        assert!(other.balance[0] / other.balance[1] > 1e4, "{:?}", other.balance);
+    }
+
+    #[test]
+    fn a_system_is_taken_over_while_it_hardly_moves() {
+        let a = DMatrix::from_row_slice(2, 2, &[0.0, 1.0, -100.0, -2.0]);
+        let (mut e, mut fresh) = (Exponential::new(2, 0), Exponential::new(2, 0));
+        e.compute(&a, 1e-3, None);
+        let first = e.transition.clone();
+        e.compute(&(&a * 1.001), 1e-3, None);
+        assert_eq!(e.transition, first);
+        // small steps away from it add up
+        e.compute(&(&a * 1.1), 1e-3, None);
+        fresh.compute(&(&a * 1.1), 1e-3, None);
+        assert_eq!(e.transition, fresh.transition);
+        e.compute(&(&a * 1.1), 2e-3, None);
+        assert!((&e.transition - &fresh.transition).amax() > 1e-2);
+    }
+
+    #[test]
+    fn transitions_know_that_sources_only_decay() {
+        for (coupled, sources) in [(0, 2), (3, 0), (7, 6), (9, 2), (60, 10)] {
+            let n = coupled + sources;
+            let m = DMatrix::from_fn(n, n, |i, j| match i < coupled || i == j {
+                true => (i * 7 + j * 3) as f64 % 5.0 - 1.9,
+                false => 0.0,
+            });
+            let a = DMatrix::from_fn(n, n, |i, j| (i * 11 + j * 2) as f64 % 7.0 - 3.0);
+            let rows = a.rows(0, n.min(4)).into_owned();
+            let mut out = DMatrix::from_element(n, n, f64::NAN);
+            advance(&mut out, &m, coupled, &a);
+            assert!((&out - &m * &a).amax() < 1e-11, "{coupled} {sources}");
+            let mut out = DMatrix::from_element(rows.nrows(), n, 1.0);
+            advance_across(&mut out, &rows, &m.transpose(), coupled, 2.0);
+            assert!((out - (&rows * m.transpose()).add_scalar(2.0)).amax() < 1e-11, "{coupled} {sources}");
+        }
+    }
+
     #[test]
     fn products_of_all_sizes() {
         for (rows, inner, columns) in [(1, 1, 1), (3, 5, 2), (8, 8, 3), (13, 9, 17), (70, 70, 2)] {
