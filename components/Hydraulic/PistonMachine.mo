@@ -89,8 +89,8 @@ equation
       A_a[i] = A_leak + A_port*Smooth.step(sin(phi[i] - timing_a)/s_o);
       A_b[i] = A_leak + A_port*Smooth.step(-sin(phi[i] - timing_b)/s_o);
     end if;
-    dp_a[i] = if oneWay then noEvent(max(p[i] - port_a.p, 0)) else p[i] - port_a.p;
-    dp_b[i] = if oneWay then noEvent(max(port_b.p - p[i], 0)) else port_b.p - p[i];
+    dp_a[i] = if oneWay then Smooth.ramp(p[i] - port_a.p, t) else p[i] - port_a.p;
+    dp_b[i] = if oneWay then Smooth.ramp(port_b.p - p[i], t) else port_b.p - p[i];
     q_a[i] = C_d*A_a[i]*sqrt(4/(rho[i] + rho_a))*Smooth.root(dp_a[i], t);
     q_b[i] = C_d*A_b[i]*sqrt(4/(rho[i] + rho_b))*Smooth.root(dp_b[i], t);
     q_l[i] = pi*d*h^3*(1 + 1.5*eps^2)/(12*oil.thickening(oil.mu, (p[i] + port_case.p)/2 - oil.p_0)*L)*(p[i] - port_case.p) - A_drag*v[i];
@@ -111,5 +111,5 @@ so that compression, backflow at opening and the ripple of flow and torque come 
 <p><b>Silencing grooves</b> (<code>A_groove</code>) let a chamber meet its port <code>groove</code> before the edge of the kidney comes: at the ends where the ports begin to open in positive rotation, each opening from 0 over the angle. Let the ports close as much before (<code>early</code>), else the groove of one port meets the other one still open.</p>
 <p><b>One-way ports</b> (<code>oneWay</code>) are the switch <code>p_i >= p_A</code> of the paper: no oil comes back, and the piston compresses by itself, as in a pump with check valves. The flow lacks what is compressed all the same, but what is lost at a port plate when oil rushes back is not. It pumps whichever way it turns where A is the high side, and cannot be a motor.</p>
 <p>With <code>drag</code> a piston drags half of the oil in its gap along, and the pressure drop along the gap pulls at the piston: together the piston is as large as the middle of the gap, which neither loses nor gives energy. The shear of the film itself is in <code>b</code>.</p>
-<p>The input <code>u</code> scales the stroke about its middle (variable displacement, over centre when negative); what the pistons move while the plate itself swings is left out. Very stiff: nanoseconds at open ports. Inertia of the oil in the ports and squeeze of the films are left out too: valid up to some thousand revolutions per minute. Source: Zhang et al., Processes 2021, 9, 814, equations of section 4.2.2, with a port that lets oil back (<code>oneWay = false</code>) and with drag in the bore. Grooves: J. Ivantysyn and M. Ivantysynova, Hydrostatic Pumps and Motors, 2001, section 5.3.</p></html>"));
+<p>The input <code>u</code> scales the stroke about its middle (variable displacement, over centre when negative); what the pistons move while the plate itself swings is left out. Very stiff: nanoseconds at open ports. Inertia of the oil in the ports and squeeze of the films are left out too: valid up to some thousand revolutions per minute. Source: Zhang et al., Processes 2021, 9, 814, equations of section 4.2.2, with a port that lets oil back (<code>oneWay = false</code>) and with drag in the bore. Grooves: J. Ivantysyn and M. Ivantysynova, Hydrostatic Pumps and Motors, 2001.</p></html>"));
 end PistonMachine;
