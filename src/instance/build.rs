@@ -713,15 +713,21 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// Every public component of the constraining class must exist in the class that takes its place (MLS 6.4).
-    pub(super) fn check_subtype(&mut self, constraint: &Found<'a>, found: &Found<'a>, at: Span, constrained: Span) {
-        let (Found::Class(want), Found::Class(have)) = (constraint, found) else { return };
+    pub(super) fn check_subtype(
+        &mut self,
+        constraint: &Found<'a>,
+        found: &Found<'a>,
+        at: Span,
+        constrained: Span,
+    ) -> bool {
+        let (Found::Class(want), Found::Class(have)) = (constraint, found) else { return true };
         let want = self.template(want.class, want.parent);
         let have = self.template(have.class, have.parent);
         if have.broken || want.broken {
-            return;
+            return true;
         }
         let missing = want.elements.iter().find(|e| !e.protected && !have.by_name.contains_key(&e.name));
-        let Some(missing) = missing else { return };
+        let Some(missing) = missing else { return true };
         let (want, have) = (self.library.full_name(want.class), self.library.full_name(have.class));
         self.report(
             Diagnostic::new(Code::BadRedeclare, format!("`{have}` cannot take the place of `{want}`"))
@@ -729,6 +735,7 @@ impl<'a> Instance<'a, '_> {
                 .at(constrained, format!("`{want}` is required here"))
                 .help(format!("use a class that extends `{want}`")),
         );
+        false
     }
 
     /// Gives every variable its number: declaration order, depth first.

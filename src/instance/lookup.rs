@@ -151,9 +151,39 @@ impl<'a> Instance<'a, '_> {
             let given = m.arguments.iter().filter_map(|a| Arg::new(a, own, &none, false));
             args.extend(given.map(|a| Arg { default: redeclared, ..a }));
         }
-        let found = ClassRef { class, parent, args: args.into() };
+        let mut found = ClassRef { class, parent, args: args.into() };
         self.scope_mut(scope).elements[index as usize] = ElementState::Class(found.clone());
+        if redeclared && !self.fits_declared(declared, own, textual, ast.name.span, &found) {
+            // what follows is said of the declared class, which the rest of the text was written for
+            let class = self.library.enter(declared, Some(textual));
+            found = ClassRef { class, parent: own, args: Rc::from([]) };
+            self.scope_mut(scope).elements[index as usize] = ElementState::Class(found.clone());
+        }
         found
+    }
+
+    /// Whether a class that takes the place of a declared one has what the constraining class promises (MLS 6.4).
+    fn fits_declared(
+        &mut self,
+        declared: &'a ast::Class,
+        own: View,
+        textual: ClassId,
+        at: Span,
+        found: &ClassRef<'a>,
+    ) -> bool {
+        let path = match (&declared.constraint, &declared.body) {
+            (Some(c), _) => Some(&c.path),
+            (None, ClassBody::Short { base, .. }) => Some(base),
+            _ => None,
+        };
+        let (constraint, place) = match path {
+            Some(path) => (self.lookup_path(own, path).ok(), path.span),
+            None => {
+                let class = self.library.enter(declared, Some(textual));
+                (Some(Found::Class(ClassRef { class, parent: own, args: Rc::from([]) })), declared.name.span)
+            }
+        };
+        constraint.is_none_or(|c| self.check_subtype(&c, &Found::Class(found.clone()), at, place))
     }
 
     /// A member of something found: a class in a package, a constant, an inherited class.

@@ -161,7 +161,12 @@ fn check_one(draft: &Draft, v: VarId, values: &[f64]) -> Option<Diagnostic> {
     let mut made = Diagnostic::new(Code::OutOfRange, message);
     let holder = &draft.instances[variable.origin.instance as usize];
     if variable.origin.instance != 0 {
-        made = made.at(holder.span, "in this component").instance(holder.name.clone()).class(holder.class.clone());
+        // the component of the model that was given: what holds the value may stand in the library
+        let mut outermost = holder;
+        while outermost.parent != 0 {
+            outermost = &draft.instances[outermost.parent as usize];
+        }
+        made = made.at(outermost.span, "in this component").instance(holder.name.clone()).class(holder.class.clone());
     }
     Some(
         made.at(variable.origin.span, "declared here")

@@ -32,6 +32,7 @@ model FluxVectorDrive "Induction motor under sensorless flux vector control: rot
 protected
   parameter SI.Inductance L_s = L_ls + L_m "Inductance of the stator";
   parameter SI.Inductance L_t = L_s - L_m^2/(L_lr + L_m) "Transient inductance of the stator";
+  constant SI.Resistance Z_0 = 1e-6 "Keeps the impedance from 0 at rest where there is no stator resistance";
   SI.Resistance Z_q(nominal = 1) "Impedance of the current that makes the torque";
   SI.Voltage U_q(nominal = 100) "What the other current leaves of the voltage along that impedance";
   SI.Voltage U_c(nominal = 100) "What it takes of it there";
@@ -56,7 +57,7 @@ equation
     T_low = -T_max;
     T_high = T_max;
   end if;
-  Z_q = sqrt(R_s^2 + (w_e*L_t)^2);
+  Z_q = sqrt(R_s^2 + (w_e*L_t)^2 + Z_0^2);
   U_c = R_s*w_e*(L_s - L_t)*i_d/Z_q;
   U_q = sqrt(noEvent(max(U_max^2 - ((R_s*i_d)^2 + (w_e*L_s*i_d)^2 - U_c^2), 1e-6*U_max^2)));
   u_s = sqrt((R_s*i_d - w_e*L_t*i_q)^2 + (R_s*i_q + w_e*L_s*i_d)^2);
