@@ -54,6 +54,8 @@ const FORM: f64 = 0.25;
 const REMAINS: f64 = 0.003;
 /// Part of the simulated gap that opens again without it, of what all effects together close.
 const CLOSES: f64 = 0.07;
+/// An effect without which the model simulates so many times better has been taken for another.
+const WORSE: f64 = 1.5;
 /// Candidates this near are equally good: the simpler one stands first, nats.
 const AS_GOOD: f64 = 2.0;
 /// Alternatives this near cannot be told apart, nats.
@@ -511,7 +513,10 @@ impl Search {
             // of several that could go the one goes that was the least sure
             let least = (0..self.accepted.len())
                 .filter_map(|i| without(i).map(|(f, m)| (i, f, m)))
-                .filter(|(_, f, _)| gap(f).beyond(&full) < CLOSES * closable)
+                .filter(|(_, f, _)| {
+                    let gap = gap(f);
+                    gap.beyond(&full) < CLOSES * closable || WORSE * gap.total < full.total
+                })
                 .min_by(|a, b| self.found[a.0].gain.total_cmp(&self.found[b.0].gain));
             let Some((i, fit, model)) = least else { break };
             self.accepted.remove(i);
