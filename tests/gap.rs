@@ -349,7 +349,9 @@ fn the_corrected_model_stands_alone_and_so_does_the_page() {
     let page = report(problem, &found, &verdict, &held);
     assert!(!page.replace("http://www.w3.org/2000/svg", "").contains("http"));
     assert!(page.matches("<p>").count() > 3, "each sentence of the verdict stands on its own");
-    for part in ["dry friction", "mass.flange", "spring.d", "v in m/s", "a held recording", "corrected"] {
+    for part in
+        ["dry friction", "mass.flange", "spring.d", "v in m/s", "a held recording", "corrected", "dB over white"]
+    {
         assert!(page.contains(part), "{part}");
     }
 }

@@ -82,16 +82,20 @@ impl Series {
         self.values.len() as f64 * self.step
     }
 
-    /// Goertzel's recurrence (Goertzel, An algorithm for the evaluation of finite trigonometric series, 1958).
     fn power(&self, frequency: f64) -> f64 {
-        let turn = 2.0 * PI * frequency * self.step;
-        let twice = 2.0 * turn.cos();
-        let (mut one, mut two) = (0.0, 0.0);
-        for v in &self.values {
-            (one, two) = (v + twice * one - two, one);
-        }
-        one * one + two * two - twice * one * two
+        goertzel(&self.values, 2.0 * PI * frequency * self.step)
     }
+}
+
+/// Power at a frequency, given as angle from sample to sample (Goertzel, An algorithm for the evaluation of finite
+/// trigonometric series, 1958).
+pub fn goertzel(values: &[f64], turn: f64) -> f64 {
+    let twice = 2.0 * turn.cos();
+    let (mut one, mut two) = (0.0, 0.0);
+    for v in values {
+        (one, two) = (v + twice * one - two, one);
+    }
+    one * one + two * two - twice * one * two
 }
 
 /// Frequencies that all recordings can show, as dense as the longest tells them apart.

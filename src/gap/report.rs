@@ -7,6 +7,7 @@ use super::diagnose::Search;
 use super::held;
 use super::problem::Problem;
 use super::verdict::{Columns, Effect, Maybe, Side, Verdict};
+use super::whiteness::{Whiteness, whiteness};
 use super::words::{distance, number, percent, words};
 use crate::compile::flatten;
 use crate::plot::network::{self, Mark};
@@ -17,11 +18,19 @@ use std::fmt::Write;
 /// Deviations of so many tolerances are set off in the table.
 const FAR: f64 = 2.0;
 
+/// What a model left, signal by signal, with the model's name.
+type Left = (&'static str, Vec<Whiteness>);
+
 /// Writes the page. `held` are the recordings that were not used; of these and of those that were used the first is
 /// drawn.
 pub fn report(problem: &Problem<'_>, search: &Search, verdict: &Verdict, held: &[Recording]) -> String {
     let mut panels = panels(problem, search, &problem.train, "a recording that was used");
     panels.extend(self::panels(problem, search, held, "a held recording"));
+    // without effects both are one
+    let fits = [("within tolerances", search.tolerated().0), ("with effects", search.last().0)];
+    let fits = &fits[..1 + usize::from(!verdict.effects.is_empty())];
+    let left: Vec<Left> = fits.iter().map(|(stage, fit)| (*stage, whiteness(fit, &problem.train))).collect();
+    panels.extend(left.iter().map(|left| spectrum(problem, left)));
     let title = format!("Gap of {}", problem.circuit.class);
     let figure = Figure { title, panels, shared_x: false };
     let facts = [
@@ -31,11 +40,11 @@ pub fn report(problem: &Problem<'_>, search: &Search, verdict: &Verdict, held: &
         ("hypotheses".to_string(), problem.hypotheses.len().to_string()),
         ("bramah".to_string(), env!("CARGO_PKG_VERSION").to_string()),
     ];
-    html::write_around(&figure, &facts, &before(problem, verdict))
+    html::write_around(&figure, &facts, &before(problem, verdict, &left))
 }
 
 /// Everything above the curves.
-fn before(problem: &Problem<'_>, v: &Verdict) -> String {
+fn before(problem: &Problem<'_>, v: &Verdict, left: &[Left]) -> String {
     let line = |line: &str| format!("<p>{}</p>\n", escape(line));
     let mut out: String = words(v).lines().map(line).collect();
     out.push_str(&picture(problem, v));
@@ -43,7 +52,9 @@ fn before(problem: &Problem<'_>, v: &Verdict) -> String {
     out.push_str(&table("Gap in parts of full scale", GAPS, &gaps(v)));
     out.push_str(&table("Parameters against their tolerances", DRIFTS, &drifts(v)));
     out.push_str(&table("Places where model and bench part", PLACES, &places(v)));
-    out.push_str("<h2>Measured and simulated</h2>\n");
+    out.push_str(&table("What stays unexplained", UNEXPLAINED, &unexplained(v)));
+    out.push_str(&table("What the filter did not expect", WHITE, &white(problem, left)));
+    out.push_str("<h2>Measured and simulated; spectra of what the filter did not expect</h2>\n");
     out
 }
 
@@ -77,6 +88,8 @@ const EFFECTS: &[&str] = &[
 const GAPS: &[&str] = &["recordings", "signal", "nominal", "within tolerances", "with effects"];
 const DRIFTS: &[&str] = &["parameter", "nominal", "fitted", "std", "tolerances"];
 const PLACES: &[&str] = &["place", "kind", "evidence in nats", "share", "the same place"];
+const UNEXPLAINED: &[&str] = &["share of the nominal gap", "place", "shape", "part of the gap's square"];
+const WHITE: &[&str] = &["signal", "model", "mean square (1)", "correlation of neighbours (0)", "white noise at most"];
 
 /// A table of cells that are HTML already; nothing without rows.
 fn table(title: &str, heads: &[&str], rows: &[Vec<String>]) -> String {
@@ -159,6 +172,46 @@ fn places(v: &Verdict) -> Vec<Vec<String>> {
         vec![escape(&p.place), p.kind.to_string(), format!("{:.1}", p.evidence), percent(p.share), node]
     };
     v.places.iter().map(row).collect()
+}
+
+/// What no effect explains, by its shape.
+fn unexplained(v: &Verdict) -> Vec<Vec<String>> {
+    let u = &v.unexplained;
+    let place = u.place.as_deref().map_or_else(|| "unknown".to_string(), escape);
+    let row = |shape: String, r2: String| vec![share(u.share), place.clone(), shape, r2];
+    match &u.shape {
+        Some(terms) => terms.iter().map(|t| row(escape(&t.term), percent(t.r2))).collect(),
+        None => vec![row("none that is known".into(), String::new())],
+    }
+}
+
+/// How far innovations are from white noise of the size expected.
+fn white(problem: &Problem<'_>, left: &[Left]) -> Vec<Vec<String>> {
+    let row = |name: &str, stage: &str, w: &Whiteness| {
+        let coloured = w.neighbours.abs() > w.limit;
+        let neighbours = format!("{:+.3}", w.neighbours);
+        let neighbours = if coloured { format!("<b class=\"far\">{neighbours}</b>") } else { neighbours };
+        vec![escape(name), stage.into(), format!("{:.2}", w.power), neighbours, format!("{:.3}", w.limit)]
+    };
+    let signal = |(i, s): (usize, &super::hypotheses::Signal)| {
+        let models = left.iter().filter_map(move |(stage, left)| Some((left.get(i)?, stage)));
+        models.map(|(w, stage)| row(&s.name, stage, w)).collect::<Vec<_>>()
+    };
+    problem.signals.iter().enumerate().flat_map(signal).collect()
+}
+
+/// Spectra of the innovations of all signals, in decibels over white noise.
+fn spectrum(problem: &Problem<'_>, (stage, left): &Left) -> Panel {
+    let level = |d: &f64| if *d > 0.0 { 10.0 * d.log10() } else { f64::NAN };
+    let series = |(i, (s, w)): (usize, (&super::hypotheses::Signal, &Whiteness))| {
+        curve(&s.name, &w.frequencies, &w.density.iter().map(level).collect::<Vec<f64>>(), i)
+    };
+    Panel {
+        x_label: format!("frequency in Hz, {stage}"),
+        y_label: "unexpected, dB over white".into(),
+        series: problem.signals.iter().zip(left).enumerate().map(series).collect(),
+        ..Panel::default()
+    }
 }
 
 /// Per signal the first of the recordings against the nominal model and the corrected one.

@@ -1,0 +1,107 @@
+//! What the filter did not expect, signal by signal: how strong it is, whether neighbours have anything in common, and at
+//! which frequencies it lies. A complete model leaves white noise of unit power.
+
+use super::data::Recording;
+use super::fit::Fit;
+use super::lines::goertzel;
+use nalgebra::DMatrix;
+use std::f64::consts::PI;
+
+/// Samples of a stretch of which one spectrum is made, and the fewest that make one.
+const STRETCH: usize = 256;
+const FEWEST: usize = 32;
+/// Steps that differ by less than this part are the same.
+const SAME_STEP: f64 = 0.01;
+
+/// The whitened innovations of one signal.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Whiteness {
+    /// Mean square: 1 where they are as large as expected.
+    pub power: f64,
+    /// Correlation of a sample with the next.
+    pub neighbours: f64,
+    /// What that is at most in 95 % of white noise of as many samples.
+    pub limit: f64,
+    /// Frequencies, Hz; empty where recordings are too short.
+    pub frequencies: Vec<f64>,
+    /// Power density there, in that of white noise of unit power.
+    pub density: Vec<f64>,
+}
+
+/// Of all signals of a fit, over the recordings that it was made on.
+pub fn whiteness(fit: &Fit, recordings: &[Recording]) -> Vec<Whiteness> {
+    let signals = fit.white.first().map_or(0, DMatrix::ncols);
+    let steps: Vec<f64> = recordings.iter().map(|r| r.duration() / (r.len().max(2) - 1) as f64).collect();
+    let one = |signal: usize| {
+        let rest = |(white, r): (&DMatrix<f64>, &Recording)| -> Vec<f64> {
+            white.column(signal).iter().skip(r.settled()).copied().collect()
+        };
+        let series: Vec<Vec<f64>> = fit.white.iter().zip(recordings).map(rest).collect();
+        of(&series, &steps)
+    };
+    (0..signals).map(one).collect()
+}
+
+/// Of one signal, with a step for each series; there is no innovation of exactly 0 but where no sample is.
+fn of(series: &[Vec<f64>], steps: &[f64]) -> Whiteness {
+    let count = series.iter().flatten().filter(|v| **v != 0.0).count().max(1) as f64;
+    let square: f64 = series.iter().flatten().map(|v| v * v).sum();
+    let product: f64 = series.iter().flat_map(|s| s.windows(2)).map(|w| w[0] * w[1]).sum();
+    let neighbours = if square > 0.0 { product / square } else { 0.0 };
+    let (frequencies, density) = spectrum(series, steps);
+    Whiteness { power: square / count, neighbours, limit: 1.96 / count.sqrt(), frequencies, density }
+}
+
+/// The mean of the spectra of stretches that overlap by half, each in a Hann window (Welch, IEEE Transactions on Audio and
+/// Electroacoustics 15, 1967). Recordings with another step than the first are left out.
+fn spectrum(series: &[Vec<f64>], steps: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let Some(&step) = steps.first().filter(|s| **s > 0.0) else { return Default::default() };
+    let alike = |(s, own): (&Vec<f64>, &f64)| ((own / step - 1.0).abs() < SAME_STEP).then(|| s.clone());
+    let series: Vec<Vec<f64>> = series.iter().zip(steps).filter_map(alike).collect();
+    let length = series.iter().map(Vec::len).max().unwrap_or(0).min(STRETCH);
+    if length < FEWEST {
+        return Default::default();
+    }
+    let window: Vec<f64> =
+        (0..length).map(|k| 0.5 - 0.5 * (2.0 * PI * (k as f64 + 0.5) / length as f64).cos()).collect();
+    let size: f64 = window.iter().map(|w| w * w).sum();
+    let mut density = vec![0.0; length / 2];
+    let mut stretches = 0;
+    for s in &series {
+        for start in (0..(s.len() + 1).saturating_sub(length)).step_by(length / 2) {
+            let windowed: Vec<f64> = s[start..start + length].iter().zip(&window).map(|(v, w)| v * w).collect();
+            for (k, density) in density.iter_mut().enumerate() {
+                *density += goertzel(&windowed, 2.0 * PI * (k + 1) as f64 / length as f64) / size;
+            }
+            stretches += 1;
+        }
+    }
+    density.iter_mut().for_each(|d| *d /= f64::from(stretches.max(1)));
+    ((0..length / 2).map(|k| (k + 1) as f64 / (length as f64 * step)).collect(), density)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sine_stands_at_its_frequency() {
+        // an eighth of the sampling rate of 1 kHz
+        let sine: Vec<f64> = (0..4096).map(|k| (PI / 4.0 * f64::from(k) + 0.3).sin()).collect();
+        let found = of(&[sine], &[1e-3]);
+        assert!((found.power - 0.5).abs() < 1e-3, "{}", found.power);
+        assert!((found.neighbours - (PI / 4.0).cos()).abs() < 1e-3, "{}", found.neighbours);
+        let greatest = (0..found.density.len()).max_by(|a, b| found.density[*a].total_cmp(&found.density[*b])).unwrap();
+        assert!((found.frequencies[greatest] - 125.0).abs() < 1e-9, "{}", found.frequencies[greatest]);
+        // all its power, spread over the frequencies up to half the sampling rate
+        let mean = found.density.iter().sum::<f64>() / found.density.len() as f64;
+        assert!((mean - 0.5).abs() < 0.01, "{mean}");
+    }
+
+    #[test]
+    fn what_is_too_short_or_still_has_no_spectrum() {
+        assert!(of(&[vec![1.0; 8]], &[1e-3]).frequencies.is_empty());
+        assert_eq!(of(&[vec![0.0; 8]], &[1e-3]).power, 0.0);
+        assert!(of(&[], &[]).density.is_empty());
+    }
+}
