@@ -65,8 +65,11 @@ fn shares_join_to_the_whole() {
         bramah(folder, &["sweep", "press.toml", "--part", part]);
     }
     let first = read(folder, "press.1-of-3.csv");
-    let said = bramah(folder, &["sweep", "--merge", "-o", "two.csv", "press.1-of-3.csv", "press.2-of-3.csv"]);
+    let two = ["sweep", "--merge", "-o", "two.csv", "press.1-of-3.csv", "press.2-of-3.csv"];
+    let out = run(folder, env!("CARGO_BIN_EXE_bramah"), &two);
+    let said = String::from_utf8_lossy(&out.stderr);
     assert!(said.contains("10 runs in two.csv, 4 missing"), "{said}");
+    assert_eq!(out.status.code(), Some(1), "scripts see that runs are missing");
     let parts = ["press.3-of-3.csv", "press.1-of-3.csv", "press.2-of-3.csv"];
     bramah(folder, &[&["sweep", "--merge", "-o", "all.csv"], &parts[..]].concat());
     assert_eq!(read(folder, "all.csv"), whole(folder));

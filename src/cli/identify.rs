@@ -83,6 +83,8 @@ pub(super) fn run(args: &IdentifyArgs, messages: &mut Messages) -> Result<Ending
     let bound = opened.bound.clone();
     let problem = Problem::new(&model, &bound, &train).map_err(|d| opened.failure(d, messages))?;
     let fail = |d, opened: &Opened, messages: &mut Messages| opened.failure(vec![d], messages);
+    // before the fit, which may take long
+    let profiled = profiled(args, &problem).map_err(|d| fail(d, &opened, messages))?;
     let found = Identification::new(&problem, &train, args.method.method()).map_err(|d| fail(d, &opened, messages))?;
     messages.say(&found.suspicions);
     messages.remark(separation_words(&problem, &found).trim_end());
@@ -95,7 +97,8 @@ pub(super) fn run(args: &IdentifyArgs, messages: &mut Messages) -> Result<Ending
     };
     messages.say(&doubts(&problem, &fit, &held));
     messages.remark(fit_words(&problem, &fit, &held).trim_end());
-    let profiles = profiles(args, &problem, &found, &fit).map_err(|d| fail(d, &opened, messages))?;
+    let profiles: Result<Vec<Profile>, Diagnostic> = profiled.into_iter().map(|j| found.profile(&fit, j)).collect();
+    let profiles = profiles.map_err(|d| fail(d, &opened, messages))?;
     if !profiles.is_empty() {
         messages.remark(profile_words(&problem, &profiles).trim_end());
     }
@@ -108,12 +111,8 @@ pub(super) fn run(args: &IdentifyArgs, messages: &mut Messages) -> Result<Ending
     Ok(if fit.converged { Ending::Fine } else { Ending::Wrong })
 }
 
-fn profiles(
-    args: &IdentifyArgs,
-    problem: &Problem<'_>,
-    found: &Identification<'_>,
-    fit: &Fit,
-) -> Result<Vec<Profile>, Diagnostic> {
+/// The parameters whose profiles are asked for.
+fn profiled(args: &IdentifyArgs, problem: &Problem<'_>) -> Result<Vec<usize>, Diagnostic> {
     let Some(asked) = &args.profile else { return Ok(Vec::new()) };
     let globs = Globs::new(std::slice::from_ref(asked));
     let chosen: Vec<usize> = (0..problem.free.len()).filter(|&j| globs.matches(&problem.free[j].name)).collect();
@@ -121,7 +120,7 @@ fn profiles(
         let d = Diagnostic::new(Code::BadArgument, format!("no parameter of the study fits `--profile={asked}`"));
         return Err(d);
     }
-    chosen.into_iter().map(|j| found.profile(fit, j)).collect()
+    Ok(chosen)
 }
 
 /// What stands below the picture in a page.

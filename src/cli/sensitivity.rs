@@ -62,6 +62,10 @@ pub(super) fn run(args: &SensitivityArgs, messages: &mut Messages) -> Result<End
     let moved = parameters(args, &model)?;
     let mut settings = Settings { wanted, ..Settings::from_experiment(&model.dae.experiment) };
     if let Some(stop) = args.stop_time {
+        if stop <= settings.start_time {
+            let text = format!("the stop time {stop} s does not lie behind the start time {} s", settings.start_time);
+            return Err(Failure::new(Code::BadArgument, text));
+        }
         settings.stop_time = stop;
         settings.interval = (stop - settings.start_time) / 500.0;
     }

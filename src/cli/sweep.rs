@@ -35,7 +35,8 @@ Examples:
   bramah sweep press.toml --part 3/10          one share, into press.3-of-10.csv
   bramah sweep --merge -o all.csv press.*-of-10.csv
 
-Exit status: 0 all runs are in the table, failed ones among them; 1 the model is wrong or the sweep was interrupted;
+Exit status: 0 all runs are in the table, failed ones among them; 1 the model is wrong, the sweep was interrupted, or
+runs are missing in what was joined;
 2 bad arguments or files.")]
 pub(super) struct SweepArgs {
     /// The experiment file; with --merge the tables to join
@@ -60,8 +61,8 @@ pub(super) struct SweepArgs {
     #[arg(long, conflicts_with_all = ["part", "trajectories", "set"])]
     merge: bool,
     /// Runs at the same time [default: as many as there are cores]
-    #[arg(short, long, value_name = "N")]
-    jobs: Option<usize>,
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    jobs: Option<u16>,
 }
 
 fn part(text: &str) -> Result<(usize, usize), String> {
@@ -192,7 +193,7 @@ fn execute(
     let work = || open.par_iter().for_each(|&run| one(args, model, plan, settings, run, &shared));
     match args.jobs {
         Some(jobs) => rayon::ThreadPoolBuilder::new()
-            .num_threads(jobs.max(1))
+            .num_threads(jobs.into())
             .build()
             .map_err(|e| Failure::new(Code::BadArgument, e.to_string()))?
             .install(work),
@@ -311,5 +312,5 @@ fn merge(args: &SweepArgs, messages: &Messages) -> Result<Ending, Failure> {
     write_parquet(args, &whole)?;
     let missing = whole.runs - whole.rows.len().min(whole.runs);
     messages.remark(&format!("{} runs in {}, {missing} missing", whole.rows.len(), output.display()));
-    Ok(Ending::Fine)
+    Ok(if missing == 0 { Ending::Fine } else { Ending::Wrong })
 }
