@@ -11,6 +11,7 @@ use super::effects::Coefficient;
 use super::filter::{SILENT, Setting, Tape};
 use super::fit::{self, Fit, Prior, vuong};
 use super::held;
+use super::hypotheses::Attachment;
 use super::locate::{self, Located};
 use super::problem::{Assembled, Chosen, Problem};
 use super::recording::{self, Gross};
@@ -350,8 +351,11 @@ impl Search {
         if refined.is_empty() {
             return false;
         }
+        // what is as good as the form of an accepted effect is no other cause
+        let mends = |r: &Refined| self.mends_form(problem, &r.accepted, self.gain(&r.fit));
+        let form = refined.iter().any(|r| as_good(r, &refined[0]) && mends(r));
         let best = refined.remove(simplest(problem, &refined, self.last.evidence));
-        if !self.convinces(problem, &best) || self.mends_form(problem, &best.accepted, self.gain(&best.fit)) {
+        if form || !self.convinces(problem, &best) || mends(&best) {
             return false;
         }
         let found = Found::over(&self.last, &best, &refined);
@@ -443,7 +447,12 @@ impl Search {
         let ahead = gain > SEEN && gain - named > AHEAD.max(AHEAD_PART * named);
         let consistent =
             || vuong(&shape.fit.blocks, &rival.blocks) > CONSISTENT || rare(&shape.fit, rival, gain - named);
-        let driven = || driven::gain(problem, shape, &self.last).is_some_and(|driven| driven > DRIVEN * gain);
+        // or brings it about better than the best effect does
+        let by_rival = || best.and_then(|b| driven::gain(problem, b, &self.last)).unwrap_or(0.0).max(0.0);
+        let driven = || {
+            let driven = driven::gain(problem, shape, &self.last);
+            driven.is_some_and(|driven| driven > DRIVEN * gain || driven > CLAIMED && driven > AHEAD + by_rival())
+        };
         ahead && consistent() && driven()
     }
 
@@ -554,30 +563,36 @@ fn won_and_lost(with: &Fit, without: &Fit) -> (f64, f64) {
     blocks.fold((0.0, 0.0), |(won, lost), (a, b)| if a > b { (won + a - b, lost) } else { (won, lost + b - a) })
 }
 
+/// Whether a candidate is practically as good as another one.
+fn as_good(r: &Refined, front: &Refined) -> bool {
+    front.fit.evidence - r.fit.evidence < AS_GOOD && !certainly_worse(&r.fit, &front.fit)
+}
+
 /// Among the candidates that are practically as good as the first, the one with the fewest parameters and states, at the
-/// fewest places, that leaves the machine nearest to its data sheet. An effect that cuts a connection is named only where
+/// fewest nodes, that leaves the machine nearest to its data sheet. An effect that cuts a connection is named only where
 /// the data tell it from all others that leave the network as it is: slip of a pump's shaft is a leak across the pump, but
 /// for the inertia in between.
 fn simplest(problem: &Problem<'_>, refined: &[Refined], before: f64) -> usize {
     let h = |r: &Refined| &problem.hypotheses[r.accepted.chosen.hypothesis];
     let size = |r: &Refined| {
         let states = h(r).attachments[0].effect.as_ref().map_or(0, |e| e.states);
-        (h(r).changes_order, h(r).coefficients.len() + h(r).shapes.len() + states, h(r).attachments.len())
+        let touched = |a: &Attachment| a.site.nodes(&problem.circuit).len().max(1);
+        let nodes: usize = h(r).attachments.iter().map(touched).sum();
+        (h(r).changes_order, h(r).coefficients.len() + h(r).shapes.len() + states, nodes)
     };
     let front = &refined[0];
     let behind = |r: &Refined| front.fit.evidence - r.fit.evidence;
-    let as_good = |r: &Refined| {
-        let behind = behind(r);
+    let rivals = |r: &Refined| {
         let scatter = SCATTER * (front.fit.evidence - before);
         let whole = h(front).changes_order && !h(r).changes_order && h(r).family != h(front).family;
-        whole && (behind < scatter || near(r, front)) || behind < AS_GOOD && !certainly_worse(&r.fit, &front.fit)
+        whole && (behind(r) < scatter || near(r, front)) || as_good(r, front)
     };
     let sheet = |r: &Refined| behind(r) + r.fit.prior_cost(problem.tolerances.len());
     let simpler = |a: &usize, b: &usize| {
         let (a, b) = (&refined[*a], &refined[*b]);
         size(a).cmp(&size(b)).then(sheet(a).total_cmp(&sheet(b)))
     };
-    (0..refined.len()).filter(|&i| i == 0 || as_good(&refined[i])).min_by(simpler).unwrap_or(0)
+    (0..refined.len()).filter(|&i| i == 0 || rivals(&refined[i])).min_by(simpler).unwrap_or(0)
 }
 
 impl Search {

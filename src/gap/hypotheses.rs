@@ -108,18 +108,21 @@ impl Site {
         }
     }
 
-    /// Whether two effects act on one node whose potential is not given.
-    pub fn meets(&self, other: &Site, circuit: &Circuit) -> bool {
-        let nodes = |site: &Site| {
-            let ports = match site {
-                Site::Node(p) | Site::Into(p) => vec![*p],
-                Site::Across(a, b) => vec![*a, *b],
-                Site::Sensor(_) | Site::Command(_) | Site::Parameter(_) => Vec::new(),
-            };
-            ports.into_iter().map(|p| circuit.ports[p].node).filter(|n| !circuit.nodes[*n].fixed).collect::<Vec<_>>()
+    /// Nodes on which it acts and whose potential is not given; those that are rigidly one are the same.
+    pub fn nodes(&self, circuit: &Circuit) -> Vec<usize> {
+        let ports = match self {
+            Site::Node(p) | Site::Into(p) => vec![*p],
+            Site::Across(a, b) => vec![*a, *b],
+            Site::Sensor(_) | Site::Command(_) | Site::Parameter(_) => Vec::new(),
         };
-        let own = nodes(self);
-        nodes(other).iter().any(|n| own.contains(n))
+        let nodes = ports.into_iter().map(|p| circuit.rigid(p));
+        nodes.filter(|n| !circuit.nodes[*n].fixed).collect()
+    }
+
+    /// Whether two effects act on one node.
+    pub fn meets(&self, other: &Site, circuit: &Circuit) -> bool {
+        let own = self.nodes(circuit);
+        other.nodes(circuit).iter().any(|n| own.contains(n))
     }
 }
 
@@ -612,14 +615,16 @@ mod tests {
             through: quantity(),
             node,
         };
-        // two chambers, the first with a second port, and the tank
-        let nodes = vec![NodeSet::default(), NodeSet::default(), NodeSet { fixed: true, ..NodeSet::default() }];
-        let circuit = Circuit { ports: vec![port(0), port(1), port(2), port(0)], nodes, ..Circuit::default() };
+        // two chambers, the first with a second port, the tank, and a node that is rigidly one with the second chamber
+        let node = |rigid, fixed| NodeSet { rigid, fixed, ..NodeSet::default() };
+        let nodes = vec![node(0, false), node(1, false), node(2, true), node(1, false)];
+        let circuit = Circuit { ports: vec![port(0), port(1), port(2), port(0), port(3)], nodes, ..Circuit::default() };
         let meet = |a: Site, b: Site| a.meets(&b, &circuit) && b.meets(&a, &circuit);
         assert!(meet(Site::Node(0), Site::Across(3, 2)), "air and the leak of the same chamber");
         assert!(meet(Site::Across(0, 1), Site::Into(3)));
         assert!(!meet(Site::Across(0, 2), Site::Across(1, 2)), "both end in the tank");
         assert!(!meet(Site::Node(0), Site::Node(1)));
+        assert!(meet(Site::Node(1), Site::Node(4)));
         assert!(!meet(Site::Sensor("p".into()), Site::Sensor("p".into())), "which `is_at` tells");
     }
 }

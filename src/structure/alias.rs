@@ -31,7 +31,8 @@ pub(super) fn eliminate(
     }
     link_derivatives(draft, &mut classes, &links, &mut kept);
     retain(draft, &kept);
-    let targets = classes.settle(draft);
+    let differentiated = links.iter().map(|(.., of)| of.variable);
+    let targets = classes.settle(draft, differentiated);
     let aliases = aliases(&targets);
     for alias in &aliases {
         merge(draft, known, *alias, diagnostics);
@@ -296,10 +297,11 @@ impl Classes {
         }
     }
 
-    /// Chooses the variable that stays in each class, and records the links between those.
-    fn settle(&mut self, draft: &mut Draft) -> Vec<Signed> {
+    /// Chooses the variable that stays in each class, and records the links between those. Variables whose derivative has
+    /// a name are `differentiated` though the equation that says so may be gone.
+    fn settle(&mut self, draft: &mut Draft, differentiated: impl Iterator<Item = VarId>) -> Vec<Signed> {
         let count = draft.variables.len();
-        let ranks = ranks(draft);
+        let ranks = ranks(draft, differentiated);
         let mut best: Vec<Option<VarId>> = vec![None; count];
         for v in (0..count as u32).map(VarId) {
             let slot = self.find(v).variable.index();
@@ -337,8 +339,9 @@ fn aliases(targets: &[Signed]) -> Vec<Alias> {
 /// What makes a variable the better representative; larger wins.
 type Rank = (bool, bool, StateSelect, bool, bool, bool, bool, std::cmp::Reverse<usize>, std::cmp::Reverse<usize>);
 
-fn ranks(draft: &mut Draft) -> Vec<Rank> {
+fn ranks(draft: &mut Draft, named: impl Iterator<Item = VarId>) -> Vec<Rank> {
     let mut differentiated = vec![false; draft.variables.len()];
+    named.for_each(|v| differentiated[v.index()] = true);
     for (i, _) in draft.live_nodes().iter().enumerate().filter(|(_, live)| **live) {
         if let Node::Der(v) = draft.exprs.node(ExprId(i as u32)) {
             differentiated[v.index()] = true;

@@ -1,7 +1,7 @@
 within Effects.Interfaces;
 partial model ElectricalBridge "Current between two pins of a component"
-  input SI.ElectricPotential v_a "Potential of the first pin";
-  input SI.ElectricPotential v_b "Potential of the second pin";
+  input SI.ElectricPotential v_a(stateSelect = StateSelect.avoid) "Potential of the first pin";
+  input SI.ElectricPotential v_b(stateSelect = StateSelect.avoid) "Potential of the second pin";
   output SI.Current i "Current from the first to the second pin";
   SI.Voltage v "Voltage";
 equation

@@ -1,7 +1,7 @@
 within Effects.Interfaces;
 partial model TranslationalBridge "Force between two flanges of a component"
-  input SI.Position s_a(nominal = 1e-2) "Position of the first flange";
-  input SI.Position s_b(nominal = 1e-2) "Position of the second flange";
+  input SI.Position s_a(stateSelect = StateSelect.avoid, nominal = 1e-2) "Position of the first flange";
+  input SI.Position s_b(stateSelect = StateSelect.avoid, nominal = 1e-2) "Position of the second flange";
   output SI.Force f(nominal = 100) "Force from the first to the second flange";
   SI.Position s_rel(nominal = 1e-2) "Position of the first flange relative to the second";
   SI.Velocity v_rel(nominal = 0.1) "Speed of the first flange relative to the second";

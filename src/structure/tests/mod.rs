@@ -304,6 +304,15 @@ fn signs_of_aliases() {
     insta::assert_snapshot!(found.blt_text());
 }
 
+/// The equation that names a derivative is gone when the choice is made.
+#[test]
+fn a_state_keeps_its_name_though_another_differentiates_its_alias() {
+    let mut m = Model::new();
+    m.reals("s v t w");
+    m.equations("v = der(s); der(v) = -s; t = s; w = 2*der(t)");
+    assert_eq!(dae(&m).states, [m.id("s"), m.id("v")]);
+}
+
 /// Rigid joints in a row, with speeds: everything moves with one state pair.
 #[test]
 fn rigid_chain() {
