@@ -255,6 +255,17 @@ fn what_an_ideal_gear_drives_has_a_speed() {
     assert!(node("rotor.flange_b").has_rate && node("rotor.flange_b").has_acceleration);
     assert!(node("gear.flange_b").has_rate && node("gear.flange_b").has_acceleration);
     assert!(!node("first.flange_b").has_rate);
+    // and what acts between its sides acts as well at one of them
+    let (geared, elastic) = (node("gear.flange_b").geared, node("first.flange_b").geared);
+    assert!(geared == node("rotor.flange_b").geared && geared != elastic);
+    let effects = catalogue(&MemoryWorld::default(), None).value.expect("a catalogue").effects;
+    let all = hypotheses(&places, &effects, &[], &[]);
+    let between = |a: &str, b: &str| {
+        let place = format!("{a}|{b}");
+        all.iter().flat_map(Hypothesis::places).filter(|p| p.place == place).count()
+    };
+    assert_eq!(between("gear.flange_a", "gear.flange_b"), 0);
+    assert!(between("first.flange_a", "first.flange_b") > 0);
 }
 
 /// The file with the corrected model needs nothing beside it and runs as the augmented model does.

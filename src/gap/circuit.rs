@@ -51,6 +51,9 @@ pub struct NodeSet {
     /// The first of the nodes that are rigidly one with it (both flanges of a mass): what is drawn from one might as
     /// well be drawn from the other.
     pub rigid: usize,
+    /// The first of the nodes whose potentials are bound to each other whatever flows (both sides of a gear): what acts on
+    /// one might as well act on another, with another size.
+    pub geared: usize,
 }
 
 /// A component instance; entry 0 is the model itself.
@@ -129,6 +132,7 @@ impl Reader {
             rates.of_node(&potentials, node);
         }
         self.rigid(&rates);
+        self.geared(&rates);
         self.factors(flat);
         self.circuit.inputs = inputs(flat);
         let real = flat.variables.iter().filter(|v| v.ty == Type::Real);
@@ -203,6 +207,22 @@ impl Reader {
                     }
                 }
             }
+        }
+    }
+
+    /// Finds nodes whose potentials are bound to each other.
+    fn geared(&mut self, rates: &Rates<'_>) {
+        let Circuit { ports, nodes, .. } = &mut self.circuit;
+        (0..nodes.len()).for_each(|i| nodes[i].geared = nodes[i].rigid);
+        let root = |p: &Port| rates.root_of(&format!("{}.{}", p.name, p.potential.name));
+        for pair in &rates.geared {
+            let bound: BTreeSet<usize> = ports
+                .iter()
+                .filter(|p| root(p).is_some_and(|r| pair.contains(&r)))
+                .map(|p| nodes[p.node].geared)
+                .collect();
+            let Some(&first) = bound.first() else { continue };
+            nodes.iter_mut().filter(|n| bound.contains(&n.geared)).for_each(|n| n.geared = first);
         }
     }
 
@@ -291,6 +311,8 @@ struct Rates<'a> {
     /// Variables whose derivative parameters give.
     steady: BTreeSet<u32>,
     fixed: BTreeSet<u32>,
+    /// Potentials that one equation binds to each other, in pairs.
+    geared: Vec<BTreeSet<u32>>,
     index: BTreeMap<&'a str, u32>,
 }
 
@@ -301,7 +323,8 @@ impl<'a> Rates<'a> {
         let root = (0..count).collect();
         let none = BTreeSet::new;
         let (differentiated, accelerated, steady, fixed) = (none(), none(), none(), none());
-        let mut rates = Rates { flat, root, differentiated, accelerated, steady, fixed, index };
+        let geared = Vec::new();
+        let mut rates = Rates { flat, root, differentiated, accelerated, steady, fixed, geared, index };
         rates.unite();
         for e in &flat.equations {
             for side in [e.lhs, e.rhs] {
@@ -319,14 +342,14 @@ impl<'a> Rates<'a> {
         }
         rates.accelerations();
         let potentials = potentials.iter().filter_map(|name| rates.root_of(name)).collect();
-        let geared: Vec<BTreeSet<u32>> = flat.equations.iter().filter_map(|e| rates.geared(e, &potentials)).collect();
-        rates.differentiated = with_geared(rates.differentiated.clone(), &geared);
-        rates.accelerated = with_geared(rates.accelerated.clone(), &geared);
+        rates.geared = flat.equations.iter().filter_map(|e| rates.bound(e, &potentials)).collect();
+        rates.differentiated = with_geared(rates.differentiated.clone(), &rates.geared);
+        rates.accelerated = with_geared(rates.accelerated.clone(), &rates.geared);
         rates
     }
 
     /// The two potentials that an equation binds to each other whatever flows, as an ideal gear does.
-    fn geared(&self, e: &crate::flat::Equation, potentials: &BTreeSet<u32>) -> Option<BTreeSet<u32>> {
+    fn bound(&self, e: &crate::flat::Equation, potentials: &BTreeSet<u32>) -> Option<BTreeSet<u32>> {
         let leaves = self.flat.exprs.dependencies(&[e.lhs, e.rhs]);
         let moving = |v: &&VarId| self.flat.variables[v.index()].variability > Variability::Parameter;
         let roots: BTreeSet<u32> = leaves.vars.iter().filter(moving).map(|v| self.find(v.0)).collect();
@@ -531,6 +554,11 @@ impl Circuit {
     /// The number that all nodes rigidly one with that of a port share.
     pub fn rigid(&self, port: usize) -> usize {
         self.nodes[self.ports[port].node].rigid
+    }
+
+    /// The number that all nodes share whose potentials are bound to that of a port.
+    pub fn geared(&self, port: usize) -> usize {
+        self.nodes[self.ports[port].node].geared
     }
 
     /// All ports of the nodes that are one with that of a port, in declaration order.

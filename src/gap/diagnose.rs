@@ -576,7 +576,7 @@ fn simplest(problem: &Problem<'_>, refined: &[Refined], before: f64) -> usize {
     let h = |r: &Refined| &problem.hypotheses[r.accepted.chosen.hypothesis];
     let size = |r: &Refined| {
         let states = h(r).attachments[0].effect.as_ref().map_or(0, |e| e.states);
-        let touched = |a: &Attachment| a.site.nodes(&problem.circuit).len().max(1);
+        let touched = |a: &Attachment| a.site.free_ports(&problem.circuit).len().max(1);
         let nodes: usize = h(r).attachments.iter().map(touched).sum();
         (h(r).changes_order, h(r).coefficients.len() + h(r).shapes.len() + states, nodes)
     };

@@ -108,21 +108,21 @@ impl Site {
         }
     }
 
-    /// Nodes on which it acts and whose potential is not given; those that are rigidly one are the same.
-    pub fn nodes(&self, circuit: &Circuit) -> Vec<usize> {
+    /// Ports of the nodes on which it acts and whose potential is not given.
+    pub fn free_ports(&self, circuit: &Circuit) -> Vec<usize> {
         let ports = match self {
             Site::Node(p) | Site::Into(p) => vec![*p],
             Site::Across(a, b) => vec![*a, *b],
             Site::Sensor(_) | Site::Command(_) | Site::Parameter(_) => Vec::new(),
         };
-        let nodes = ports.into_iter().map(|p| circuit.rigid(p));
-        nodes.filter(|n| !circuit.nodes[*n].fixed).collect()
+        ports.into_iter().filter(|p| !circuit.nodes[circuit.ports[*p].node].fixed).collect()
     }
 
-    /// Whether two effects act on one node.
+    /// Whether two effects act on one node, or on two that are bound to each other.
     pub fn meets(&self, other: &Site, circuit: &Circuit) -> bool {
-        let own = self.nodes(circuit);
-        other.nodes(circuit).iter().any(|n| own.contains(n))
+        let nodes = |site: &Site| site.free_ports(circuit).into_iter().map(|p| circuit.geared(p)).collect::<Vec<_>>();
+        let own = nodes(self);
+        nodes(other).iter().any(|n| own.contains(n))
     }
 }
 
@@ -329,7 +329,9 @@ fn pairs(circuit: &Circuit, effect: &Effect, ports: &[usize]) -> Vec<(Site, Vec<
         for &b in &ports[i + 1..] {
             let (x, y) = (circuit.rigid(a), circuit.rigid(b));
             let fixed = [x, y].into_iter().filter(|n| circuit.nodes[*n].fixed).count();
-            if x != y && fixed < if effect.free_ends { 1 } else { 2 } {
+            // between the sides of a gear acts nothing that could not act at one of them
+            let bound = circuit.geared(a) == circuit.geared(b);
+            if !bound && fixed < if effect.free_ends { 1 } else { 2 } {
                 sites.push((Site::Across(a, b), vec![a, b]));
                 if effect.directed {
                     sites.push((Site::Across(b, a), vec![b, a]));
@@ -616,7 +618,7 @@ mod tests {
             node,
         };
         // two chambers, the first with a second port, the tank, and a node that is rigidly one with the second chamber
-        let node = |rigid, fixed| NodeSet { rigid, fixed, ..NodeSet::default() };
+        let node = |first, fixed| NodeSet { rigid: first, geared: first, fixed, ..NodeSet::default() };
         let nodes = vec![node(0, false), node(1, false), node(2, true), node(1, false)];
         let circuit = Circuit { ports: vec![port(0), port(1), port(2), port(0), port(3)], nodes, ..Circuit::default() };
         let meet = |a: Site, b: Site| a.meets(&b, &circuit) && b.meets(&a, &circuit);
