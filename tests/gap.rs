@@ -7,6 +7,7 @@ use bramah::gap::diagnose::search;
 use bramah::gap::filter::{Tape, run as run_filter};
 use bramah::gap::fixed::corrected;
 use bramah::gap::held::from_start;
+use bramah::gap::locate::{self, Located};
 use bramah::gap::plan::{Pair, plan};
 use bramah::gap::report::report;
 use bramah::gap::study::{planned, question};
@@ -267,6 +268,34 @@ time = \"t\"
     for a in &found.effects[0].indistinguishable {
         assert!(a.places.iter().all(|p| p.place != "motor.flange|gear.flange_b"), "{a:?}");
     }
+}
+
+/// What nobody told the model of, a slow force here, is drawn as the filter follows it.
+#[test]
+fn the_course_of_what_is_missing_is_estimated() {
+    let pushed = format!(
+        "{MODEL}\nmodel Pushed extends Slide.Nominal; Slide.Push other; equation
+        connect(other.flange, mass.flange); other.u = 6*sin(2.5*time); end Pushed;"
+    );
+    let mut world = MemoryWorld::single("Slide.mo", pushed);
+    let signals = [("s", "mass.s", 2e-5), ("v", "mass.v", 2e-4)];
+    for (file, seed) in [("train.csv", 11), ("held.csv", 12)] {
+        let text = stepped(&world, ("Slide.mo", "Pushed"), &[], (20.0, 0.004), &signals, seed);
+        world.add(file, text);
+    }
+    world.add("study.toml", STUDY);
+    let mut sources = Sources::default();
+    let study = Study::read(&world, Path::new("study.toml"), &mut sources).value.unwrap();
+    let problem = question(&world, &study, None, &mut sources).ok().unwrap().problem;
+    let found = search(&problem, &mut |_| ()).unwrap();
+    let recording = &problem.train[0];
+    let force = |l: &&Located| problem.disturbances[l.disturbance].attachments[0].place.place.ends_with("flange");
+    let place = found.left().iter().find(force).expect("the only node").disturbance;
+    let course = locate::course(&problem, found.tolerated().0, &[], place, recording).expect("it has values");
+    let pairs = || recording.times.iter().zip(&course).map(|(t, f)| (6.0 * (2.5 * t).sin(), f)).skip(100);
+    let rms = |squares: &mut dyn Iterator<Item = f64>| squares.sum::<f64>().sqrt();
+    let (error, size) = (rms(&mut pairs().map(|(t, f)| (t - f).powi(2))), rms(&mut pairs().map(|(t, _)| t * t)));
+    assert!(error < 0.3 * size, "{error} of {size}");
 }
 
 #[test]

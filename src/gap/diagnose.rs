@@ -445,8 +445,8 @@ impl Search {
         let named = best.map_or(0.0, |b| self.gain(&b.fit)).max(0.0);
         let rival = best.filter(|_| named > 0.0).map_or(&self.last, |b| &b.fit);
         let ahead = gain > SEEN && gain - named > AHEAD.max(AHEAD_PART * named);
-        let consistent =
-            || vuong(&shape.fit.blocks, &rival.blocks) > CONSISTENT || rare(&shape.fit, rival, gain - named);
+        // what acts seldom may as well be a disturbance that came once: a shape has to explain most blocks better
+        let consistent = || vuong(&shape.fit.blocks, &rival.blocks) > CONSISTENT;
         // or brings it about better than the best effect does
         let by_rival = || best.and_then(|b| driven::gain(problem, b, &self.last)).unwrap_or(0.0).max(0.0);
         let driven = || {
@@ -604,6 +604,11 @@ impl Search {
     /// The accepted effects with their fitted values.
     pub fn accepted(&self) -> &[Accepted] {
         &self.accepted
+    }
+
+    /// Places where something is left, most first.
+    pub fn left(&self) -> &[Located] {
+        &self.left
     }
 
     /// Everything that was refined, round by round, best first.

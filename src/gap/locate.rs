@@ -1,6 +1,7 @@
 //! Where the gap lies, before anything is named: each place gets a slow source of its own, and what the recordings gain
 //! in likelihood by it ranks the places.
 
+use super::data::Recording;
 use super::filter::{self, SILENT, Setting, Source, Tape};
 use super::fit::{self, Fit};
 use super::levels;
@@ -77,6 +78,45 @@ pub fn locate(problem: &Problem<'_>, base: &Fit, accepted: &[Accepted]) -> Vec<L
     }
     rank(&mut found, &factors, fast, &value, best, base.search_share());
     found
+}
+
+/// What is missing at a place over a recording, sample by sample in the unit of its source: what the filter makes of the
+/// sources there, a slow one beside the fitted one, from the samples so far. The last sample is left out. `None` where the
+/// filter has no values.
+pub fn course(
+    problem: &Problem<'_>,
+    base: &Fit,
+    accepted: &[Accepted],
+    disturbance: usize,
+    recording: &Recording,
+) -> Option<Vec<f64>> {
+    let chosen: Vec<_> = accepted.iter().map(|a| a.chosen.clone()).collect();
+    let all: Vec<usize> = (0..problem.disturbances.len()).collect();
+    let assembled = problem.assemble(&chosen, &all).ok()?;
+    let mut setting = setting(problem, base, &assembled, accepted)?;
+    let fast = base.setting.sources.len();
+    let slow = setting.sources.swap_remove(fast + disturbance);
+    setting.sources.truncate(fast);
+    let followed = |strength: &f64| {
+        let mut with = setting.clone();
+        with.sources.push(Source { level: slow.level * strength, ..slow.clone() });
+        let pass = filter::run(&with, recording, 0, recording.len(), Tape::Whole).ok()?;
+        Some((pass, with.sources))
+    };
+    let (pass, sources) =
+        STRENGTHS.iter().filter_map(followed).max_by(|a, b| a.0.likelihood.total_cmp(&b.0.likelihood))?;
+    let steps = pass.tapes.first()?;
+    let states = steps.first()?.correction.len() - sources.len();
+    let there: Vec<usize> = (0..sources.len()).filter(|&i| sources[i].parameter == slow.parameter).collect();
+    let mut z = vec![0.0; sources.len()];
+    let value = |step: &filter::Step| {
+        there.iter().for_each(|&i| z[i] += step.correction[states + i]);
+        let sum = there.iter().map(|&i| z[i] * sources[i].level).sum();
+        // sources only decay
+        there.iter().for_each(|&i| z[i] *= step.transition[(states + i, states + i)]);
+        sum
+    };
+    Some(steps.iter().map(value).collect())
 }
 
 /// What each place gains alone.

@@ -5,6 +5,8 @@
 use super::data::Recording;
 use super::diagnose::Search;
 use super::held;
+use super::hypotheses::{Hypothesis, Site};
+use super::locate;
 use super::problem::Problem;
 use super::verdict::{Columns, Effect, Maybe, Side, Verdict};
 use super::whiteness::{Whiteness, whiteness};
@@ -31,6 +33,7 @@ pub fn report(problem: &Problem<'_>, search: &Search, verdict: &Verdict, held: &
     let fits = &fits[..1 + usize::from(!verdict.effects.is_empty())];
     let left: Vec<Left> = fits.iter().map(|(stage, fit)| (*stage, whiteness(fit, &problem.train))).collect();
     panels.extend(left.iter().map(|left| spectrum(problem, left)));
+    panels.extend(missing(problem, search, verdict));
     let title = format!("Gap of {}", problem.circuit.class);
     let figure = Figure { title, panels, shared_x: false };
     let facts = [
@@ -234,6 +237,30 @@ fn panels(problem: &Problem<'_>, search: &Search, recordings: &[Recording], what
         }
     };
     problem.signals.iter().enumerate().map(panel).collect()
+}
+
+/// What is missing over time at the place that stays unexplained; of two ports, at the first.
+fn missing(problem: &Problem<'_>, search: &Search, v: &Verdict) -> Option<Panel> {
+    let place = v.unexplained.place.as_deref()?.split('|').next()?;
+    let there = |h: &Hypothesis| h.places().iter().any(|p| p.place == place || p.node.iter().any(|n| n == place));
+    let disturbance = problem.disturbances.iter().position(there)?;
+    let recording = problem.train.first()?;
+    let values = locate::course(problem, search.last().0, search.accepted(), disturbance, recording)?;
+    let attachment = &problem.disturbances[disturbance].attachments[0];
+    let circuit = &problem.circuit;
+    let of = |variable: &str| circuit.units.get(variable).map_or("", String::as_str);
+    let unit = match &attachment.site {
+        Site::Node(p) | Site::Into(p) | Site::Across(p, _) => circuit.ports[*p].through.unit.as_str(),
+        Site::Sensor(name) => problem.signals.iter().find(|s| s.name == *name).map_or("", |s| of(&s.variable)),
+        Site::Command(name) | Site::Parameter(name) => of(name),
+    };
+    let place = &attachment.place.place;
+    Some(Panel {
+        x_label: "time in s, a recording that was used: what the filter makes of the samples so far".into(),
+        y_label: format!("missing at {place}{}{unit}", if unit.is_empty() { "" } else { " in " }),
+        series: vec![curve("estimated", &recording.times[..values.len()], &values, 2)],
+        ..Panel::default()
+    })
 }
 
 fn curve(name: &str, x: &[f64], y: &[f64], colour: usize) -> Series {

@@ -44,7 +44,8 @@ impl Conclusion<'_> {
         let physical =
             |l: &&Located| !matches!(problem.disturbances[l.disturbance].attachments[0].site, Site::Sensor(_));
         let located = s.left.iter().find(physical);
-        let place = located.filter(|l| l.evidence > LOCATED && share.is_none_or(|s| s > 0.1));
+        let of_sensor = s.left.iter().filter(|l| !physical(l)).map(|l| l.evidence).fold(0.0, f64::max);
+        let place = located.filter(|l| l.evidence > LOCATED.max(of_sensor) && share.is_none_or(|s| s > 0.1));
         // what several times the noise leaves open is something, even where no place stands out; disturbances that the
         // filter follows as it should leave as much
         let followed = s.base.share > WHITE && s.left.iter().all(|l| l.evidence < NOTICED);
