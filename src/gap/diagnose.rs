@@ -568,17 +568,15 @@ fn as_good(r: &Refined, front: &Refined) -> bool {
     front.fit.evidence - r.fit.evidence < AS_GOOD && !certainly_worse(&r.fit, &front.fit)
 }
 
-/// Among the candidates that are practically as good as the first, the one with the fewest parameters and states, at the
-/// fewest nodes, that leaves the machine nearest to its data sheet. An effect that cuts a connection is named only where
-/// the data tell it from all others that leave the network as it is: slip of a pump's shaft is a leak across the pump, but
-/// for the inertia in between.
+/// Among the candidates that are practically as good as the first, the one with the fewest parameters and states that
+/// leaves the machine nearest to its data sheet, and of its family the one at the fewest nodes. An effect that cuts a
+/// connection is named only where the data tell it from all others that leave the network as it is: slip of a pump's shaft
+/// is a leak across the pump, but for the inertia in between.
 fn simplest(problem: &Problem<'_>, refined: &[Refined], before: f64) -> usize {
     let h = |r: &Refined| &problem.hypotheses[r.accepted.chosen.hypothesis];
     let size = |r: &Refined| {
         let states = h(r).attachments[0].effect.as_ref().map_or(0, |e| e.states);
-        let touched = |a: &Attachment| a.site.free_ports(&problem.circuit).len().max(1);
-        let nodes: usize = h(r).attachments.iter().map(touched).sum();
-        (h(r).changes_order, h(r).coefficients.len() + h(r).shapes.len() + states, nodes)
+        (h(r).changes_order, h(r).coefficients.len() + h(r).shapes.len() + states)
     };
     let front = &refined[0];
     let behind = |r: &Refined| front.fit.evidence - r.fit.evidence;
@@ -592,7 +590,16 @@ fn simplest(problem: &Problem<'_>, refined: &[Refined], before: f64) -> usize {
         let (a, b) = (&refined[*a], &refined[*b]);
         size(a).cmp(&size(b)).then(sheet(a).total_cmp(&sheet(b)))
     };
-    (0..refined.len()).filter(|&i| i == 0 || rivals(&refined[i])).min_by(simpler).unwrap_or(0)
+    let equal: Vec<usize> = (0..refined.len()).filter(|&i| i == 0 || rivals(&refined[i])).collect();
+    let Some(best) = equal.iter().copied().min_by(simpler) else { return 0 };
+    let nodes = |i: &usize| {
+        let touched = |a: &Attachment| a.site.free_ports(&problem.circuit).len();
+        h(&refined[*i]).attachments.iter().map(touched).sum::<usize>()
+    };
+    let alike =
+        |i: &usize| h(&refined[*i]).family == h(&refined[best]).family && size(&refined[*i]) == size(&refined[best]);
+    let kin = equal.into_iter().filter(alike);
+    kin.min_by(|a, b| nodes(a).cmp(&nodes(b)).then_with(|| simpler(a, b))).unwrap_or(best)
 }
 
 impl Search {
