@@ -4,6 +4,7 @@ mod conclusion;
 mod driven;
 mod lost;
 mod order;
+mod prune;
 mod refine;
 
 use super::data::Recording;
@@ -53,10 +54,6 @@ const RARE_RATIO: f64 = 4.0;
 const FORM: f64 = 0.25;
 /// And any other effect: of a strong effect's form so much remains anywhere.
 const REMAINS: f64 = 0.003;
-/// Part of the simulated gap that opens again without it, of what all effects together close.
-const CLOSES: f64 = 0.07;
-/// An effect without which the model simulates so many times better has been taken for another.
-const WORSE: f64 = 1.5;
 /// Candidates this near are equally good: the simpler one stands first, nats.
 const AS_GOOD: f64 = 2.0;
 /// Alternatives this near cannot be told apart, nats.
@@ -214,13 +211,17 @@ pub fn search(problem: &Problem<'_>, progress: &mut dyn FnMut(Stage)) -> Result<
     search.shape_or_effects(problem);
     search.prune(problem);
     progress(Stage::Locate);
-    search.left = if search.accepted.is_empty() {
-        search.places.clone()
-    } else {
-        locate::locate(problem, &search.last, &search.accepted)
-    };
-    search.simulate(problem);
-    Ok(search)
+    loop {
+        search.left = if search.accepted.is_empty() {
+            search.places.clone()
+        } else {
+            locate::locate(problem, &search.last, &search.accepted)
+        };
+        search.simulate(problem);
+        if !search.drop_unsure(problem) {
+            return Ok(search);
+        }
+    }
 }
 
 /// The nominal model fitted within its tolerances, from its own parameters and from those that bring it nearest to the
@@ -303,6 +304,7 @@ impl Search {
         let (mut chosen, rest) = promising(problem, &self.last, followed);
         hidden(&mut chosen, driven);
         chosen.extend(self.unseen(problem, &chosen));
+        chosen.extend(self.late(problem, &chosen));
         chosen.extend(self.reordering(problem));
         let mut refined = self.refined(problem, &chosen);
         if let Some(front) = refined.first() {
@@ -501,37 +503,6 @@ impl Search {
             self.adopt(last, model);
         }
         self.base = base;
-    }
-
-    /// Drops again what closes little of the simulated gap now that everything else is there: one effect hides another,
-    /// so this is asked at the end only.
-    fn prune(&mut self, problem: &Problem<'_>) {
-        while !self.accepted.is_empty() {
-            let noise = self.last.setting.noise.clone();
-            let gap = |f: &Fit| held::gap_of(problem, &f.setting, &problem.train, &noise);
-            let full = gap(&self.last);
-            let closable = gap(&self.base).beyond(&full);
-            let without = |i: usize| {
-                let rest: Vec<Accepted> =
-                    (0..self.accepted.len()).filter(|k| *k != i).map(|k| self.accepted[k].clone()).collect();
-                if rest.is_empty() {
-                    return Some((self.base.clone(), self.base_model.clone()));
-                }
-                fitted(problem, &self.last, &rest)
-            };
-            // of several that could go the one goes that was the least sure
-            let least = (0..self.accepted.len())
-                .filter_map(|i| without(i).map(|(f, m)| (i, f, m)))
-                .filter(|(_, f, _)| {
-                    let gap = gap(f);
-                    gap.beyond(&full) < CLOSES * closable || WORSE * gap.total < full.total
-                })
-                .min_by(|a, b| self.found[a.0].gain.total_cmp(&self.found[b.0].gain));
-            let Some((i, fit, model)) = least else { break };
-            self.accepted.remove(i);
-            self.found.remove(i);
-            self.adopt(fit, model);
-        }
     }
 }
 

@@ -28,6 +28,8 @@ pub(super) const AT_BOUND: f64 = 1e-3;
 const BOUNDED: usize = 4;
 const WHOLE: f64 = 0.3;
 const TRIED: usize = 1500;
+/// Lags and dead times that the screen does not see and that are refined all the same, at most.
+const LATE: usize = 2;
 /// Part of the time of a lag that is tried beside it.
 const SHORT: f64 = 0.1;
 /// Shapes without a name that are refined beside, each of another kind.
@@ -129,16 +131,33 @@ impl Search {
         let known = |i: usize| self.has(i) || refined.iter().any(|r| of(r) == i);
         let open = |i: &usize| problem.hypotheses[*i].is_bounded() && sites.contains(&site(*i)) && !known(*i);
         let open: Vec<usize> = (0..problem.hypotheses.len()).filter(open).collect();
+        self.better_whole(problem, &open).into_iter().map(|(_, candidate)| candidate).collect()
+    }
+
+    /// Lags and dead times that look like nothing from where they are not and are better than nothing as a whole: a sensor
+    /// that comes later than the model's time constants leads the filter wherever it says.
+    pub(super) fn late(&self, problem: &Problem<'_>, chosen: &[Candidate]) -> Vec<Candidate> {
+        let known = |i: usize| self.has(i) || chosen.iter().any(|c| c.chosen.hypothesis == i);
+        let open = |i: &usize| is_lag(&problem.hypotheses[*i]) && !known(*i);
+        let open: Vec<usize> = (0..problem.hypotheses.len()).filter(open).collect();
+        let mut found = self.better_whole(problem, &open);
+        found.sort_by(|a, b| b.0.total_cmp(&a.0));
+        found.into_iter().take(LATE).map(|(_, candidate)| candidate).collect()
+    }
+
+    /// Those that are better as a whole than nothing on the beginning of the first recording, and by how much.
+    fn better_whole(&self, problem: &Problem<'_>, open: &[usize]) -> Vec<(f64, Candidate)> {
         if open.is_empty() {
             return Vec::new();
         }
         let Some(without) = self.tried(problem, None) else { return Vec::new() };
-        let better = |i: usize| {
+        let better = |&i: &usize| {
             let h = &problem.hypotheses[i];
             let mut candidate = whole(h, i)?;
-            (self.shape_of_whole(problem, h, &mut candidate)? > without).then_some(candidate)
+            let gain = self.shape_of_whole(problem, h, &mut candidate)? - without;
+            (gain > 0.0).then_some((gain, candidate))
         };
-        open.into_par_iter().filter_map(better).collect()
+        open.par_iter().filter_map(better).collect()
     }
 
     /// Whether a lag or dead time with the best time of its grid, or a much shorter one, is better than none on the
