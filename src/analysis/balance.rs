@@ -150,11 +150,8 @@ pub struct Stream {
     pub power: f64,
 }
 
-/// Where the power of a component goes that passes less on than it takes.
-pub const KEPT: &str = "lost or stored";
-
 /// Streams through the connections. Where more than two ports meet, each that takes is fed by all that give, in
-/// proportion. What stays in a component that passes power on goes to [`KEPT`].
+/// proportion.
 pub fn streams(ports: &[Port], powers: &[f64], graph: &Graph) -> Vec<Stream> {
     let mut streams: BTreeMap<(String, String), f64> = BTreeMap::new();
     for set in meetings(ports, graph) {
@@ -166,10 +163,7 @@ pub fn streams(ports: &[Port], powers: &[f64], graph: &Graph) -> Vec<Stream> {
             }
         }
     }
-    let passes = |b: &Budget| b.net > 0.0 && b.ports.iter().any(|(_, power)| *power < 0.0);
-    let kept =
-        budgets(ports, powers, graph).into_iter().filter(passes).map(|b| ((b.component, KEPT.to_owned()), b.net));
-    let all = streams.into_iter().filter(|(ends, _)| ends.0 != ends.1).chain(kept);
+    let all = streams.into_iter().filter(|(ends, _)| ends.0 != ends.1);
     all.map(|((from, to), power)| Stream { from, to, power }).collect()
 }
 
@@ -226,7 +220,5 @@ mod tests {
         let stream = |a: &str, b: &str| streams.iter().find(|s| s.from == a && s.to == b).map(|s| s.power);
         assert_eq!(stream("s", "r").map(f64::round), Some(24.0));
         assert_eq!(stream("r", "q").map(f64::round), Some(12.0));
-        assert_eq!(stream("r", KEPT).map(f64::round), Some(12.0), "what r passes on less than it takes");
-        assert_eq!(stream("q", KEPT), None, "at the ground q passes nothing on: it is an end itself");
     }
 }

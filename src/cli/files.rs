@@ -32,12 +32,6 @@ fn unwritable(path: &Path, error: &io::Error) -> Failure {
     access(path, "written", error)
 }
 
-/// Tells before long work that files cannot be written after it; `-` is stdout.
-pub(super) fn writable<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Result<(), Failure> {
-    let files = paths.into_iter().filter(|p| *p != Path::new("-"));
-    files.map(NewFile::create).try_for_each(|file| file.map(drop))
-}
-
 /// A file being written under a temporary name beside its final one.
 ///
 /// Dropped before [`NewFile::finish`], it leaves nothing behind.

@@ -1,13 +1,13 @@
 //! `bramah identify`
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
 use super::messages::Messages;
 use super::recorder::write_text;
 use super::study::{Opened, open};
-use super::{Ending, Failure, files, plot};
+use super::{Ending, Failure, plot};
 use crate::analysis::identify::{
     Fit, Identification, Method, Problem, Profile, Report, doubts, fit_words, picture, profile_words, separation_words,
 };
@@ -77,8 +77,6 @@ impl MethodArg {
 }
 
 pub(super) fn run(args: &IdentifyArgs, messages: &mut Messages) -> Result<Ending, Failure> {
-    args.plot.as_deref().map_or(Ok(()), plot::writable)?;
-    files::writable([Path::new(&args.output)])?;
     let mut opened = open(&args.study, args.data.as_deref(), messages)?;
     let train = opened.load(Role::Train, messages)?;
     let model = opened.model.clone();

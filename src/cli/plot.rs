@@ -90,12 +90,6 @@ pub(super) fn write(
     deliver(path, &bytes, messages)
 }
 
-/// Tells before long work that a picture cannot be written after it.
-pub(super) fn writable(path: &Path) -> Result<(), Failure> {
-    Format::of(path)?;
-    files::writable([path])
-}
-
 /// The formats of pictures.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Format {

@@ -152,12 +152,11 @@ impl<'a> Instance<'a, '_> {
         self.eval.override_file = ids.first().map(|&id| self.library.class(id).name.span.file);
         if !bad.is_empty() {
             let names: Vec<_> = request.overrides.iter().map(|o| format!("`{}={}`", o.name, o.value)).collect();
-            let help = match request.overrides.iter().find_map(|o| o.name.split_once('[')) {
-                Some((array, _)) => format!("an array is set as a whole: `{array}={{1, 2}}`"),
-                None => "a value is NAME=VALUE with a dotted name and a Modelica expression, or a number with a unit"
-                    .to_owned(),
-            };
-            self.report(Diagnostic::new(Code::BadSet, format!("cannot read {}", names.join(", "))).help(help));
+            self.report(
+                Diagnostic::new(Code::BadSet, format!("cannot read {}", names.join(", "))).help(
+                    "a value is NAME=VALUE with a dotted name and a Modelica expression, or a number with a unit",
+                ),
+            );
             return Rc::from([]);
         }
         let Some(ast::ClassBody::Long(body)) = ids.first().map(|&id| &self.library.class(id).body) else {

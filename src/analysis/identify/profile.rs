@@ -22,8 +22,6 @@ pub struct Profile {
 
 /// Searches along one side at most.
 const TRIES: usize = 8;
-/// Parts of the way to the crossing that are looked at too, where the search has not come near: a picture needs them.
-const BETWEEN: [f64; 3] = [0.25, 0.5, 0.75];
 /// A crossing counts as found within this part of the level's root.
 const NEAR: f64 = 0.02;
 
@@ -46,8 +44,7 @@ impl Identification<'_> {
         let free = &self.problem.free[parameter];
         let mut points = vec![(fit.values[parameter], 0.0)];
         let mut side = |sign: f64| {
-            let (mut seen, end) = walk.side(sign);
-            walk.fill(&mut seen);
+            let (seen, end) = walk.side(sign);
             points.extend(seen.into_iter().map(|(z, rise)| (free.value(z), rise)));
             end.map(|z| free.value(z))
         };
@@ -106,22 +103,6 @@ impl Walk<'_, '_> {
         }
         let crossing = outside.filter(|o| o.1.is_finite()).map(|o| centre + sign * between(inside, o, target));
         (seen, crossing)
-    }
-
-    /// Adds points between the fit and the one farthest from it.
-    fn fill(&mut self, seen: &mut Vec<(f64, f64)>) {
-        let centre = self.fit.z[self.parameter];
-        let far = seen.iter().map(|p| p.0 - centre).max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0);
-        for part in BETWEEN {
-            let z = centre + part * far;
-            let near = seen.iter().any(|p| (p.0 - z).abs() < 0.125 * far.abs());
-            if far != 0.0
-                && !near
-                && let Some((rise, _)) = self.rise(z, &self.fit.z.clone())
-            {
-                seen.push((z, rise));
-            }
-        }
     }
 
     /// The rise where the parameter is held at `z`, and all unknowns there.

@@ -322,7 +322,6 @@ fn profiles_of_a_linear_fit_agree_with_the_deviations_and_open_ones_are_open() {
     with_fit(&world, Method::Output, |problem, found, fit| {
         for (j, truth) in [2.0, 3.0].into_iter().enumerate() {
             let profile = found.profile(fit, j).expect("runs");
-            assert!(profile.points.len() > 8, "enough for a picture: {:?}", profile.points);
             let (value, half) = (fit.values[j], chance::student(fit.degrees[j]) * fit.deviations[j]);
             let (low, high) = profile.interval;
             assert!(

@@ -1,7 +1,6 @@
 //! A linear model as text for people, CSV, JSON, `.mat` and Modelica.
 
 use super::{Pole, Quantity, StateSpace, poles, zeros};
-use crate::analysis::steady;
 use crate::results::mat::write_matrix;
 use crate::results::number::{rounded, text};
 use nalgebra::DMatrix;
@@ -59,15 +58,9 @@ pub fn words(model: &StateSpace) -> String {
         model.inputs.len(),
         model.outputs.len()
     );
-    let idle = steady::idle(&model.a);
-    let moves = |k: &usize| model.rates[*k].abs() > 1e-4 * model.states[*k].nominal;
-    let (on, restless): (Vec<usize>, Vec<usize>) =
-        (0..model.states.len()).filter(moves).partition(|k| idle.contains(k));
-    if !restless.is_empty() {
+    let restless = model.rates.iter().zip(&model.states).any(|(r, s)| r.abs() > 1e-4 * s.nominal);
+    if restless {
         out.push_str("not a steady state: rates are not zero\n");
-    } else if !on.is_empty() {
-        let names: Vec<&str> = on.iter().map(|&k| model.states[k].name.as_str()).collect();
-        let _ = writeln!(out, "steady but for what nothing depends on: {}", names.join(", "));
     }
     let _ = writeln!(out, "{:>14} {:>14} {:>12} {:>9}  states", "re 1/s", "im 1/s", "f Hz", "damping");
     for p in poles(model) {

@@ -268,7 +268,7 @@ fn output_fits(flat: &FlatModel, v: VarId) -> bool {
 /// The variables of these names that fit.
 ///
 /// # Errors
-/// [`Code::BadArgument`] with the nearest name, or for a name that stands there twice.
+/// [`Code::BadArgument`] with the nearest name.
 pub fn names(
     flat: &FlatModel,
     wanted: &[String],
@@ -290,9 +290,6 @@ pub fn names(
             }
         }
     };
-    if let Some(name) = (1..wanted.len()).find(|&i| wanted[..i].contains(&wanted[i])).map(|i| &wanted[i]) {
-        return Err(Diagnostic::new(Code::BadArgument, format!("`{name}` is named twice")));
-    }
     wanted.iter().map(find).collect()
 }
 
