@@ -6,6 +6,7 @@
 use super::linear::Chosen;
 use super::local::{Local, LocalError};
 use crate::solve::State;
+use crate::units::Unit;
 use nalgebra::{DMatrix, DVector};
 
 /// A steady state.
@@ -15,7 +16,8 @@ pub struct Steady {
     pub x: Vec<f64>,
     /// The largest rate left, over the state's usual size, in 1/s.
     pub rest: f64,
-    /// States that move on without effect on others, such as the angle of a shaft that turns.
+    /// States that move on without effect on others, such as the angle of a shaft that turns; of angles joined by
+    /// springs one that stands for all.
     pub idle: Vec<usize>,
     /// Steps taken.
     pub steps: usize,
@@ -50,8 +52,28 @@ pub fn steady(chosen: &Chosen, from: &State) -> Result<(Steady, Local), Unsteady
     let (theta, u) = chosen.given(from);
     let mut local = chosen.at(from)?;
     let x = local.state();
-    let found = settle(&mut local, from.time, x, &theta, &u)?;
+    let found = search(&mut local, (from.time, &theta, &u), &x, &[]).or_else(|why| {
+        // shafts joined by springs turn together: only then, for a search with less to hold still may end elsewhere
+        let places = places(chosen);
+        if places.is_empty() || !matches!(why, Unsteady::Restless { .. }) {
+            return Err(why);
+        }
+        search(&mut local, (from.time, &theta, &u), &x, &places).map_err(|_| why)
+    })?;
     Ok((found, local))
+}
+
+/// States that are angles or positions, by their units.
+fn places(chosen: &Chosen) -> Vec<usize> {
+    let variables = &chosen.plan.system.dae.variables;
+    let is_place = |unit: &str| ["rad", "m"].iter().any(|place| same_kind(unit, place));
+    let units = chosen.plan.state_variables().map(|v| variables[v.index()].unit.as_deref().unwrap_or(""));
+    units.enumerate().filter(|(_, unit)| is_place(unit)).map(|(k, _)| k).collect()
+}
+
+/// Units that can be converted into each other; those of angles are no plain numbers.
+fn same_kind(a: &str, b: &str) -> bool {
+    matches!((Unit::parse(a), Unit::parse(b)), (Ok(a), Ok(b)) if (a.dimension, a.angle) == (b.dimension, b.angle))
 }
 
 /// The steady state of `local` reached from `x`.
@@ -59,18 +81,29 @@ pub fn steady(chosen: &Chosen, from: &State) -> Result<(Steady, Local), Unsteady
 /// # Errors
 /// [`Unsteady`].
 pub fn settle(local: &mut Local, time: f64, x: Vec<f64>, theta: &[f64], u: &[f64]) -> Result<Steady, Unsteady> {
+    search(local, (time, theta, u), &x, &[])
+}
+
+/// The steady state of `local` at a time with its parameters and inputs, reached from `x`. States among `places` may move
+/// on together where nothing depends on this motion.
+fn search(
+    local: &mut Local,
+    (time, theta, u): (f64, &[f64], &[f64]),
+    x: &[f64],
+    places: &[usize],
+) -> Result<Steady, Unsteady> {
     let nominals = local.nominals();
-    let mut x = x;
+    let mut x = x.to_vec();
     let n = x.len();
     local.linearize(time, &x, theta, u)?;
-    let mut size = norm(local, &nominals, &idle(&local.linear.a));
+    let mut at = Scaled::new(local, &nominals, places);
+    let mut size = at.norm();
     let mut step = 1e-3;
     for count in 0..STEPS {
-        let unmoved = idle(&local.linear.a);
         if size <= REST {
-            return Ok(Steady { x, rest: size, idle: unmoved, steps: count });
+            return Ok(Steady { x, rest: size, idle: at.idle, steps: count });
         }
-        let next = euler(local, &x, &nominals, &unmoved, step);
+        let next = at.euler(&x, &nominals, step);
         let found = next.filter(|x| x.iter().all(|v| v.is_finite())).filter(|next| {
             // a step over several times the usual sizes leads nowhere known
             let far = (0..n).any(|i| (next[i] - x[i]).abs() > 3.0 * nominals[i].max(x[i].abs()));
@@ -82,35 +115,121 @@ pub fn settle(local: &mut Local, time: f64, x: Vec<f64>, theta: &[f64], u: &[f64
             local.linearize(time, &x, theta, u)?;
             continue;
         };
-        let now = norm(local, &nominals, &idle(&local.linear.a));
+        at = Scaled::new(local, &nominals, places);
+        let now = at.norm();
         // rates may rise on the way, as they do in a run
         step = (step * (size / now.max(1e-30)).clamp(0.2, 5.0) * 1.5).clamp(1e-12, 1e15);
         (x, size) = (next, now);
     }
-    let unmoved = idle(&local.linear.a);
-    let rates = (0..n).filter(|i| !unmoved.contains(i)).map(|i| (i, (local.rates[i] / nominals[i]).abs()));
+    let rates = (0..n).filter(|i| !at.idle.contains(i)).map(|i| (i, at.rates[i].abs()));
     let (state, rate) = rates.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, 0.0));
     Err(Unsteady::Restless { state, rate })
 }
 
-/// The largest rate over the usual size of its state.
-fn norm(local: &Local, nominals: &[f64], idle: &[usize]) -> f64 {
-    let rates = local.rates.iter().zip(nominals).enumerate().filter(|(i, _)| !idle.contains(i));
-    rates.map(|(_, (r, n))| (r / n).abs()).fold(0.0, f64::max)
+/// Rates and their derivatives in units of the states' usual sizes, and the states that stand for themselves alone.
+struct Scaled {
+    a: DMatrix<f64>,
+    rates: Vec<f64>,
+    idle: Vec<usize>,
 }
 
-/// One implicit Euler step in units of the usual sizes; idle states stay.
-fn euler(local: &Local, x: &[f64], nominals: &[f64], idle: &[usize], step: f64) -> Option<Vec<f64>> {
-    let n = x.len();
-    let matrix = DMatrix::from_fn(n, n, |i, j| {
-        let moves = !idle.contains(&i) && !idle.contains(&j);
-        let own = f64::from(u8::from(i == j));
-        if moves { own / step - local.linear.a[(i, j)] * nominals[j] / nominals[i] } else { own }
-    });
-    let rates = DVector::from_fn(n, |i, _| if idle.contains(&i) { 0.0 } else { local.rates[i] / nominals[i] });
-    let change = matrix.lu().solve(&rates)?;
-    Some((0..n).map(|i| x[i] + change[i] * nominals[i]).collect())
+impl Scaled {
+    fn new(local: &Local, nominals: &[f64], places: &[usize]) -> Self {
+        let n = nominals.len();
+        let a = DMatrix::from_fn(n, n, |i, j| local.linear.a[(i, j)] * nominals[j] / nominals[i]);
+        let rates = local.rates.iter().zip(nominals).map(|(r, n)| r / n).collect();
+        let mut scaled = Scaled { idle: idle(&a), a, rates };
+        let joined: Vec<usize> = places.iter().copied().filter(|p| !scaled.idle.contains(p)).collect();
+        for (leader, others) in together(&scaled.a, &joined) {
+            // the others are counted from where the leader is: on what the leader itself does nothing depends any more
+            for (other, ratio) in others {
+                scaled.rates[other] -= ratio * scaled.rates[leader];
+                let row = scaled.a.row(other) - scaled.a.row(leader) * ratio;
+                scaled.a.set_row(other, &row);
+            }
+            scaled.a.column_mut(leader).fill(0.0);
+            scaled.idle.push(leader);
+        }
+        scaled
+    }
+
+    /// The largest rate over the usual size of its state.
+    fn norm(&self) -> f64 {
+        let rates = self.rates.iter().enumerate().filter(|(i, _)| !self.idle.contains(i));
+        rates.map(|(_, r)| r.abs()).fold(0.0, f64::max)
+    }
+
+    /// One implicit Euler step; idle states stay.
+    fn euler(&self, x: &[f64], nominals: &[f64], step: f64) -> Option<Vec<f64>> {
+        let n = x.len();
+        let matrix = DMatrix::from_fn(n, n, |i, j| {
+            let moves = !self.idle.contains(&i) && !self.idle.contains(&j);
+            let own = f64::from(u8::from(i == j));
+            if moves { own / step - self.a[(i, j)] } else { own }
+        });
+        let rates = DVector::from_fn(n, |i, _| if self.idle.contains(&i) { 0.0 } else { self.rates[i] });
+        let change = matrix.lu().solve(&rates)?;
+        Some((0..n).map(|i| x[i] + change[i] * nominals[i]).collect())
+    }
 }
+
+/// What is left of terms that cancel, as a part of them.
+const CANCEL: f64 = 1e-9;
+
+/// Groups of these states that can move on together with no effect on any rate, as the angles of shafts joined by springs
+/// and gears do: one of each group, and the others with how fast they move for it.
+fn together(a: &DMatrix<f64>, states: &[usize]) -> Vec<(usize, Vec<(usize, f64)>)> {
+    let mut m = a.select_columns(states);
+    for mut row in m.row_iter_mut() {
+        let most = row.amax();
+        if most > 0.0 {
+            row /= most;
+        }
+    }
+    let whole = m.clone();
+    // by elimination, so that groups that have nothing to do with each other stay apart
+    let mut pivots: Vec<(usize, usize)> = Vec::new();
+    let mut leaders = Vec::new();
+    for column in 0..states.len() {
+        let free = (0..m.nrows()).filter(|r| pivots.iter().all(|p| p.0 != *r));
+        let Some(row) = free.max_by(|x, y| m[(*x, column)].abs().total_cmp(&m[(*y, column)].abs())) else { break };
+        if m[(row, column)].abs() <= CANCEL {
+            leaders.push(column);
+            continue;
+        }
+        let pivot = m.row(row) / m[(row, column)];
+        for other in (0..m.nrows()).filter(|r| *r != row) {
+            let rest = m.row(other) - &pivot * m[(other, column)];
+            m.set_row(other, &rest);
+        }
+        m.set_row(row, &pivot);
+        pivots.push((row, column));
+    }
+    let group = |&leader: &usize| {
+        let others = pivots.iter().map(|&(row, column)| (column, -m[(row, leader)]));
+        let others: Vec<(usize, f64)> = others.filter(|o| o.1.abs() > CANCEL).collect();
+        let cancels = whole.row_iter().all(|row| {
+            let terms = || others.iter().map(|&(c, ratio)| row[c] * ratio).chain([row[leader]]);
+            terms().sum::<f64>().abs() <= CANCEL * terms().map(f64::abs).sum::<f64>()
+        });
+        cancels.then(|| (states[leader], others.iter().map(|&(c, ratio)| (states[c], ratio)).collect()))
+    };
+    leaders.iter().filter_map(group).collect()
+}
+
+/// The states that move on where all motion is at constant rates, `Some` of nothing at rest; `None` where a rate changes
+/// with the motion, or moves what others depend on.
+pub fn moving(a: &DMatrix<f64>, rates: &[f64], nominals: &[f64]) -> Option<Vec<usize>> {
+    let moving: Vec<usize> = (0..rates.len()).filter(|&k| rates[k].abs() > MOVES * nominals[k]).collect();
+    let constant = a.row_iter().all(|row| {
+        let terms = || moving.iter().map(|&k| row[k] * rates[k]);
+        terms().sum::<f64>().abs() <= MOVES * terms().map(f64::abs).sum::<f64>()
+    });
+    constant.then_some(moving)
+}
+
+/// Rates above this part of a state's usual size and second are motion, and no rest of a search.
+const MOVES: f64 = 1e-4;
 
 /// States that no rate depends on, but those of other such states.
 pub fn idle(a: &DMatrix<f64>) -> Vec<usize> {
@@ -158,6 +277,40 @@ mod tests {
         assert!(value("phi").abs() < 1e-9);
         let (p, w) = (value("p"), value("w"));
         assert!((1e-5 * w - 1e-9 * p.sqrt()).abs() < 1e-11 && (20.0 - 1e-5 * p - 0.01 * w).abs() < 1e-6, "{p} {w}");
+    }
+
+    /// Two shafts with a spring and a gear between them turn on together, each at its own rate.
+    #[test]
+    fn shafts_joined_by_a_spring_turn_together() {
+        let text = "model M
+            Real a(start = 0, fixed = true, unit = \"rad\"), b(start = 0.2, fixed = true, unit = \"rad\");
+            Real w(start = 0, fixed = true), v(start = 0, fixed = true);
+          equation
+            der(a) = w; der(b) = v;
+            0.1*der(w) = 10 - 0.5*w - 1000*(a - 3*b) - 2*(w - 3*v); 0.3*der(v) = 3*(1000*(a - 3*b) + 2*(w - 3*v)) - 0.5*v;
+          end M;";
+        let (steady, names) = found(text).expect("turns");
+        let value = |n: &str| steady.x[names.iter().position(|m| m == n).expect("a state")];
+        // 10 = 0.5 w + torque, 3 torque = 0.5 v, w = 3 v
+        let v = 10.0 / (0.5 * 3.0 + 0.5 / 3.0);
+        assert!((value("v") - v).abs() < 1e-6 && (value("w") - 3.0 * v).abs() < 1e-6, "{steady:?}");
+        assert!((1000.0 * (value("a") - 3.0 * value("b")) - 0.5 * v / 3.0).abs() < 1e-6, "{steady:?}");
+        assert_eq!(steady.idle.len(), 1);
+        // pressures that rise together are no motion
+        let oil = text.replace("\"rad\"", "\"Pa\"");
+        assert!(matches!(found(&oil), Err(Unsteady::Restless { .. })));
+    }
+
+    /// Constant rates on which nothing depends are motion; a rate that grows with it, or lets others follow, is not.
+    #[test]
+    fn what_moves_on_and_what_is_not_at_rest() {
+        let turning = DMatrix::from_row_slice(2, 2, &[0.0, 1.0, 0.0, -5.0]);
+        assert_eq!(moving(&turning, &[20.0, 1e-9], &[1.0, 1.0]), Some(vec![0]));
+        assert_eq!(moving(&turning, &[20.0, 3.0], &[1.0, 1.0]), None);
+        assert_eq!(moving(&turning, &[0.0, 0.0], &[1.0, 1.0]), Some(vec![]));
+        let sprung = DMatrix::from_row_slice(2, 2, &[7.0, -14.0, -3.0, 6.0]);
+        assert_eq!(moving(&sprung, &[20.0, 10.0], &[1.0, 1.0]), Some(vec![0, 1]));
+        assert_eq!(moving(&sprung, &[20.0, 9.0], &[1.0, 1.0]), None);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! A linear model as text for people, CSV, JSON, `.mat` and Modelica.
 
 use super::{Pole, Quantity, StateSpace, poles, zeros};
+use crate::analysis::steady::moving;
 use crate::results::mat::write_matrix;
 use crate::results::number::{rounded, text};
 use nalgebra::DMatrix;
@@ -58,9 +59,14 @@ pub fn words(model: &StateSpace) -> String {
         model.inputs.len(),
         model.outputs.len()
     );
-    let restless = model.rates.iter().zip(&model.states).any(|(r, s)| r.abs() > 1e-4 * s.nominal);
-    if restless {
-        out.push_str("not a steady state: rates are not zero\n");
+    let nominals: Vec<f64> = model.states.iter().map(|s| s.nominal).collect();
+    match moving(&model.a, &model.rates, &nominals) {
+        None => out.push_str("not a steady state: rates are not zero\n"),
+        Some(places) if places.is_empty() => {}
+        Some(places) => {
+            let names: Vec<&str> = places.iter().map(|&k| model.states[k].name.as_str()).collect();
+            let _ = writeln!(out, "steady in motion, at constant rates: {}", names.join(", "));
+        }
     }
     let _ = writeln!(out, "{:>14} {:>14} {:>12} {:>9}  states", "re 1/s", "im 1/s", "f Hz", "damping");
     for p in poles(model) {
