@@ -20,7 +20,7 @@ impl StateSpace {
                 .iter()
                 .map(|&(k, share)| json!({"state": self.states[k].name, "share": share}))
                 .collect();
-            json!({"re": p.re, "im": p.im, "frequency": p.frequency, "damping": p.damping, "states": shares})
+            json!({"re": p.re, "im": p.im, "frequency": p.frequency, "damping": p.damping, "states": shares, "together": p.together})
         };
         json!({
             "class": self.class,
@@ -69,7 +69,13 @@ pub fn words(model: &StateSpace) -> String {
         }
     }
     let _ = writeln!(out, "{:>14} {:>14} {:>12} {:>9}  states", "re 1/s", "im 1/s", "f Hz", "damping");
-    for p in poles(model) {
+    let poles = poles(model);
+    for (k, p) in poles.iter().enumerate() {
+        let same = |o: &&Pole| (o.re, o.im, &o.participation) == (p.re, p.im, &p.participation);
+        if p.together > 1 && poles[..k].iter().any(|o| same(&o)) {
+            continue;
+        }
+        let together = if p.together > 1 { format!(" ({} poles)", p.together) } else { String::new() };
         let shares: Vec<String> = p
             .participation
             .iter()
@@ -78,7 +84,7 @@ pub fn words(model: &StateSpace) -> String {
             .collect();
         let _ = writeln!(
             out,
-            "{:>14} {:>14} {:>12} {:>9}  {}",
+            "{:>14} {:>14} {:>12} {:>9}  {}{together}",
             rounded(p.re, 6),
             rounded(p.im, 6),
             rounded(p.frequency, 5),

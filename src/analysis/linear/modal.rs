@@ -3,6 +3,8 @@
 use super::StateSpace;
 use nalgebra::linalg::{Schur, balancing};
 use nalgebra::{Complex, DMatrix, DVector};
+use petgraph::algo::tarjan_scc;
+use petgraph::graph::{DiGraph, NodeIndex};
 
 /// An eigenvalue of A; of a conjugate pair only the upper one.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,6 +19,9 @@ pub struct Pole {
     pub damping: f64,
     /// States by how much they take part, largest first, with shares that add up to 1; those under 2 % are left out.
     pub participation: Vec<(usize, f64)>,
+    /// How many poles lie here with the same states in them, this one included: of several no state belongs to one
+    /// alone, and a motion of one form may grow with time before it decays.
+    pub together: usize,
 }
 
 /// Eigenvalues this close, as a part of their size, count as one: of two that are equal but for rounding, a defect of the
@@ -29,33 +34,71 @@ const LEAST_SHARE: f64 = 0.02;
 /// Poles in the order of their magnitude. Empty where the eigenvalues cannot be found.
 ///
 /// Participation of state k in mode i is |w_ki v_ki| with left and right eigenvectors. Source: I. J. Perez-Arriaga,
-/// G. C. Verghese, F. C. Schweppe, IEEE Trans. PAS-101 (1982) 3117. Of poles that coincide no eigenvector belongs to one
-/// alone: each has the share of the states in what all of them span, the diagonal of the projector V (W'V)^-1 W'.
+/// G. C. Verghese, F. C. Schweppe, IEEE Trans. PAS-101 (1982) 3117. States that act on each other in a circle have their
+/// poles for themselves: there the product is zero for all other states. So poles of different circles may coincide, as
+/// those of two integrators in a row do, and each still names its own states. Of poles that coincide within a circle no
+/// eigenvector belongs to one alone: each has the share of the states in what all of them span, the diagonal of the
+/// projector V (W'V)^-1 W'.
 pub fn poles(model: &StateSpace) -> Vec<Pole> {
     let a = scaled(model);
-    let all = eigenvalues(&a);
-    let largest = all.iter().map(|l| l.norm()).fold(0.0, f64::max);
-    // rounding of integrators
-    let tidy = |l: Complex<f64>| if l.norm() <= 1e-14 * largest { Complex::new(0.0, 0.0) } else { l };
-    let all: Vec<Complex<f64>> = all.into_iter().map(tidy).collect();
-    let mut found: Vec<Pole> = all
-        .iter()
-        .copied()
-        .filter(|l| l.im >= 0.0)
-        .map(|l| {
-            let size = l.norm();
-            let together: Vec<Complex<f64>> =
-                all.iter().copied().filter(|o| (o - l).norm() <= COINCIDE * size).collect();
-            Pole {
-                re: l.re,
-                im: l.im,
-                frequency: size / std::f64::consts::TAU,
-                damping: if size > 0.0 { -l.re / size } else { 0.0 },
-                participation: participation(&a, &together),
-            }
-        })
-        .collect();
+    let mut found: Vec<Pole> = circles(&a).iter().flat_map(|states| of_circle(&a, states)).collect();
     found.sort_by(|a, b| a.re.hypot(a.im).total_cmp(&b.re.hypot(b.im)).then(b.re.total_cmp(&a.re)));
+    found
+}
+
+/// States that act on each other in circles, each group in the order of the states, by their first ones.
+fn circles(a: &DMatrix<f64>) -> Vec<Vec<usize>> {
+    let n = a.nrows();
+    let mut graph: DiGraph<(), ()> = DiGraph::with_capacity(n, n);
+    let nodes: Vec<NodeIndex> = (0..n).map(|_| graph.add_node(())).collect();
+    for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))).filter(|&(i, j)| a[(i, j)] != 0.0) {
+        graph.add_edge(nodes[j], nodes[i], ());
+    }
+    let sorted = |group: Vec<NodeIndex>| {
+        let mut states: Vec<usize> = group.into_iter().map(NodeIndex::index).collect();
+        states.sort_unstable();
+        states
+    };
+    let mut all: Vec<Vec<usize>> = tarjan_scc(&graph).into_iter().map(sorted).collect();
+    all.sort_unstable();
+    all
+}
+
+/// The poles of states that act on each other in a circle.
+fn of_circle(a: &DMatrix<f64>, states: &[usize]) -> Vec<Pole> {
+    let own = a.select_rows(states).select_columns(states);
+    let mut open = eigenvalues(&own);
+    let largest = open.iter().map(|l| l.norm()).fold(0.0, f64::max);
+    // rounding of integrators
+    open.iter_mut().filter(|l| l.norm() <= 1e-14 * largest).for_each(|l| *l = Complex::new(0.0, 0.0));
+    let all = open.clone();
+    let mut found = Vec::new();
+    while let Some(first) = open.first().copied() {
+        let near = |o: &Complex<f64>| (o - first).norm() <= COINCIDE * first.norm();
+        let (together, rest): (Vec<Complex<f64>>, Vec<Complex<f64>>) = open.into_iter().partition(near);
+        open = rest;
+        let others = all.iter().filter(|o| !near(o));
+        let mut centre = together.iter().sum::<Complex<f64>>() / together.len() as f64;
+        if together.len() > 1 && centre.im.abs() <= COINCIDE * centre.norm() {
+            // real but for what the defect of the matrix has driven apart
+            centre.im = 0.0;
+        }
+        if centre.im < 0.0 {
+            continue;
+        }
+        let gap = others.map(|o| (o - centre).norm()).fold(f64::INFINITY, f64::min);
+        let shares = participation(&own, centre, together.len(), gap);
+        let size = centre.norm();
+        let pole = Pole {
+            re: centre.re,
+            im: centre.im,
+            frequency: size / std::f64::consts::TAU,
+            damping: if size > 0.0 { -centre.re / size } else { 0.0 },
+            participation: shares.into_iter().map(|(k, share)| (states[k], share)).collect(),
+            together: together.len(),
+        };
+        found.extend(together.iter().map(|_| pole.clone()));
+    }
     found
 }
 
@@ -76,8 +119,13 @@ pub(super) fn eigenvalues(a: &DMatrix<f64>) -> Vec<Complex<f64>> {
     schur.map_or_else(Vec::new, |s| s.complex_eigenvalues().iter().copied().collect())
 }
 
-fn participation(a: &DMatrix<f64>, together: &[Complex<f64>]) -> Vec<(usize, f64)> {
-    let Some(all) = projector(a, together).map(|p| p.diagonal().map(Complex::norm)) else { return Vec::new() };
+fn participation(a: &DMatrix<f64>, eigenvalue: Complex<f64>, count: usize, gap: f64) -> Vec<(usize, f64)> {
+    if count == a.nrows() {
+        // all states belong to it alike
+        return (0..count).map(|k| (k, 1.0 / count as f64)).collect();
+    }
+    let projector = projector(a, eigenvalue, count, gap);
+    let Some(all) = projector.map(|p| p.diagonal().map(Complex::norm)) else { return Vec::new() };
     let sum: f64 = all.sum();
     let mut shares: Vec<(usize, f64)> = all.iter().map(|s| s / sum).enumerate().collect();
     shares.retain(|s| s.1 >= LEAST_SHARE);
@@ -87,20 +135,23 @@ fn participation(a: &DMatrix<f64>, together: &[Complex<f64>]) -> Vec<(usize, f64
     shares
 }
 
-/// On the space that belongs to eigenvalues which coincide, along all others.
-fn projector(a: &DMatrix<f64>, together: &[Complex<f64>]) -> Option<DMatrix<Complex<f64>>> {
-    let centre = together.iter().sum::<Complex<f64>>() / together.len() as f64;
-    let right = invariant(a, centre, together.len())?;
-    let left = invariant(&a.transpose(), centre, together.len())?.transpose();
+/// On the space that belongs to so many eigenvalues at one place, along all others; the nearest of these is at a distance
+/// of `gap`.
+fn projector(a: &DMatrix<f64>, eigenvalue: Complex<f64>, count: usize, gap: f64) -> Option<DMatrix<Complex<f64>>> {
+    let right = invariant(a, eigenvalue, count, gap)?;
+    let left = invariant(&a.transpose(), eigenvalue, count, gap)?.transpose();
     Some(&right * (&left * &right).try_inverse()? * left)
 }
 
+/// Part of the way to the next eigenvalue by which inverse iteration stands off: near enough to go there fast, and far
+/// enough that of a defective eigenvalue not only the one eigenvector is left in the digits.
+const STAND_OFF: f64 = 1e-5;
+
 /// A basis of the space of so many eigenvalues at one place, by inverse iteration from vectors that favour no state.
-fn invariant(a: &DMatrix<f64>, eigenvalue: Complex<f64>, count: usize) -> Option<DMatrix<Complex<f64>>> {
+fn invariant(a: &DMatrix<f64>, eigenvalue: Complex<f64>, count: usize, gap: f64) -> Option<DMatrix<Complex<f64>>> {
     let n = a.nrows();
-    let size = a.amax().max(eigenvalue.norm()).max(f64::MIN_POSITIVE);
     let mut shifted = a.map(|v| Complex::new(v, 0.0));
-    let shift = eigenvalue + Complex::new(1e-10 * eigenvalue.norm().max(1e-6 * size), 0.0);
+    let shift = eigenvalue + Complex::new((STAND_OFF * gap).max(f64::MIN_POSITIVE), 0.0);
     (0..n).for_each(|k| shifted[(k, k)] -= shift);
     let lu = shifted.lu();
     let begin = |k: usize, j: usize| Complex::new(if k % count == j { 1.0 } else { 0.1 }, 0.1 * ((k + j) % 7) as f64);

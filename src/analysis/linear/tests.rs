@@ -50,28 +50,62 @@ fn matrices_poles_and_zeros_of_an_oscillator() {
     assert!((response[(0, 0)].norm() - 1.0 / (0.8 * 5.0)).abs() < 1e-12);
 }
 
-/// Two lags of one rate beside each other, and two in a row (a matrix that has one eigenvector only): the poles say of
-/// both states that they take part, not twice the same of one.
+/// Poles of states and their shares, in whole per cent, of a model that is at its start.
+fn modes(text: &str) -> Vec<(f64, usize, Vec<(String, i64)>)> {
+    let (simulation, state) = start(text);
+    let chosen = Chosen::new(&simulation.model().flat, &Choice::default(), &[]).expect("fits");
+    let model = linearize(simulation.model(), &chosen, &state).expect("has derivatives");
+    let shares = |p: &Pole| {
+        let mut named: Vec<(String, i64)> =
+            p.participation.iter().map(|s| (model.states[s.0].name.clone(), (100.0 * s.1).round() as i64)).collect();
+        named.sort();
+        named
+    };
+    poles(&model).iter().map(|p| (p.re, p.together, shares(p))).collect()
+}
+
+/// Two lags of one rate beside each other, two in a row and two integrators in a row: the first ones name one state, the
+/// others the other one.
 #[test]
-fn poles_that_coincide_name_all_their_states() {
-    for second in ["-2*z", "x - 2*z"] {
+fn poles_that_coincide_name_their_own_states() {
+    for (first, second) in [("-2*x", "-2*z"), ("-2*x", "x - 2*z"), ("z", "0.5*far"), ("1", "x")] {
         let text = format!(
             "model M Real x(start = 1, fixed = true), z(start = 1, fixed = true), far(start = 1, fixed = true);
-              equation der(x) = -2*x; der(z) = {second}; der(far) = -50*far + x; end M;"
+              equation der(x) = {first}; der(z) = {second}; der(far) = -50*far; end M;"
         );
-        let (simulation, state) = start(&text);
-        let chosen = Chosen::new(&simulation.model().flat, &Choice::default(), &[]).expect("fits");
-        let model = linearize(simulation.model(), &chosen, &state).expect("has derivatives");
-        let poles = poles(&model);
-        assert_eq!(poles.len(), 3);
-        for pole in &poles[..2] {
-            let mut shares = pole.participation.clone();
-            shares.sort_by_key(|s| s.0);
-            let states: Vec<&str> = shares.iter().map(|s| model.states[s.0].name.as_str()).collect();
-            assert_eq!(states, ["x", "z"], "{second}");
-            assert!((pole.re + 2.0).abs() < 1e-6 && shares.iter().all(|s| (s.1 - 0.5).abs() < 1e-3), "{pole:?}");
+        let found = modes(&text);
+        assert_eq!(found.len(), 3);
+        let mut names: Vec<&str> = Vec::new();
+        for (_, together, shares) in &found[..2] {
+            assert_eq!((*together, shares.len(), shares[0].1), (1, 1, 100), "{first} {second}: {found:?}");
+            names.push(&shares[0].0);
         }
+        names.sort_unstable();
+        assert_eq!(names, ["x", "z"], "{first} {second}");
     }
+}
+
+/// A critically damped mass, and two masses of 1 and 2 with a spring between them that move on together: their two poles
+/// belong to the same states.
+#[test]
+fn poles_that_coincide_within_a_circle_are_told_together() {
+    let damped = modes(
+        "model M Real x(start = 0, fixed = true), v(start = 0, fixed = true);
+          equation der(x) = v; der(v) = -6*v - 9*x; end M;",
+    );
+    let both = vec![("v".to_owned(), 50), ("x".to_owned(), 50)];
+    assert_eq!(damped.len(), 2);
+    assert!(
+        damped.iter().all(|(re, together, s)| (re + 3.0).abs() < 1e-6 && *together == 2 && *s == both),
+        "{damped:?}"
+    );
+    let free = modes(
+        "model M Real x(start = 0, fixed = true), v(start = 0, fixed = true), y(start = 0, fixed = true), w(start = 0, fixed = true);
+          equation der(x) = v; der(y) = w; der(v) = 100*(y - x); 2*der(w) = 100*(x - y); end M;",
+    );
+    let shares = [("v", 17), ("w", 33), ("x", 17), ("y", 33)].map(|(n, s)| (n.to_owned(), s)).to_vec();
+    assert_eq!(free.len(), 3);
+    assert!(free[..2].iter().all(|(re, together, s)| re.abs() < 1e-6 && *together == 2 && *s == shares), "{free:?}");
 }
 
 #[test]
