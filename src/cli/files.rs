@@ -168,6 +168,13 @@ pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     file.finish()
 }
 
+/// Says before the work what would be found out only after it: a folder that is missing or cannot be written to. A `-`
+/// is stdout, and a pipe is opened once only, for whoever reads takes its closing for the end.
+pub(super) fn ready(path: &Path) -> Result<(), Failure> {
+    let pipe = path.exists() && !path.is_file() && !path.is_dir();
+    if path == Path::new("-") || pipe { Ok(()) } else { NewFile::create(path).map(drop) }
+}
+
 /// Writes to stdout. A reader that has gone away (`| head`) is no mistake.
 pub(super) fn print(text: &str) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
@@ -201,5 +208,7 @@ mod tests {
         let told = |path: &Path| NewFile::create(path).unwrap_err().diagnostics.remove(0).message;
         assert!(told(folder.path()).ends_with("it is a folder"));
         assert!(told(&folder.path().join("no/out.csv")).ends_with("there is no such folder"));
+        assert!(ready(&folder.path().join("no/out.csv")).is_err() && ready(&folder.path().join("out.csv")).is_ok());
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
     }
 }

@@ -1,13 +1,13 @@
 //! `bramah identify`
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
 use super::messages::Messages;
 use super::recorder::write_text;
 use super::study::{Opened, open};
-use super::{Ending, Failure, plot};
+use super::{Ending, Failure, files, plot};
 use crate::analysis::identify::{
     Fit, Identification, Method, Problem, Profile, Report, doubts, fit_words, picture, profile_words, separation_words,
 };
@@ -77,13 +77,15 @@ impl MethodArg {
 }
 
 pub(super) fn run(args: &IdentifyArgs, messages: &mut Messages) -> Result<Ending, Failure> {
+    // what cannot be written is told before the fit, which may take long
+    files::ready(Path::new(&args.output))?;
+    args.plot.as_deref().map_or(Ok(()), plot::ready)?;
     let mut opened = open(&args.study, args.data.as_deref(), messages)?;
     let train = opened.load(Role::Train, messages)?;
     let model = opened.model.clone();
     let bound = opened.bound.clone();
     let problem = Problem::new(&model, &bound, &train).map_err(|d| opened.failure(d, messages))?;
     let fail = |d, opened: &Opened, messages: &mut Messages| opened.failure(vec![d], messages);
-    // before the fit, which may take long
     let profiled = profiled(args, &problem).map_err(|d| fail(d, &opened, messages))?;
     let found = Identification::new(&problem, &train, args.method.method()).map_err(|d| fail(d, &opened, messages))?;
     messages.say(&found.suspicions);

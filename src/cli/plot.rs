@@ -90,6 +90,11 @@ pub(super) fn write(
     deliver(path, &bytes, messages)
 }
 
+/// Says before the work whether a picture of this name can be written.
+pub(super) fn ready(path: &Path) -> Result<(), Failure> {
+    Format::of(path).and_then(|_| files::ready(path))
+}
+
 /// The formats of pictures.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Format {

@@ -56,6 +56,8 @@ const SHOWN: usize = 6;
 const RANKED: usize = 20;
 
 pub(super) fn run(args: &SensitivityArgs, messages: &mut Messages) -> Result<Ending, Failure> {
+    args.output_file.as_deref().map_or(Ok(()), files::ready)?;
+    args.plot.as_deref().map_or(Ok(()), plot::ready)?;
     let experiment = args.model.experiment(None, messages)?;
     let model = model::compile(&experiment, messages)?;
     let wanted = variables(args, &model)?;

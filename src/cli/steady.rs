@@ -13,7 +13,7 @@ use crate::analysis::balance::{self, Budget};
 use crate::analysis::grid;
 use crate::analysis::linear::{Choice, Chosen};
 use crate::compile::Model;
-use crate::diag::{Code, Diagnostic};
+use crate::diag::Code;
 use crate::experiment::seconds;
 use crate::expr::VarId;
 use crate::plot::{png, sankey};
@@ -62,6 +62,14 @@ pub(super) struct SteadyArgs {
 }
 
 pub(super) fn run(args: &SteadyArgs, messages: &mut Messages) -> Result<Ending, Failure> {
+    if let Some(path) = &args.sankey {
+        let of_picture = ["svg", "png"].iter().any(|e| path.extension().is_some_and(|x| x.eq_ignore_ascii_case(e)));
+        if !of_picture {
+            return Err(no_picture(path));
+        }
+        files::ready(path)?;
+    }
+    args.output_file.as_deref().map_or(Ok(()), files::ready)?;
     let experiment = args.model.experiment(None, messages)?;
     let model = model::compile(&experiment, messages)?;
     if args.transient {
@@ -201,13 +209,15 @@ fn draw(svg: &str, path: &Path, messages: &Messages) -> Result<(), Failure> {
             let bytes = png::write(svg).map_err(|e| Failure::new(Code::BadArgument, e))?;
             files::write(path, &bytes)?;
         }
-        _ => {
-            let text = format!("this picture is written as .svg or .png, not as `{}`", path.display());
-            return Err(Diagnostic::new(Code::BadArgument, text).into());
-        }
+        _ => return Err(no_picture(path)),
     }
     messages.remark(&format!("wrote {}", path.display()));
     Ok(())
+}
+
+fn no_picture(path: &Path) -> Failure {
+    let text = format!("this picture is written as .svg or .png, not as `{}`", path.display());
+    Failure::new(Code::BadArgument, text)
 }
 
 fn watts(power: f64) -> String {

@@ -85,6 +85,7 @@ pub(super) fn run(args: &SweepArgs, messages: &mut Messages) -> Result<Ending, F
         library: Vec::new(),
         deny_warnings: false,
     };
+    args.plot.as_deref().map_or(Ok(()), plot::ready)?;
     let experiment = model_args.experiment(None, messages)?;
     let Some(sweep) = experiment.sweep.clone() else {
         let d = Diagnostic::new(Code::BadExperiment, format!("`{file}` has no section `[sweep]`"));
