@@ -70,12 +70,42 @@ fn time(text: &str) -> Result<f64, String> {
 }
 
 pub(super) fn run(args: &LinearizeArgs, messages: &mut Messages) -> Result<Ending, Failure> {
+    fits(args)?;
     let experiment = args.model.experiment(None, messages)?;
     let model = model::compile(&experiment, messages)?;
     if args.schedule.is_empty() {
         return linear_model(args, &model, messages);
     }
     quasi_linear(args, &model, messages)
+}
+
+/// What is asked for together must have a meaning together; and files can be written, as is found out before the work.
+fn fits(args: &LinearizeArgs) -> Result<(), Failure> {
+    let wrong = |text: String, cause: &str, help: &str| {
+        Err(Failure::from(Diagnostic::new(Code::BadArgument, text).note(cause).help(help)))
+    };
+    if args.schedule.is_empty() {
+        if let Some(grid) = args.grid.first() {
+            return wrong(
+                format!("`--grid {grid}` has no meaning without `--schedule`"),
+                "a grid holds the values of a scheduling quantity of the quasi-linear form",
+                "name the quantity: `--schedule NAME,...`",
+            );
+        }
+    } else {
+        let pictures = [("--bode", args.bode.is_some()), ("--poles", args.poles.is_some())];
+        let others = pictures.into_iter().chain([("--outputs", !args.outputs.is_empty())]);
+        if let Some((flag, _)) = others.into_iter().find(|o| o.1) {
+            return wrong(
+                format!("`{flag}` has no meaning with `--schedule`"),
+                "the quasi-linear form has matrices for each point of its grid, and no outputs",
+                "leave `--schedule` out for the linear model at one point",
+            );
+        }
+    }
+    let pictures = args.bode.iter().chain(&args.poles);
+    pictures.map(PathBuf::as_path).try_for_each(plot::ready)?;
+    args.output_file.as_deref().map_or(Ok(()), |path| files::ready(Path::new(path)))
 }
 
 fn list(flags: &[String]) -> Vec<String> {
@@ -226,6 +256,11 @@ fn no_values(why: &str) -> Failure {
 /// A run up to a time, or to no time at all, with the rows it made.
 pub(super) fn state_at(model: &Model, time: Option<f64>) -> Result<(State, Trajectory), Failure> {
     let mut settings = Settings::from_experiment(&model.dae.experiment);
+    if let Some(time) = time.filter(|t| *t < settings.start_time) {
+        let (time, start) = (number::rounded(time, 9), number::rounded(settings.start_time, 9));
+        let d = Diagnostic::new(Code::BadArgument, format!("the run is not known at {time} s"));
+        return Err(d.note(format!("it starts at {start} s")).help("name a time from the start on").into());
+    }
     settings.stop_time = time.unwrap_or(settings.start_time);
     settings.interval = (settings.stop_time - settings.start_time) / 200.0;
     run_to(model, &settings)
@@ -288,6 +323,10 @@ fn grid(args: &LinearizeArgs, chosen: &Chosen) -> Result<Vec<Option<Vec<f64>>>, 
         let (name, values) = entry.split_once('=').ok_or_else(|| wrong("NAME=VALUES is expected"))?;
         let k = chosen.rho().iter().position(|r| r.name == name.trim());
         let k = k.ok_or_else(|| wrong("it is not a scheduling quantity"))?;
+        if all[k].is_some() {
+            let d = Diagnostic::new(Code::BadArgument, format!("`--grid {entry}`: this quantity has a grid already"));
+            return Err(d.help(format!("give all its values at once: `--grid {}=1,2,5`", name.trim())).into());
+        }
         all[k] = Some(crate::analysis::grid::values(values, &chosen.rho()[k].unit).map_err(|e| wrong(&e))?);
     }
     Ok(all)

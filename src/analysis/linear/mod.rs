@@ -107,8 +107,10 @@ impl Chosen {
     /// Finds the names and lifts the model. `extra` are raised too, whatever the choice says.
     ///
     /// # Errors
-    /// [`Code::BadArgument`] for names that the model does not have, or that cannot be used so.
+    /// [`Code::BadArgument`] for names that the model does not have, that cannot be used so, or that stand twice.
     pub fn new(flat: &FlatModel, choice: &Choice, extra: &[VarId]) -> Result<Chosen, Vec<Diagnostic>> {
+        once(&choice.inputs, "input").map_err(|d| vec![d])?;
+        once(&choice.outputs, "output").map_err(|d| vec![d])?;
         let all_inputs: Vec<VarId> = ids(flat).filter(|v| flat.variables[v.index()].input).collect();
         let wanted = names(flat, &choice.inputs, input_fits).map_err(|d| vec![d])?;
         let wanted = if choice.inputs.is_empty() { all_inputs.clone() } else { wanted };
@@ -139,6 +141,7 @@ impl Chosen {
     /// # Errors
     /// As [`Chosen::new`].
     pub fn scheduled(flat: &FlatModel, inputs: &[String], rho: &[String]) -> Result<Chosen, Vec<Diagnostic>> {
+        once(rho, "scheduling quantity").map_err(|d| vec![d])?;
         let given = |name: &String| {
             let found = flat.variables.iter().position(|v| v.name == *name);
             found.is_some_and(|i| input_fits(flat, VarId(u32::try_from(i).expect("fewer than 2^32 variables"))))
@@ -263,6 +266,16 @@ fn input_fits(flat: &FlatModel, v: VarId) -> bool {
 
 fn output_fits(flat: &FlatModel, v: VarId) -> bool {
     is_real(flat, v) && flat.variables[v.index()].variability == Variability::Continuous
+}
+
+/// Of a name that stands twice two equal columns or rows would come.
+fn once(wanted: &[String], role: &str) -> Result<(), Diagnostic> {
+    match wanted.iter().enumerate().find(|(k, name)| wanted[..*k].contains(name)) {
+        None => Ok(()),
+        Some((_, name)) => Err(Diagnostic::new(Code::BadArgument, format!("the {role} `{name}` is named twice"))
+            .note("two equal columns or rows would come of it")
+            .help(format!("name `{name}` once"))),
+    }
 }
 
 /// The variables of these names that fit.
