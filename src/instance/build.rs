@@ -5,7 +5,7 @@ use super::lookup::{Builtin, Found, STATE_SELECT, predefined_enumerations};
 use super::modifiers::{Access, Arg, ArgKind, At, Binding, Reached, extended, indexed};
 use super::template::{Kind, Template, What};
 use super::{ClassRef, ElementState, Inherited, Instance, Node, NodeId, ROOT, ScopeId, VarData, View, evaluate};
-use crate::diag::{Code, Diagnostic, Span};
+use crate::diag::{Code, Diagnostic, Span, nearest};
 use crate::expr::{Exprs, VarId};
 use crate::flat::{StateSelect, Type, Variability};
 use crate::resolve::{ClassId, Library};
@@ -29,6 +29,30 @@ pub struct Override {
     pub name: String,
     /// An expression in Modelica syntax, or a number with a unit such as `0.8 ml`.
     pub value: String,
+}
+
+/// A value given from outside for one element of an array.
+pub struct GivenElement<'a> {
+    /// The full name with its subscripts.
+    name: String,
+    binding: Binding<'a>,
+    met: bool,
+}
+
+/// The full name that a name with subscripts means, as variables are called; `None` without any, or where they are no
+/// plain numbers.
+fn element_name(name: &str) -> Option<String> {
+    let mut parts = name.split('[');
+    let mut full = parts.next()?.trim().to_string();
+    let mut any = false;
+    for part in parts {
+        let (inside, rest) = part.split_once(']')?;
+        let numbers: Option<Vec<String>> =
+            inside.split(',').map(|n| n.trim().parse::<usize>().ok().map(|n| n.to_string())).collect();
+        full += &format!("[{}]{}", numbers?.join(","), rest.trim());
+        any = true;
+    }
+    any.then_some(full)
 }
 
 /// What to instantiate.
@@ -66,6 +90,7 @@ pub fn instantiate<'a, 'l>(library: &'l mut Library<'a>, request: &ModelRequest)
         variabilities: Vec::new(),
         functions: Vec::new(),
         tables: FxHashMap::default(),
+        given_elements: Vec::new(),
         eval: evaluate::State::default(),
     };
     instance.build_model(request);
@@ -95,6 +120,7 @@ impl<'a> Instance<'a, '_> {
         let scope = self.scope_mut(root);
         (scope.template, scope.args, scope.elements, scope.component) = (template, args, elements, true);
         self.build_elements(root, 0);
+        self.elements_not_met();
         self.number_variables();
     }
 
@@ -140,10 +166,18 @@ impl<'a> Instance<'a, '_> {
         if request.overrides.is_empty() {
             return Rc::from([]);
         }
+        let (whole, elements): (Vec<&Override>, Vec<&Override>) =
+            request.overrides.iter().partition(|o| element_name(&o.name).is_none());
         let list: Vec<String> =
-            request.overrides.iter().map(|o| format!("{} = {}", o.name, evaluate::override_text(&o.value))).collect();
+            whole.iter().map(|o| format!("{} = {}", o.name, evaluate::override_text(&o.value))).collect();
         self.eval.texts = request.overrides.iter().map(|o| (o.name.clone(), o.value.clone())).collect();
-        let text = format!("model Set\n  extends Model(\n    {}\n  );\nend Set;\n", list.join(",\n    "));
+        // A modification names whole arrays: values for single elements stand beside it until their variables are built.
+        let beside: Vec<String> = (1..)
+            .zip(&elements)
+            .map(|(k, o)| format!("  Real element_{k} = {};\n", evaluate::override_text(&o.value)))
+            .collect();
+        let list = if list.is_empty() { String::new() } else { format!("(\n    {}\n  )", list.join(",\n    ")) };
+        let text = format!("model Set\n  extends Model{list};\n{}end Set;\n", beside.concat());
         let before = self.library.diagnostics.len();
         let own = self.library.own.len();
         let ids = self.library.add_text(GIVEN, &text);
@@ -165,8 +199,62 @@ impl<'a> Instance<'a, '_> {
         let Some(ast::ElementKind::Extends(e)) = body.elements.first().map(|e| &e.kind) else { return Rc::from([]) };
         let view = View { scope: self.root, base: 0 };
         let none: Rc<[Access]> = Rc::from([]);
+        let values = body.elements[1..].iter().filter_map(|e| match &e.kind {
+            ast::ElementKind::Component(c) => c.modification.as_ref()?.value.as_ref(),
+            _ => None,
+        });
+        for (o, expr) in elements.iter().zip(values) {
+            let name = element_name(&o.name).unwrap_or_default();
+            self.eval.texts.insert(name.clone(), o.value.clone());
+            let binding = Binding { expr, view, access: none.clone(), final_: false };
+            self.given_elements.push(GivenElement { name, binding, met: false });
+        }
         let arguments = e.modification.iter().flat_map(|m| &m.arguments);
         arguments.filter_map(|a| Arg::new(a, view, &none, true)).collect()
+    }
+
+    /// The value given from outside for one element of an array.
+    fn given_element(&mut self, name: &str) -> Option<Binding<'a>> {
+        let mut found = None;
+        for given in self.given_elements.iter_mut().filter(|g| g.name == name) {
+            given.met = true;
+            found = Some(given.binding.clone());
+        }
+        found
+    }
+
+    /// Every value given for an element must have met one.
+    fn elements_not_met(&mut self) {
+        let open: Vec<String> = self.given_elements.iter().filter(|g| !g.met).map(|g| g.name.clone()).collect();
+        if self.diagnostics.iter().any(Diagnostic::is_error) {
+            // what was not built could not meet anything
+            return;
+        }
+        for name in open {
+            if self.variables.iter().any(|v| v.name == name) {
+                let d = Diagnostic::new(Code::BadSet, format!("`{name}` is no parameter that can be set"));
+                let help = format!("it varies during runs: its start value is `{name}.start`");
+                self.report(d.note("it was given from outside").help(help));
+                continue;
+            }
+            let array = name.rsplit_once('[').map_or("", |(array, _)| array);
+            let known = |i: &&VarData<'_>| i.variability <= Variability::Parameter && !i.hidden;
+            let of_array = |v: &&VarData<'_>| v.name.rsplit_once('[').is_some_and(|(a, _)| a == array);
+            let mut elements = self.variables.iter().filter(known).filter(of_array).map(|v| v.name.as_str());
+            let help = match (elements.next(), elements.next_back()) {
+                (Some(first), Some(last)) => format!("its elements are `{first}` to `{last}`"),
+                (Some(only), None) => format!("its only element is `{only}`"),
+                (None, _) if self.variables.iter().any(|v| v.name == array) => {
+                    format!("`{array}` is no array: `{array}=VALUE` sets it")
+                }
+                (None, _) => match nearest(&name, self.variables.iter().filter(known).map(|v| v.name.as_str())) {
+                    Some(near) => format!("did you mean `{near}`?"),
+                    None => "`bramah check FILE --emit flat` lists all parameters".to_string(),
+                },
+            };
+            let text = format!("the model has no parameter `{name}`");
+            self.report(Diagnostic::new(Code::BadSet, text).note("it was given from outside").help(help));
+        }
     }
 
     /// Builds all components of an instance.
@@ -615,7 +703,22 @@ impl<'a> Instance<'a, '_> {
         if plan.declared.prefix.stream {
             self.unsupported(plan.declared.name.span, "a `stream` variable");
         }
-        let attributes = self.attributes(args.iter().chain(chain), builtin);
+        let mut attributes = self.attributes(args.iter().chain(chain), builtin);
+        let mut binding = part.binding;
+        if !self.given_elements.is_empty() {
+            if variability <= Variability::Parameter && !plan.prefix.hidden {
+                let given = self.given_element(name);
+                if given.is_some() && part.final_ {
+                    let d = Diagnostic::new(Code::BadSet, format!("`{name}` is final and cannot be set"));
+                    self.report(d.at(plan.span, "declared here").help("set what it is made of"));
+                }
+                binding = given.or(binding);
+            }
+            if let Some(start) = self.given_element(&format!("{name}.start")) {
+                attributes.retain(|a| a.0 != "start");
+                attributes.push((Symbol::new("start"), start));
+            }
+        }
         let data = VarData {
             name: name.to_string(),
             ty,
@@ -627,7 +730,7 @@ impl<'a> Instance<'a, '_> {
             hidden: plan.prefix.hidden,
             final_: part.final_,
             structural: false,
-            binding: part.binding,
+            binding,
             attributes,
             state_select: StateSelect::Default,
             description: plan.declared.description.as_deref(),

@@ -225,6 +225,8 @@ pub struct Instance<'a, 'l> {
     /// Tables read from files, by file and name.
     tables: FxHashMap<(FileId, String), Rc<Matrix>>,
     variabilities: Vec<Variability>,
+    /// Values given from outside for single elements of arrays.
+    given_elements: Vec<build::GivenElement<'a>>,
     eval: evaluate::State,
 }
 
