@@ -74,6 +74,10 @@ pub(super) fn run(args: &SensitivityArgs, messages: &mut Messages) -> Result<End
     settings.tolerance = settings.tolerance.min(1e-9);
     let found = sensitivity(&model, &settings, &moved, interrupt::flag())
         .map_err(|why| Failure::new(Code::StepTooSmall, format!("a run failed: {why}")))?;
+    let by_runs = differences(&found);
+    if !by_runs.is_empty() {
+        messages.remark(by_runs.trim_end());
+    }
     match &args.output_file {
         Some(path) => write_text(&path.display().to_string(), &csv(&found)?)?,
         None => files::print(&words(&found))?,
@@ -126,18 +130,22 @@ fn parameters(args: &SensitivityArgs, model: &Model) -> Result<Vec<Moved>, Failu
 fn words(found: &Sensitivity) -> String {
     let names: Vec<&str> = found.plain.signals.iter().map(|s| s.name.as_str()).collect();
     let mut out = format!("per cent of the range for 1 % of the parameter: {}\n", names.join(", "));
-    out += &differences(found);
     let width = found.parameters.iter().map(|p| p.0.len()).max().unwrap_or(0);
     let order = found.ranking();
     for &p in order.iter().take(RANKED) {
         let weights: Vec<String> =
             (0..names.len()).map(|v| format!("{:>9}", number::rounded(found.weight(p, v), 3))).collect();
-        out += &format!("  {:width$} {}\n", found.parameters[p].0, weights.join(" "));
+        out += &format!("  {:width$} {}{}\n", found.parameters[p].0, weights.join(" "), mark(found, p));
     }
     if order.len() > RANKED {
         out += &format!("  and {} weaker ones\n", order.len() - RANKED);
     }
     out
+}
+
+/// Stands behind what belongs to a parameter that was found by differences.
+fn mark(found: &Sensitivity, parameter: usize) -> &'static str {
+    if found.differences[parameter].is_some() { " (differences)" } else { "" }
 }
 
 /// Which parameters are differences of runs, by reason.
@@ -163,7 +171,8 @@ fn csv(found: &Sensitivity) -> Result<String, Failure> {
     let pairs: Vec<(usize, usize)> =
         (0..found.parameters.len()).flat_map(|p| (0..found.plain.signals.len()).map(move |v| (p, v))).collect();
     let name = |&(p, v): &(usize, usize)| {
-        Signal::new(format!("d {} / d ln {}", found.plain.signals[v].name, found.parameters[p].0))
+        let (variable, parameter) = (&found.plain.signals[v].name, &found.parameters[p].0);
+        Signal::new(format!("d {variable} / d ln {parameter}{}", mark(found, p)))
     };
     let signals: Vec<Signal> = pairs.iter().map(name).collect();
     let io = |e: std::io::Error| Failure::new(Code::FileAccess, e.to_string());
@@ -181,7 +190,7 @@ fn picture(found: &Sensitivity, class: &str) -> Figure {
         let mut order: Vec<usize> = (0..found.parameters.len()).collect();
         order.sort_by(|&a, &b| found.weight(b, v).total_cmp(&found.weight(a, v)));
         let curves = order.iter().take(SHOWN).enumerate().map(|(colour, &p)| Series {
-            name: found.parameters[p].0.clone(),
+            name: format!("{}{}", found.parameters[p].0, mark(found, p)),
             x: found.plain.times.clone(),
             y: found.columns[p][v].clone(),
             colour,
