@@ -116,7 +116,8 @@ fn profile(problem: &Problem<'_>, fit: &Fit, profile: &Profile) -> Panel {
         x_label: label(&free.name, &free.unit),
         y_label: "rise".to_owned(),
         series: vec![
-            Series { name: "profile".to_owned(), x: x.clone(), y, ..Series::default() },
+            Series { name: "profile".to_owned(), x: x.clone(), y: y.clone(), ..Series::default() },
+            Series { name: "searched anew".to_owned(), x: x.clone(), y, crosses: true, ..Series::default() },
             Series {
                 name: "by the deviation".to_owned(),
                 x,

@@ -21,7 +21,11 @@ pub struct Profile {
 }
 
 /// Searches along one side at most.
-const TRIES: usize = 8;
+const TRIES: usize = 16;
+/// Steps to where the deviation says that the level is, so that the profile shows its form.
+const STEPS: f64 = 4.0;
+/// As far in these steps, at three deviations for many degrees of freedom; beyond, steps grow.
+const EVEN: f64 = 1.5;
 /// A crossing counts as found within this part of the level's root.
 const NEAR: f64 = 0.02;
 
@@ -63,14 +67,16 @@ struct Walk<'a, 'm> {
 }
 
 impl Walk<'_, '_> {
-    /// Points seen on one side, and where the rise reaches the level.
+    /// Points seen on one side, in even steps until the level is passed, and where the rise reaches it.
     fn side(&mut self, sign: f64) -> (Vec<(f64, f64)>, Option<f64>) {
         let centre = self.fit.z[self.parameter];
         let limit = if sign > 0.0 { self.bounds.high[self.parameter] } else { self.bounds.low[self.parameter] };
         let room = (limit - centre).abs();
         let target = student(self.fit.degrees[self.parameter]);
         let usual = self.fit.spread[self.parameter].sqrt() * target;
-        let mut step = if usual.is_finite() && usual > 0.0 { usual.min(3.0) } else { 1.0 }.min(room);
+        let usual = if usual.is_finite() && usual > 0.0 { usual.min(3.0) } else { 1.0 };
+        let even = usual / STEPS;
+        let mut step = even.min(room);
         let mut seen = Vec::new();
         let mut warm = self.fit.z.clone();
         // roots of the rise, nearly straight over the distance
@@ -99,7 +105,11 @@ impl Walk<'_, '_> {
             } else {
                 outside = Some((step, root));
             }
-            step = next(inside, outside, target).min(room);
+            step = match outside {
+                None if step + 0.5 * even < EVEN * usual => step + even,
+                _ => next(inside, outside, target),
+            }
+            .min(room);
         }
         let crossing = outside.filter(|o| o.1.is_finite()).map(|o| centre + sign * between(inside, o, target));
         (seen, crossing)

@@ -329,6 +329,14 @@ fn profiles_of_a_linear_fit_agree_with_the_deviations_and_open_ones_are_open() {
                 "{profile:?}"
             );
             assert!(low < truth && truth < high);
+            // a course, not only its ends: about as many points on both sides, each on the parabola
+            let level = chance::student(fit.degrees[j]).powi(2);
+            assert!((9..=13).contains(&profile.points.len()), "{profile:?}");
+            assert!(profile.points[0].1 >= 0.9 * level && profile.points.last().expect("some").1 >= 0.9 * level);
+            for &(at, rise) in &profile.points {
+                let parabola = level * ((at - value) / half).powi(2);
+                assert!((rise - parabola).abs() < 0.05 * level, "{at}: {rise} {parabola}");
+            }
             let (low, high) = fit.interval(problem, j);
             assert!((low - value + half).abs() < 1e-3 * half && (high - value - half).abs() < 1e-3 * half);
         }
