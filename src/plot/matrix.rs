@@ -2,7 +2,7 @@
 
 use super::figure::colour;
 use super::svg::{begin, escape};
-use super::ticks::ticks;
+use super::ticks::{Ticks, ticks};
 use crate::results::number;
 use std::fmt::Write as _;
 
@@ -143,6 +143,22 @@ fn between(part: f64) -> String {
     format!("#{:02x}{:02x}{:02x}", mix(0), mix(1), mix(2))
 }
 
+/// As many ticks as there is room for, but two at least: one number alone says nothing of the scale.
+fn readable(range: (f64, f64), side: f64) -> Ticks {
+    let least = ((side / 55.0) as usize).max(2);
+    let found = |count: usize| ticks(range.0, range.1, count);
+    (least..least + 4).map(found).find(|t| t.marks.len() > 1).unwrap_or_else(|| found(least))
+}
+
+/// Width of a digit at the size of the numbers.
+const DIGIT: f64 = 7.0;
+
+/// The middle of a text that is twice `half` long, moved so that it does not reach into the numbers of the next cell.
+fn inside(middle: f64, half: f64, (begin, side): (f64, f64)) -> f64 {
+    let half = half.min(side / 2.0);
+    middle.clamp(begin + half, begin + side - half)
+}
+
 /// The edge, and numbers at the left and at the bottom of the matrix.
 fn frame(out: &mut String, cell: &Cell, (left, bottom): (bool, bool)) {
     let (l, t, s) = (cell.left, cell.top, cell.side);
@@ -150,24 +166,24 @@ fn frame(out: &mut String, cell: &Cell, (left, bottom): (bool, bool)) {
         out,
         "<rect x=\"{l:.1}\" y=\"{t:.1}\" width=\"{s:.1}\" height=\"{s:.1}\" fill=\"none\" stroke=\"#777777\"/>"
     );
-    let count = ((s / 55.0) as usize).max(1);
     if left {
-        for (place, text) in ticks(cell.y.0, cell.y.1, count).marks {
-            let y = cell.py(place) + 4.0;
+        for (place, text) in readable(cell.y, s).marks {
+            let y = inside(cell.py(place), 6.0, (t, s)) + 4.0;
             let _ =
                 writeln!(out, "<text x=\"{:.1}\" y=\"{y:.1}\" text-anchor=\"end\">{}</text>", l - 6.0, escape(&text));
         }
     }
     if bottom {
-        for (place, text) in ticks(cell.x.0, cell.x.1, count).marks {
-            let (x, y) = (cell.px(place), t + s + 16.0);
+        for (place, text) in readable(cell.x, s).marks {
+            let (x, y) = (inside(cell.px(place), DIGIT * text.len() as f64 / 2.0, (l, s)), t + s + 16.0);
             let _ = writeln!(out, "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"middle\">{}</text>", escape(&text));
         }
     }
+    // the power of ten at the left stands in the cell, for beside it stands a number
     for (show, range, x, y, anchor) in
-        [(left, cell.y, l - 6.0, t + 4.0, "end"), (bottom, cell.x, l + s, t + s + 32.0, "end")]
+        [(left, cell.y, l + 4.0, t + 13.0, "start"), (bottom, cell.x, l + s, t + s + 32.0, "end")]
     {
-        let power = ticks(range.0, range.1, count).power;
+        let power = readable(range, s).power;
         if show && power != 0 {
             let text = format!("1e{}", number::rounded(f64::from(power), 3));
             let _ = writeln!(
@@ -195,6 +211,22 @@ mod tests {
         assert_eq!(text.matches("<circle").count(), 4 + 3 + 3);
         assert!(text.contains("p&lt;set&gt;") && text.contains("1e6") && !text.contains("NaN"), "{text}");
         assert!(text.contains("#d55e00") && text.contains("#0072b2"), "the largest is red, the least blue");
+    }
+
+    /// Numbers at the left and at the bottom of cells, many of them small: each axis has two at least.
+    #[test]
+    fn each_axis_has_two_numbers_at_least() {
+        for side in [80.0, 96.0, 150.0, 400.0] {
+            for (low, high) in
+                [(0.0, 1.0), (0.05, 1.95), (1.0, 4.0), (5e6, 8e6), (-3e-7, 9e-7), (0.91, 1.09), (98.0, 103.0)]
+            {
+                let ticks = readable(range(&[low, high]), side);
+                assert!((2..=8).contains(&ticks.marks.len()), "{low} {high} {side}: {ticks:?}");
+                let length: usize = ticks.marks.iter().map(|m| m.1.len()).sum();
+                assert!(side > 140.0 || length <= 14, "{low} {high} {side}: {ticks:?}");
+            }
+        }
+        assert_eq!([5.0, 50.0, 99.0].map(|x| inside(x, 12.0, (0.0, 100.0))), [12.0, 50.0, 88.0]);
     }
 
     #[test]
