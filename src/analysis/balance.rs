@@ -167,6 +167,13 @@ pub fn streams(ports: &[Port], powers: &[f64], graph: &Graph) -> Vec<Stream> {
     all.map(|((from, to), power)| Stream { from, to, power }).collect()
 }
 
+/// What components that pass power on keep of it: their losses, and what they store, as streams to `name`. Losses have no
+/// port where they are not led away as heat, so no connection shows them. Where power only ends nothing is left over.
+pub fn left(budgets: &[Budget], name: &str) -> Vec<Stream> {
+    let passing = budgets.iter().filter(|b| b.net > 0.0 && b.ports.iter().any(|p| p.1 < 0.0));
+    passing.map(|b| Stream { from: b.component.clone(), to: name.to_owned(), power: b.net }).collect()
+}
+
 /// Groups of connected ports, by index.
 fn meetings(ports: &[Port], graph: &Graph) -> Vec<Vec<usize>> {
     let mut group: Vec<usize> = (0..ports.len()).collect();
@@ -220,5 +227,30 @@ mod tests {
         let stream = |a: &str, b: &str| streams.iter().find(|s| s.from == a && s.to == b).map(|s| s.power);
         assert_eq!(stream("s", "r").map(f64::round), Some(24.0));
         assert_eq!(stream("r", "q").map(f64::round), Some(12.0));
+    }
+
+    /// A motor drives a pump on a throttle: what the pump loses flows out of it, so that as much leaves as goes in.
+    #[test]
+    fn what_a_machine_loses_flows_out_of_it() {
+        let world = MemoryWorld::default();
+        let request = Request { source: "Hydraulic.Examples.PumpExample".into(), ..Request::default() };
+        let mut simulation = Simulation::compile(&world, &request).expect("sound");
+        let model = simulation.model().clone();
+        let ports = ports(&model.flat);
+        let loss = model.flat.variables.iter().position(|v| v.name == "pump.lossPower").expect("there");
+        let mut wanted = wanted(&ports);
+        wanted.push(VarId(u32::try_from(loss).expect("small")));
+        simulation.settings().wanted = wanted;
+        let rows = simulation.run().expect("runs").trajectory;
+        let powers = powers(&ports, &rows);
+        let budgets = budgets(&ports, &powers, &model.graph);
+        let mut all = streams(&ports, &powers, &model.graph);
+        all.extend(left(&budgets, "lost"));
+        let of_pump = |s: &&Stream| s.from == "pump" || s.to == "pump";
+        let net: f64 = all.iter().filter(of_pump).map(|s| if s.to == "pump" { s.power } else { -s.power }).sum();
+        let lost = all.iter().find(|s| s.from == "pump" && s.to == "lost").expect("a stream").power;
+        let said = rows.columns.last().and_then(|c| c.last()).copied().expect("rows");
+        assert!(net.abs() < 1e-6 * lost && (lost - said).abs() < 0.2 * said, "{net} {lost} {said}");
+        assert!(left(&budgets, "lost").iter().all(|s| s.power > 0.0));
     }
 }

@@ -190,9 +190,12 @@ fn power(
     messages: &Messages,
 ) -> Result<(), Failure> {
     let powers = balance::powers(ports, rows);
-    files::print(&balance_words(&balance::budgets(ports, &powers, &model.graph)))?;
+    let budgets = balance::budgets(ports, &powers, &model.graph);
+    files::print(&balance_words(&budgets))?;
     let Some(path) = &args.sankey else { return Ok(()) };
-    let streams = balance::streams(ports, &powers, &model.graph);
+    let mut streams = balance::streams(ports, &powers, &model.graph);
+    // at rest nothing is stored any more
+    streams.extend(balance::left(&budgets, if args.transient { "lost or stored" } else { "power lost" }));
     let most = streams.iter().map(|s| s.power).fold(0.0, f64::max);
     let flows: Vec<sankey::Flow> = streams
         .into_iter()
