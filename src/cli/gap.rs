@@ -1,7 +1,7 @@
 //! `bramah gap`
 
 use clap::Args;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::messages::Messages;
 use super::recorder::write_text;
@@ -62,6 +62,8 @@ pub(super) fn run(args: &GapArgs, messages: &mut Messages) -> Result<Ending, Fai
         files::print(&listed(&messages.value(Checked::new(all, warnings))?))?;
         return Ok(Ending::Fine);
     }
+    let files = [Some(&args.output), args.write_model.as_ref(), args.report.as_ref()];
+    files.into_iter().flatten().map(Path::new).try_for_each(files::ready)?;
     if args.plan { weigh_plan(args, &study, messages) } else { diagnose(args, &study, messages) }
 }
 
