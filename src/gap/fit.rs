@@ -2,11 +2,11 @@
 //! anew in each iteration, with the levels of sources and noise by type-II likelihood.
 
 use super::data::Recording;
-use super::evidence::{self, Explained};
+use super::evidence::{self, Free};
 use super::filter::{self, Pass, Setting, Source, Tape};
 use super::levels;
 use super::problem::{Assembled, Problem};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 /// Iterations at most of a fit that counts.
@@ -46,6 +46,12 @@ impl Prior {
     pub fn deviation_at(&self, value: f64) -> f64 {
         let beyond = ((value - self.mean) / self.sigma).abs();
         if self.open { self.sigma * (beyond / OPEN).max(1.0) } else { self.sigma }
+    }
+
+    /// As a column of a model linearised at a value.
+    pub fn about(&self, value: f64, column: usize) -> Free {
+        let bounds = (self.min - value, self.max - value);
+        Free { column, mean: self.mean - value, sigma: self.deviation_at(value), bounds }
     }
 
     /// Log density at a value, relative to that at the mean.
@@ -180,7 +186,6 @@ pub fn fit(
 ) -> Option<Fit> {
     setting.columns = priors.iter().map(|p| p.parameter).collect();
     setting.common = setting.columns.len();
-    let set: Vec<usize> = (0..priors.len()).collect();
     let mut found = passes(&setting, train, usize::MAX, Tape::Nothing)?;
     setting.starts = found.iter().map(|p| p.start.clone()).collect();
     let share =
@@ -188,16 +193,15 @@ pub fn fit(
     for _ in 0..iterations {
         let (likelihood, gram) = total(&found);
         let (gram, before) = (gram * share, objective(&setting, priors, likelihood * share));
-        let sigmas = deviations(&setting, priors);
-        let (change, promise) = step(&setting, &gram, priors, &sigmas)?;
-        if promise < WORTHWHILE {
+        let local = evidence::explain(&gram, &free(&setting, priors))?;
+        if local.promise < WORTHWHILE {
             break;
         }
         let mut length = 1.0;
         let start = setting.theta.clone();
         let mut accepted = false;
         while length > 0.05 {
-            for (prior, d) in priors.iter().zip(&change) {
+            for (prior, d) in priors.iter().zip(&local.estimate) {
                 let value = start[prior.parameter] + length * d;
                 setting.theta[prior.parameter] = value.clamp(prior.min, prior.max);
             }
@@ -222,11 +226,9 @@ pub fn fit(
     }
     let (likelihood, gram) = total(&found);
     let gram = gram * share;
-    let sigmas = deviations(&setting, priors);
-    let local = explain(&setting, &gram, priors, &set, &sigmas)?;
-    // what another step promises has not been reached: a bound may be in the way, or the model bend
-    let promise = 0.5 * quadratic(&gram, local.estimate.as_slice(), &sigmas);
-    let evidence = share * likelihood + local.evidence - promise;
+    let local = evidence::explain(&gram, &free(&setting, priors))?;
+    // what another step promises has not been reached: the model may bend
+    let evidence = share * likelihood + local.evidence - local.promise;
     if !evidence.is_finite() {
         return None;
     }
@@ -265,66 +267,13 @@ pub fn polish(mut best: Fit, train: &[Recording], share: Option<f64>) -> Fit {
     best
 }
 
-/// The step of Gauss and Newton within the bounds, and what it promises, nats: parameters that it would take beyond a bound
-/// go there, and the others make the best of that.
-fn step(setting: &Setting, gram: &DMatrix<f64>, priors: &[Prior], sigmas: &[f64]) -> Option<(Vec<f64>, f64)> {
-    let n = priors.len();
-    let value = |i: usize| setting.theta[priors[i].parameter];
-    // in units of the priors' deviations
-    let curvature = DMatrix::from_fn(n, n, |i, j| sigmas[i] * gram[(i, j)] * sigmas[j] + f64::from(u8::from(i == j)));
-    let slope = DVector::from_fn(n, |i, _| sigmas[i] * gram[(i, n)] + (priors[i].mean - value(i)) / sigmas[i]);
-    let mut change = DVector::zeros(n);
-    let mut free: Vec<usize> = (0..n).collect();
-    loop {
-        let matrix = DMatrix::from_fn(free.len(), free.len(), |i, j| curvature[(free[i], free[j])]);
-        let rest = &slope - &curvature * &change;
-        let right = DVector::from_fn(free.len(), |i, _| rest[free[i]]);
-        let best = matrix.cholesky()?.solve(&right);
-        let end = |i: usize, k: usize| {
-            let wanted = value(i) + sigmas[i] * (change[i] + best[k]);
-            (wanted < priors[i].min || wanted > priors[i].max)
-                .then(|| (wanted.clamp(priors[i].min, priors[i].max) - value(i)) / sigmas[i])
-        };
-        let ends: Vec<(usize, f64)> = free.iter().enumerate().filter_map(|(k, &i)| Some((i, end(i, k)?))).collect();
-        if ends.is_empty() {
-            free.iter().enumerate().for_each(|(k, &i)| change[i] += best[k]);
-            break;
-        }
-        ends.iter().for_each(|&(i, d)| change[i] = d);
-        free.retain(|i| ends.iter().all(|e| e.0 != *i));
-    }
-    let promise = slope.dot(&change) - 0.5 * change.dot(&(&curvature * &change));
-    Some((change.iter().zip(sigmas).map(|(d, s)| d * s).collect(), promise))
-}
-
-fn explain(
-    setting: &Setting,
-    gram: &DMatrix<f64>,
-    priors: &[Prior],
-    set: &[usize],
-    sigmas: &[f64],
-) -> Option<Explained> {
-    let means: Vec<f64> = priors.iter().map(|p| p.mean - setting.theta[p.parameter]).collect();
-    evidence::explain(gram, set, &means, sigmas)
+/// The parameters of `priors` as columns in their order, about their present values.
+fn free(setting: &Setting, priors: &[Prior]) -> Vec<Free> {
+    priors.iter().enumerate().map(|(column, p)| p.about(setting.theta[p.parameter], column)).collect()
 }
 
 fn objective(setting: &Setting, priors: &[Prior], likelihood: f64) -> f64 {
     likelihood + priors.iter().map(|p| p.log_density(setting.theta[p.parameter])).sum::<f64>()
-}
-
-fn deviations(setting: &Setting, priors: &[Prior]) -> Vec<f64> {
-    priors.iter().map(|p| p.deviation_at(setting.theta[p.parameter])).collect()
-}
-
-fn quadratic(gram: &DMatrix<f64>, d: &[f64], sigmas: &[f64]) -> f64 {
-    let mut sum = 0.0;
-    for i in 0..d.len() {
-        for j in 0..d.len() {
-            sum += d[i] * gram[(i, j)] * d[j];
-        }
-        sum += (d[i] / sigmas[i]).powi(2);
-    }
-    sum
 }
 
 /// Fits count at least this share of the samples as independent: how coloured the rest is shows only once what is

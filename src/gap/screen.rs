@@ -2,7 +2,7 @@
 //! factorisation.
 
 use super::effects::{Coefficient, Shape};
-use super::evidence;
+use super::evidence::{self, Free};
 use super::filter::colour::Colour;
 use super::filter::{self, Source, Tape};
 use super::fit::{self, Fit, Prior};
@@ -216,8 +216,8 @@ fn begins(problem: &Problem<'_>, assembled: &Assembled) -> bool {
 /// The Gram matrices of the joint model.
 struct Joint<'a> {
     entries: Vec<Entry>,
-    /// Columns that everything is weighed against: tolerances, then what was accepted.
-    common: Vec<Prior>,
+    /// What everything is weighed against: tolerances, then what was accepted.
+    common: Vec<Free>,
     /// Scaled Gram matrix and scaled log likelihood.
     gram: DMatrix<f64>,
     likelihood: f64,
@@ -266,12 +266,10 @@ impl<'a> Joint<'a> {
         let width = setting.columns.len() + 1;
         let gram = passes.iter().fold(DMatrix::zeros(width, width), |sum, p| sum + &p.gram) * background.share;
         let likelihood = background.share * passes.iter().map(|p| p.likelihood).sum::<f64>();
-        // means relative to where the model was linearised
-        common.iter_mut().for_each(|p| p.mean -= assembled.theta[p.parameter]);
-        let mut joint = Joint { entries, common, gram, likelihood, floor: 0.0, problem };
-        let (base, means, sigmas) = joint.base();
-        joint.floor = likelihood + evidence::explain(&joint.gram, &base, &means, &sigmas)?.evidence;
-        Some(joint)
+        let common = common.iter().enumerate().map(|(column, p)| p.about(assembled.theta[p.parameter], column));
+        let common: Vec<Free> = common.collect();
+        let floor = likelihood + evidence::explain(&gram, &common)?.evidence;
+        Some(Joint { entries, common, gram, likelihood, floor, problem })
     }
 
     /// Several where one joint model has no values somewhere on the way: halves of halves, without those that fail alone.
@@ -299,16 +297,9 @@ impl<'a> Joint<'a> {
         [half(left), half(right)].into_iter().flatten().collect()
     }
 
-    /// Columns, means and deviations of what is always free.
-    fn base(&self) -> (Vec<usize>, Vec<f64>, Vec<f64>) {
-        let means = self.common.iter().map(|p| p.mean).collect();
-        ((0..self.common.len()).collect(), means, self.common.iter().map(|p| p.sigma).collect())
-    }
-
     /// All hypotheses of this joint model and all drifts, over `floor` or over no hypothesis in this background if that
     /// is more likely.
     fn weigh(&self, drifts: &[usize], floor: Option<f64>) -> Vec<Candidate> {
-        let (base, means, sigmas) = self.base();
         let floor = floor.map_or(self.floor, |f| f.max(self.floor));
         let mut best: Vec<Candidate> = Vec::new();
         let mut note = |c: Candidate| match best.iter_mut().find(|b| b.chosen.hypothesis == c.chosen.hypothesis) {
@@ -317,7 +308,7 @@ impl<'a> Joint<'a> {
             None => best.push(c),
         };
         for entry in &self.entries {
-            if let Some(mut c) = self.entry(entry, &self.gram, &base, &means, &sigmas) {
+            if let Some(mut c) = self.entry(entry) {
                 // a choice among variants has its price
                 let cost = variants_cost(&self.problem.hypotheses[entry.hypothesis]);
                 c.gain += self.likelihood - floor - cost;
@@ -325,7 +316,7 @@ impl<'a> Joint<'a> {
             }
         }
         for &h in drifts {
-            if let Some(mut c) = self.drift(h, &self.gram, &base, &means, &sigmas) {
+            if let Some(mut c) = self.drift(h) {
                 c.gain += self.likelihood - floor;
                 note(c);
             }
@@ -335,20 +326,13 @@ impl<'a> Joint<'a> {
     }
 
     /// Evidence of one variant; coefficients that come out on the wrong side of their bounds are left at their off value.
-    fn entry(
-        &self,
-        entry: &Entry,
-        gram: &DMatrix<f64>,
-        base: &[usize],
-        means: &[f64],
-        sigmas: &[f64],
-    ) -> Option<Candidate> {
+    fn entry(&self, entry: &Entry) -> Option<Candidate> {
         let h = &self.problem.hypotheses[entry.hypothesis];
         let blocks = self.problem.blocks();
         let mut prior_sigmas = Vec::new();
         let mut visible = 0.0;
         for (column, c) in entry.columns.clone().zip(&h.coefficients) {
-            let info = evidence::new_information(gram, column, base, sigmas);
+            let info = evidence::new_information(&self.gram, column, &self.common);
             prior_sigmas.push(deviation(c, info, blocks));
             visible += 0.5 * c.nominal * c.nominal * info;
         }
@@ -357,15 +341,15 @@ impl<'a> Joint<'a> {
             if active.is_empty() {
                 return None;
             }
-            let mut set = base.to_vec();
-            let (mut all_means, mut all_sigmas) = (means.to_vec(), sigmas.to_vec());
-            for &i in &active {
-                set.push(entry.columns.start + i);
-                all_means.push(0.0);
-                all_sigmas.push(prior_sigmas[i]);
-            }
-            let found = evidence::explain(gram, &set, &all_means, &all_sigmas)?;
-            let value = |k: usize| h.coefficients[active[k]].off + found.estimate[base.len() + k];
+            let coefficient = |&i: &usize| Free {
+                column: entry.columns.start + i,
+                mean: 0.0,
+                sigma: prior_sigmas[i],
+                bounds: (f64::NEG_INFINITY, f64::INFINITY),
+            };
+            let set: Vec<Free> = self.common.iter().cloned().chain(active.iter().map(coefficient)).collect();
+            let found = evidence::explain(&self.gram, &set)?;
+            let value = |k: usize| h.coefficients[active[k]].off + found.estimate[self.common.len() + k];
             let wrong = (0..active.len()).find(|&k| {
                 let c = &h.coefficients[active[k]];
                 c.min.is_some_and(|m| value(k) < m) || c.off == 0.0 && c.max.is_some_and(|m| m <= 0.0 && value(k) > m)
@@ -386,27 +370,20 @@ impl<'a> Joint<'a> {
     }
 
     /// A parameter far beyond its tolerance.
-    fn drift(
-        &self,
-        hypothesis: usize,
-        gram: &DMatrix<f64>,
-        base: &[usize],
-        means: &[f64],
-        sigmas: &[f64],
-    ) -> Option<Candidate> {
+    fn drift(&self, hypothesis: usize) -> Option<Candidate> {
         let h = &self.problem.hypotheses[hypothesis];
         let index = drifting(self.problem, h)?;
         let t = &self.problem.tolerances[index];
-        let others: Vec<usize> = base.iter().copied().filter(|&i| i != index).collect();
-        let other_sigmas: Vec<f64> = others.iter().map(|&i| sigmas[i]).collect();
-        let info = evidence::new_information(gram, index, &others, &other_sigmas);
+        let others: Vec<Free> = self.common.iter().filter(|f| f.column != index).cloned().collect();
+        let info = evidence::new_information(&self.gram, index, &others);
         let broad = wrong_sheet(t);
-        let mut wide = sigmas.to_vec();
-        wide[index] = broad;
-        let found = evidence::explain(gram, base, means, &wide)?;
-        let value = t.nominal - means[index] + found.estimate[index];
         let (min, max) = (t.min.max(t.nominal - AT_MOST * broad), t.max.min(t.nominal + AT_MOST * broad));
-        let value = value.clamp(min, max);
+        let mut wide = self.common.clone();
+        let own = &mut wide[index];
+        let present = t.nominal - own.mean;
+        (own.sigma, own.bounds) = (broad, (min - present, max - present));
+        let found = evidence::explain(&self.gram, &wide)?;
+        let value = (present + found.estimate[index]).clamp(min, max);
         let prior = Prior { parameter: index, mean: t.nominal, sigma: broad, open: true, min, max };
         let visible = 0.5 * (10.0 * t.sigma).powi(2) * info;
         let chosen = Chosen { hypothesis, values: vec![value] };

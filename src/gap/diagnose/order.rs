@@ -2,7 +2,7 @@
 //! their off value the model with them is singular, so they cannot be screened together with the others. Each is tried by
 //! itself at a part of its usual size, on the beginning of the first recording.
 
-use super::super::evidence;
+use super::super::evidence::{self, Free};
 use super::super::filter::Tape;
 use super::super::fit::{self, Prior};
 use super::super::hypotheses::{Hypothesis, Sharing};
@@ -30,6 +30,8 @@ const SAME: f64 = 1e-6;
 const REACH: f64 = 10.0;
 /// Part of its usual size that an effect has at least: the model becomes too stiff on the way to its off value.
 const LEAST: f64 = 1e-3;
+/// Within this part of a bound a value is held by it.
+const ROUNDING: f64 = 1e-9;
 
 impl Search {
     /// The best effects that change the order, with what each promises. Those that the filter cannot follow, or that are far
@@ -74,10 +76,9 @@ impl Search {
         let further = Accepted { priors: screen::priors(h, &chosen.values, &sigmas), chosen: chosen.clone() };
         let mut beginning = self.beginning(problem, Some(further))?;
         let count = beginning.priors.len() - chosen.values.len();
-        let base: Vec<usize> = (0..count).collect();
-        let base_sigmas: Vec<f64> = beginning.priors[..count].iter().map(|p| p.sigma).collect();
+        let base = beginning.free(count);
         for (column, c) in (count..).zip(&h.coefficients) {
-            let info = evidence::new_information(&beginning.gram, column, &base, &base_sigmas);
+            let info = evidence::new_information(&beginning.gram, column, &base);
             let prior = &mut beginning.priors[column];
             prior.sigma = screen::deviation(c, info, problem.blocks());
             prior.min = prior.min.max(LEAST * c.nominal.abs());
@@ -85,8 +86,8 @@ impl Search {
         let (mut gain, estimate) = beginning.explained(count + h.coefficients.len())?;
         let priors = beginning.priors.split_off(count);
         for ((value, change), prior) in chosen.values.iter_mut().zip(estimate.iter().skip(count)).zip(&priors) {
-            if *value + change < prior.min {
-                // less than nothing would be better
+            if *value + change - prior.min <= ROUNDING * prior.min.abs() {
+                // held by its bound: less than nothing would be better
                 gain = f64::MIN;
             }
             *value = (*value + change).clamp(*value / REACH, *value * REACH);
@@ -123,13 +124,15 @@ struct Beginning {
 }
 
 impl Beginning {
+    /// The first `count` parameters about their present values.
+    fn free(&self, count: usize) -> Vec<Free> {
+        let known = self.priors.iter().zip(&self.values).take(count).enumerate();
+        known.map(|(column, (p, &value))| p.about(value, column)).collect()
+    }
+
     /// Likelihood with evidence when the first `count` parameters are fitted, nats, and their changes.
     fn explained(&self, count: usize) -> Option<(f64, DVector<f64>)> {
-        let priors = &self.priors[..count];
-        let set: Vec<usize> = (0..count).collect();
-        let means: Vec<f64> = priors.iter().zip(&self.values).map(|(p, value)| p.mean - value).collect();
-        let sigmas: Vec<f64> = priors.iter().map(|p| p.sigma).collect();
-        let found = evidence::explain(&self.gram, &set, &means, &sigmas)?;
+        let found = evidence::explain(&self.gram, &self.free(count))?;
         Some((self.likelihood + found.evidence, found.estimate))
     }
 }

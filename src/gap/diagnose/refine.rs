@@ -173,19 +173,16 @@ impl Search {
     /// samples' delay is one sample's). Gives its likelihood on the beginning of the first recording.
     fn shape_of_whole(&self, problem: &Problem<'_>, h: &Hypothesis, whole: &mut Candidate) -> Option<f64> {
         let count = h.coefficients.len();
-        let with = |shapes: &[f64]| {
-            let mut values = whole.chosen.values.clone();
-            values[count..].copy_from_slice(shapes);
-            let chosen = Chosen { values, ..whole.chosen };
-            self.tried(problem, Some(Accepted { chosen, priors: whole.priors.clone() }))
+        let with = |variant: Chosen| {
+            let mut formed = whole.clone();
+            formed.chosen.values[count..].copy_from_slice(&variant.values[count..]);
+            let shapes = h.shapes.iter().zip(&variant.values[count..]);
+            formed.priors.splice(count.., shapes.map(|(s, &x)| screen::shape_prior(s, x)));
+            Some((self.tried(problem, Some(formed.accepted()))?, formed))
         };
-        let (likelihood, shapes) = screen::variants(h, whole.chosen.hypothesis)
-            .iter()
-            .filter_map(|v| Some((with(&v.values[count..])?, v.values[count..].to_vec())))
-            .max_by(|a, b| a.0.total_cmp(&b.0))?;
-        whole.chosen.values[count..].copy_from_slice(&shapes);
-        let priors = h.shapes.iter().zip(&shapes).map(|(s, &x)| screen::shape_prior(s, x));
-        whole.priors.splice(count.., priors);
+        let variants = screen::variants(h, whole.chosen.hypothesis).into_iter();
+        let (likelihood, best) = variants.filter_map(with).max_by(|a, b| a.0.total_cmp(&b.0))?;
+        *whole = best;
         Some(likelihood)
     }
 
