@@ -178,7 +178,13 @@ fn verdict(mut world: MemoryWorld, study: &str, train: String, held: String) -> 
     let question = question(&world, &study, None, &mut sources).ok().unwrap();
     let found = search(&question.problem, &mut |_| ()).unwrap_or_else(|trouble| panic!("{trouble:?}"));
     let held = question.held(None, &mut sources).unwrap();
-    found.verdict(&question.problem, &held, 0.0)
+    let verdict = found.verdict(&question.problem, &held, 0.0);
+    // whatever is claimed, the last fit tells it from nothing
+    for e in verdict.effects.iter().filter(|e| e.family != "parameter") {
+        let sure = e.parameters.values().any(|p| p.value.abs() > 5.5 * p.std);
+        assert!(sure, "{:?}", e.parameters);
+    }
+    verdict
 }
 
 #[test]
@@ -349,25 +355,41 @@ fn a_parameter_far_beyond_its_tolerance_is_named() {
     assert_eq!(found.effects[0].family, "parameter", "{found:?}");
 }
 
+/// A recording without friction of which one column was taken so many samples later, or earlier where it is negative.
+fn shifted(world: &MemoryWorld, column: usize, samples: isize, seed: u64) -> String {
+    let text = recording(world, ("rub.F", 0.0), seed);
+    let mut rows: Vec<Vec<&str>> = text.lines().map(|l| l.split(',').collect()).collect();
+    let told: Vec<&str> = rows.iter().map(|r| r[column]).collect();
+    let last = told.len() - 1;
+    for (k, row) in rows.iter_mut().enumerate().skip(1) {
+        row[column] = told[k.saturating_add_signed(-samples).clamp(1, last)];
+    }
+    rows.into_iter().map(|r| r.join(",") + "\n").collect()
+}
+
 /// From where they are not, a lag and a dead time look alike.
 #[test]
 fn a_dead_time_is_no_lag() {
     let world = MemoryWorld::single("Slide.mo", MODEL);
-    let early = |seed: u64| {
-        let text = recording(&world, ("rub.F", 0.0), seed);
-        let rows: Vec<Vec<&str>> = text.lines().map(|l| l.split(',').collect()).collect();
-        let row = |k: usize| {
-            let told = rows.get(k + 3).filter(|_| k > 0).unwrap_or(&rows[k])[1];
-            format!("{},{told},{},{}\n", rows[k][0], rows[k][2], rows[k][3])
-        };
-        (0..rows.len()).map(row).collect::<String>()
-    };
-    let (train, held) = (early(11), early(12));
+    let (train, held) = (shifted(&world, 1, -3, 11), shifted(&world, 1, -3, 12));
     let verdict = verdict(world, STUDY, train, held);
     assert_eq!(verdict.effects.len(), 1, "{:?}", verdict.effects);
     assert_eq!(verdict.effects[0].family, "dead_time", "{:?}", verdict.effects);
     let time = &verdict.effects[0].parameters["T_d"];
     assert!((time.value - 0.012).abs() < 3.0 * time.std, "{time:?}");
+}
+
+/// Twenty samples, twice as long as the longest that is tried first: a small share of it looks like nothing.
+#[test]
+fn a_sensor_that_comes_very_late_is_named_with_its_delay() {
+    let world = MemoryWorld::single("Slide.mo", MODEL);
+    let (train, held) = (shifted(&world, 3, 20, 11), shifted(&world, 3, 20, 12));
+    let verdict = verdict(world, STUDY, train, held);
+    assert_eq!(verdict.effects.len(), 1, "{:?}", verdict.effects);
+    assert_eq!(verdict.effects[0].family, "sensor_delay", "{:?}", verdict.effects);
+    assert_eq!(verdict.effects[0].places[0].place, "v");
+    let time = &verdict.effects[0].parameters["T_d"];
+    assert!((time.value - 0.08).abs() < (5.0 * time.std).max(2e-3), "{time:?}");
 }
 
 /// The filter cannot follow a sensor that loses the sign where nothing else tells it.
