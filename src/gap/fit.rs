@@ -312,6 +312,14 @@ impl Fit {
         0.5 * self.priors.iter().take(count).map(square).sum::<f64>()
     }
 
+    /// Standard deviation of a fitted parameter if the first `known` were known: what the data alone leave open.
+    pub fn deviation_knowing(&self, i: usize, known: usize) -> f64 {
+        let among = self.covariance.view((0, 0), (known, known)).into_owned();
+        let with = self.covariance.view((0, i), (known, 1)).into_owned();
+        let explained = among.cholesky().map_or(0.0, |factor| with.dot(&factor.solve(&with)));
+        (self.covariance[(i, i)] - explained).max(0.0).sqrt()
+    }
+
     /// Standard deviation of a fitted parameter by its place in the priors.
     pub fn deviation(&self, i: usize) -> f64 {
         self.covariance[(i, i)].max(0.0).sqrt()

@@ -11,8 +11,8 @@ use super::refine::fitted;
 const CLOSES: f64 = 0.07;
 /// An effect without which the model simulates so many times better has been taken for another.
 const WORSE: f64 = 1.5;
-/// Deviations by which the last fit tells some value of an effect from none, at least: in the plants made anew all effects
-/// that were there did so by 6.4 or more, and eight of fourteen that were not by less.
+/// Deviations by which the last fit tells some value of an effect from none, at least: in 110 plants made anew all effects
+/// that were there did so by 6.4 or more.
 const SURE: f64 = 5.5;
 
 impl Search {
@@ -50,14 +50,15 @@ impl Search {
     }
 
     /// By how many deviations the last fit tells an effect's values from none: the surest of them, for one through which an
-    /// effect is stiff (what flows over an edge) may be anything large.
+    /// effect is stiff (what flows over an edge) may be anything large. The parameters count as known: what a tolerance
+    /// might also be (a loss in proportion to speed and a smaller displacement) lies beyond it, or the fit without would do.
     fn sureness(&self, problem: &Problem<'_>, i: usize) -> f64 {
         if problem.hypotheses[self.accepted[i].chosen.hypothesis].family == "parameter" {
             return f64::INFINITY;
         }
         let sure = |place: &usize| {
             let prior = self.last.priors.iter().position(|p| p.parameter == *place);
-            let deviation = prior.map_or(0.0, |k| self.last.deviation(k));
+            let deviation = prior.map_or(0.0, |k| self.last.deviation_knowing(k, problem.tolerances.len()));
             let value = self.last.setting.theta[*place].abs();
             if deviation > 0.0 { value / deviation } else { f64::INFINITY }
         };
