@@ -374,11 +374,12 @@ impl Search {
         let returned = self.last.prior_cost(count) - best.fit.prior_cost(count);
         let h = &problem.hypotheses[best.accepted.chosen.hypothesis];
         // a parameter that is let go always returns from its bound, and acts at all times; so does what has no point at
-        // which it begins; a second effect at the place of another may mend that one's form only
+        // which it begins (a time is none); a second effect at the place of another may mend that one's form only
         let site = |a: &Accepted| &problem.hypotheses[a.chosen.hypothesis].attachments[0].site;
         let again = self.accepted.iter().any(|a| site(a).is_at(&h.attachments[0].site));
         let returns = h.family != "parameter" && !again && returned > 0.5 * gain;
-        let seldom = returns || !again && !h.shapes.is_empty() && rare(&best.fit, &self.last, gain);
+        let begins = h.shapes.iter().any(|s| s.unit != "s");
+        let seldom = returns || !again && begins && rare(&best.fit, &self.last, gain);
         let t = vuong(&best.fit.blocks, &self.last.blocks);
         // blocks are long against most colours: where they agree so well it does not matter how few samples count
         gain >= CLAIMED && (t > CONSISTENT || seldom)
