@@ -49,6 +49,8 @@ const CERTAIN: f64 = 5.0;
 /// Gain from which an effect may be one that acts rarely, nats; and how much more it must win than lose.
 const RARE: f64 = 20.0;
 const RARE_RATIO: f64 = 4.0;
+/// Part of the blocks that gain where nearly every one does: by chance half of them do.
+const EVERYWHERE: f64 = 0.9;
 /// Part of the gain of an accepted effect that a further one of its family or at its place must reach: less is a form
 /// other than the library's, not another cause.
 const FORM: f64 = 0.25;
@@ -381,8 +383,10 @@ impl Search {
         let begins = h.shapes.iter().any(|s| s.unit != "s");
         let seldom = returns || !again && begins && rare(&best.fit, &self.last, gain);
         let t = vuong(&best.fit.blocks, &self.last.blocks);
+        // where one block gains more than all others together the mean is as unsure as that one is rare
+        let steady = || t > CONSISTENT || everywhere(&best.fit, &self.last);
         // blocks are long against most colours: where they agree so well it does not matter how few samples count
-        gain >= CLAIMED && (t > CONSISTENT || seldom)
+        gain >= CLAIMED && (seldom || steady())
             || gain > 0.0 && t > CERTAIN && won_and_lost(&best.fit, &self.last).0 > RARE
     }
 
@@ -527,6 +531,12 @@ fn certainly_worse(fit: &Fit, best: &Fit) -> bool {
 fn rare(with: &Fit, without: &Fit, gain: f64) -> bool {
     let (won, lost) = won_and_lost(with, without);
     gain > RARE && won > RARE_RATIO * lost
+}
+
+/// Whether nearly every block gains.
+fn everywhere(with: &Fit, without: &Fit) -> bool {
+    let gained = with.blocks.iter().zip(&without.blocks).filter(|(a, b)| a > b).count();
+    gained as f64 > EVERYWHERE * with.blocks.len() as f64
 }
 
 /// Log likelihood won in the blocks that gain, and lost in the others, not scaled.
