@@ -361,6 +361,24 @@ fn shifted(world: &MemoryWorld, column: usize, samples: isize, seed: u64) -> Str
     rows.into_iter().map(|r| r.join(",") + "\n").collect()
 }
 
+/// A spring that is not the same in two recordings is known no better than they agree.
+#[test]
+fn recordings_that_contradict_each_other_widen_the_deviations() {
+    let deviation = |c: f64| {
+        let mut world = MemoryWorld::single("Slide.mo", MODEL);
+        let [train, held] = [11, 12].map(|seed| recording(&world, ("rub.F", 0.0), seed));
+        let second = recorded(&world, &[("rub.F", 0.0), ("spring.c", c)], 13);
+        world.add("second.csv", second);
+        let held_of = "[[recordings]]\nfile = \"held.csv\"";
+        let study = STUDY
+            .replace(held_of, &(held_of.replace("held", "second") + "\nrole = \"train\"\ntime = \"t\"\n" + held_of));
+        let verdict = verdict(world, &study, train, held);
+        verdict.drifts.iter().find(|d| d.parameter == "spring.c").expect("free").std
+    };
+    let (alike, apart) = (deviation(400.0), deviation(404.0));
+    assert!(apart > 2.0 * alike && apart > 0.5, "{alike} {apart}");
+}
+
 /// From where they are not, a lag and a dead time look alike.
 #[test]
 fn a_dead_time_is_no_lag() {

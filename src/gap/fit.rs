@@ -6,7 +6,7 @@ use super::evidence::{self, Free};
 use super::filter::{self, Pass, Setting, Source, Tape};
 use super::levels;
 use super::problem::{Assembled, Problem};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 /// Iterations at most of a fit that counts.
@@ -76,6 +76,8 @@ pub struct Fit {
     pub blocks: Vec<f64>,
     /// Covariance of the fitted parameters, in the order of the priors.
     pub covariance: DMatrix<f64>,
+    /// Factor of variances by which the recordings contradict that, where it was asked for; 1 otherwise.
+    pub dispersed: f64,
     /// Effective share of independent samples.
     pub share: f64,
     /// Whitened innovations by recording.
@@ -237,6 +239,7 @@ pub fn fit(
         likelihood,
         blocks: found.iter().flat_map(|p| p.blocks.iter().copied()).collect(),
         covariance: local.covariance,
+        dispersed: 1.0,
         share,
         cuts: found.iter().map(|p| p.cut.clone()).collect(),
         white: found.into_iter().map(|p| p.white).collect(),
@@ -312,6 +315,34 @@ impl Fit {
         0.5 * self.priors.iter().take(count).map(square).sum::<f64>()
     }
 
+    /// By how much more the recordings pull the parameters apart than their errors would if so large a share of the samples
+    /// were independent, as a factor of variances, 1 at least. Source: McCullagh, Nelder, Generalized Linear Models, 1989,
+    /// ch. 4.5 and 9 (overdispersion), with a recording for a cluster.
+    pub fn dispersion(&self, train: &[Recording], share: f64) -> f64 {
+        self.pulls(train, share).filter(|factor| factor.is_finite()).map_or(1.0, |factor| factor.max(1.0))
+    }
+
+    fn pulls(&self, train: &[Recording], share: f64) -> Option<f64> {
+        let mut setting = self.setting.clone();
+        setting.columns = self.priors.iter().map(|p| p.parameter).collect();
+        setting.common = setting.columns.len();
+        let free = free(&setting, &self.priors);
+        let (n, count) = (free.len(), train.len() as f64);
+        let (mut pull, mut expected) = (0.0, 0.0);
+        for pass in passes(&setting, train, usize::MAX, Tape::Nothing)? {
+            let own = DMatrix::from_fn(n, n, |i, j| share * free[i].sigma * pass.gram[(i, j)] * free[j].sigma);
+            let slope = DVector::from_fn(n, |i, _| {
+                share * free[i].sigma * pass.gram[(i, n)] + free[i].mean / free[i].sigma / count
+            });
+            // what the priors hold is not pulled
+            let inverse = (&own + DMatrix::identity(n, n) / count).try_inverse()?;
+            pull += slope.dot(&(&inverse * &slope));
+            expected += (inverse * own).trace();
+        }
+        // together they pull nowhere at the optimum
+        (train.len() > 1 && expected > 0.0).then(|| pull / (expected * (1.0 - 1.0 / count)))
+    }
+
     /// Standard deviation of a fitted parameter if the first `known` were known: what the data alone leave open.
     pub fn deviation_knowing(&self, i: usize, known: usize) -> f64 {
         let among = self.covariance.view((0, 0), (known, known)).into_owned();
@@ -320,9 +351,9 @@ impl Fit {
         (self.covariance[(i, i)] - explained).max(0.0).sqrt()
     }
 
-    /// Standard deviation of a fitted parameter by its place in the priors.
+    /// Standard deviation of a fitted parameter by its place in the priors, as wide as the recordings pull it apart.
     pub fn deviation(&self, i: usize) -> f64 {
-        self.covariance[(i, i)].max(0.0).sqrt()
+        (self.dispersed * self.covariance[(i, i)]).max(0.0).sqrt()
     }
 }
 

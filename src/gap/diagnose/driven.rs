@@ -179,28 +179,32 @@ fn errors(fit: &Fit) -> (Vec<f64>, Vec<Colour>) {
 pub(super) fn simulating(problem: &Problem<'_>, fit: Fit) -> Fit {
     let (train, noise) = (&problem.train, &fit.setting.noise);
     let before = held::gap_of(problem, &fit.setting, train, noise);
+    let dispersed = |fit: Fit| Fit { dispersed: fit.dispersion(train, fit.share), ..fit };
     if !before.is_plain(noise, &problem.full_scale) {
-        return fit;
+        return dispersed(fit);
     }
     let mut silent = fit.setting.clone();
     silent.sources = silent.sources_times(SILENT);
     for ((noise, gap), scale) in silent.noise.iter_mut().zip(&before.signals).zip(&problem.full_scale) {
         *noise = noise.max(gap * scale);
     }
-    let fitted_to = |train: &[Recording]| {
-        let found = fitted(train, silent.clone(), &fit.priors, Some(1.0))?;
-        let covariance = &found.covariance / found.own_share();
-        let setting = Setting { theta: found.setting.theta, ..fit.setting.clone() };
-        Some(Fit { setting, covariance, ..fit.clone() })
+    let fitted_to = |train: &[Recording]| fitted(train, silent.clone(), &fit.priors, Some(1.0));
+    let Some(course) = fitted_to(train) else { return dispersed(fit) };
+    let share = course.own_share();
+    let found = Fit {
+        covariance: &course.covariance / share,
+        dispersed: course.dispersion(train, share),
+        setting: Setting { theta: course.setting.theta.clone(), ..fit.setting.clone() },
+        ..fit.clone()
     };
-    let Some(found) = fitted_to(train) else { return fit };
     let others = |k: usize| {
-        let others = if train.len() > 1 { fitted_to(&without(train, k))? } else { found.clone() };
-        held::simulate_all(&others.setting, train).swap_remove(k)
+        let theta =
+            if train.len() > 1 { fitted_to(&without(train, k))?.setting.theta } else { course.setting.theta.clone() };
+        held::simulate_all(&Setting { theta, ..fit.setting.clone() }, train).swap_remove(k)
     };
     let runs: Vec<Option<Residuals>> = (0..train.len()).into_par_iter().map(others).collect();
     let after = held::gap(&runs, train, noise, &problem.full_scale);
-    if after.total < (1.0 - BETTER) * before.total { found } else { fit }
+    if after.total < (1.0 - BETTER) * before.total { found } else { dispersed(fit) }
 }
 
 /// The recordings, of one of them only the samples that tell where it begins.
