@@ -48,6 +48,9 @@ enum Emit {
 }
 
 pub(super) fn run(args: &CheckArgs, messages: &mut Messages) -> Result<Ending, Failure> {
+    if let Some(file) = &args.output_file {
+        super::files::ending(std::path::Path::new(file), "this", endings(args.emit))?;
+    }
     let experiment = args.model.experiment(None, messages)?;
     // The network can be looked at even when the equations do not fit together.
     if let Some(emit @ (Emit::Network | Emit::Svg | Emit::Flat)) = args.emit {
@@ -77,6 +80,15 @@ fn write_early(args: &CheckArgs, emit: Emit, flattened: &Flattened) -> Result<()
             super::files::write(std::path::Path::new(file), &pixels)
         }
         _ => write(args, &text),
+    }
+}
+
+/// What the file's name may end in.
+fn endings(emit: Option<Emit>) -> &'static [&'static str] {
+    match emit {
+        Some(Emit::Svg) => &["svg", "png"],
+        Some(Emit::Flat) => &["txt", "mo"],
+        Some(Emit::Network | Emit::Dae | Emit::Blt) | None => &["txt"],
     }
 }
 

@@ -168,6 +168,21 @@ pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     file.finish()
 }
 
+/// What a file's name asks for: its ending in lower case, which must be one of those that `what` can be written as. The
+/// first of them for stdout (`-`), devices, pipes and names without an ending.
+pub(super) fn ending(path: &Path, what: &str, known: &[&'static str]) -> Result<&'static str, Failure> {
+    let device = path.exists() && !path.is_file() && !path.is_dir();
+    let Some(asked) = path.extension().filter(|_| !device) else { return Ok(known[0]) };
+    let asked = asked.to_string_lossy().to_lowercase();
+    known.iter().find(|k| **k == asked).copied().ok_or_else(|| {
+        let all: Vec<String> = known.iter().map(|k| format!(".{k}")).collect();
+        let (last, others) = all.split_last().expect("an output has a format");
+        let list = if others.is_empty() { last.clone() } else { format!("{} or {last}", others.join(", ")) };
+        let text = format!("{what} is written as {list}, not as `{}`", path.display());
+        Diagnostic::new(Code::BadArgument, text).help(format!("give the file a name that ends in {list}")).into()
+    })
+}
+
 /// Says before the work what would be found out only after it: a folder that is missing or cannot be written to. A `-`
 /// is stdout, and a pipe is opened once only, for whoever reads takes its closing for the end.
 pub(super) fn ready(path: &Path) -> Result<(), Failure> {
@@ -200,6 +215,15 @@ mod tests {
         write(&path, b"whole").unwrap();
         assert_eq!(std::fs::read(&path).unwrap(), b"whole");
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn an_ending_says_what_a_file_holds() {
+        let of = |name: &str| ending(Path::new(name), "a table", &["csv", "json"]);
+        assert_eq!(of("a.JSON").unwrap(), "json");
+        assert_eq!([of("-").unwrap(), of("table").unwrap(), of("a.b/table").unwrap()], ["csv"; 3]);
+        let message = of("a.xlsx").unwrap_err().diagnostics.remove(0).message;
+        assert_eq!(message, "a table is written as .csv or .json, not as `a.xlsx`");
     }
 
     #[test]

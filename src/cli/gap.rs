@@ -62,8 +62,15 @@ pub(super) fn run(args: &GapArgs, messages: &mut Messages) -> Result<Ending, Fai
         files::print(&listed(&messages.value(Checked::new(all, warnings))?))?;
         return Ok(Ending::Fine);
     }
-    let files = [Some(&args.output), args.write_model.as_ref(), args.report.as_ref()];
-    files.into_iter().flatten().map(Path::new).try_for_each(files::ready)?;
+    let outputs = [
+        (Some(&args.output), "a verdict", "json"),
+        (args.write_model.as_ref(), "a model", "mo"),
+        (args.report.as_ref(), "a report", "html"),
+    ];
+    for (path, what, known) in outputs.into_iter().filter_map(|(p, what, known)| Some((Path::new(p?), what, known))) {
+        files::ending(path, what, &[known])?;
+        files::ready(path)?;
+    }
     if args.plan { weigh_plan(args, &study, messages) } else { diagnose(args, &study, messages) }
 }
 

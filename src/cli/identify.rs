@@ -78,6 +78,7 @@ impl MethodArg {
 
 pub(super) fn run(args: &IdentifyArgs, messages: &mut Messages) -> Result<Ending, Failure> {
     // what cannot be written is told before the fit, which may take long
+    files::ending(Path::new(&args.output), "a report", &["json"])?;
     files::ready(Path::new(&args.output))?;
     args.plot.as_deref().map_or(Ok(()), plot::ready)?;
     let mut opened = open(&args.study, args.data.as_deref(), messages)?;

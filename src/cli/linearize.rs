@@ -53,7 +53,7 @@ pub(super) struct LinearizeArgs {
     /// Values of a scheduling quantity, in its unit or with one: `p=1e6,2e6` or `n_p=200:1000:5` (from, to, count)
     #[arg(long, value_name = "NAME=VALUES")]
     grid: Vec<String>,
-    /// Where to write: .json, .csv, .mat or .mo; `-` for JSON on stdout
+    /// Where to write: .json, .csv, .mat or .mo, with --schedule .json or .csv; `-` for JSON on stdout
     #[arg(short, long, value_name = "FILE")]
     output_file: Option<String>,
     /// A picture of the frequency responses: .svg, .png or .html
@@ -105,7 +105,9 @@ fn fits(args: &LinearizeArgs) -> Result<(), Failure> {
     }
     let pictures = args.bode.iter().chain(&args.poles);
     pictures.map(PathBuf::as_path).try_for_each(plot::ready)?;
-    args.output_file.as_deref().map_or(Ok(()), |path| files::ready(Path::new(path)))
+    let Some(path) = &args.output_file else { return Ok(()) };
+    if args.schedule.is_empty() { linear_ending(path)? } else { quasi_linear_ending(path)? };
+    files::ready(Path::new(path))
 }
 
 fn list(flags: &[String]) -> Vec<String> {
@@ -145,17 +147,20 @@ fn linear_model(args: &LinearizeArgs, model: &Model, messages: &Messages) -> Res
     Ok(Ending::Fine)
 }
 
+fn linear_ending(path: &str) -> Result<&'static str, Failure> {
+    files::ending(Path::new(path), "a linear model", &["json", "csv", "mat", "mo"])
+}
+
+fn quasi_linear_ending(path: &str) -> Result<&'static str, Failure> {
+    files::ending(Path::new(path), "a quasi-linear form", &["json", "csv"])
+}
+
 fn write(linear: &StateSpace, path: &str, messages: &Messages) -> Result<(), Failure> {
-    let extension = Path::new(path).extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-    match extension.as_str() {
+    match linear_ending(path)? {
         "csv" => write_text(path, &linear::csv(linear))?,
         "mo" => write_text(path, &linear::modelica(linear, &plot::stem(Path::new(path))))?,
         "mat" => files::write(Path::new(path), &linear::mat(linear))?,
-        _ if path == "-" || extension == "json" => write_text(path, &pretty(&linear.json()))?,
-        _ => {
-            let text = format!("a linear model is written as .json, .csv, .mat or .mo, not as `{path}`");
-            return Err(Failure::new(Code::BadArgument, text));
-        }
+        _ => write_text(path, &pretty(&linear.json()))?,
     }
     if path != "-" {
         messages.remark(&format!("wrote {path}"));
@@ -289,10 +294,9 @@ fn quasi_linear(args: &LinearizeArgs, model: &Model, messages: &Messages) -> Res
         files::print(&words)?;
         return Ok(Ending::Fine);
     };
-    if Path::new(path).extension().is_some_and(|e| e.eq_ignore_ascii_case("csv")) {
-        write_text(path, &found.csv())?;
-    } else {
-        write_text(path, &pretty(&found.json()))?;
+    match quasi_linear_ending(path)? {
+        "csv" => write_text(path, &found.csv())?,
+        _ => write_text(path, &pretty(&found.json()))?,
     }
     messages.remark(words.trim_end());
     Ok(Ending::Fine)

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use super::Failure;
 use super::checkpoint::Written;
-use super::files::{NewFile, access, print};
+use super::files::{NewFile, access, ending, print};
 use crate::diag::{Code, Diagnostic};
 use crate::results::parquet::ParquetWriter;
 use crate::results::{CsvWriter, Signal, Trajectory, csv_bytes_per_row, mat};
@@ -33,14 +33,17 @@ impl Target {
     /// The format follows from the file's name.
     pub fn new(name: &str) -> Result<Target, Failure> {
         let path = PathBuf::from(name);
-        let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-        match extension.as_str() {
-            _ if name == "-" => Ok(Target::Stdout),
+        if name == "-" {
+            return Ok(Target::Stdout);
+        }
+        if path.extension().is_some_and(|e| ["html", "svg", "png"].iter().any(|p| e.eq_ignore_ascii_case(p))) {
+            return Err(Diagnostic::new(Code::BadArgument, format!("`{name}` is no result file"))
+                .help("a picture is written by `--plot`, or by `bramah plot` afterwards")
+                .into());
+        }
+        match ending(&path, "a result", &["csv", "mat", "parquet"])? {
             "mat" => Ok(Target::Mat(path)),
             "parquet" => Ok(Target::Parquet(path)),
-            "html" | "svg" | "png" => Err(Diagnostic::new(Code::BadArgument, format!("`{name}` is no result file"))
-                .help("a picture is written by `--plot`, or by `bramah plot` afterwards")
-                .into()),
             _ => Ok(Target::Csv(path)),
         }
     }

@@ -8,7 +8,7 @@ use super::Failure;
 use super::files::access;
 use super::messages::Messages;
 use crate::diag::{Code, Diagnostic};
-use crate::experiment::{self, Experiment, Hold, InputMap, duration, seconds, tolerance};
+use crate::experiment::{self, Experiment, Hold, InputMap, duration, event_rows, seconds, tolerance};
 use crate::results::glob::split_list;
 
 /// What to compile: shared by `check` and `simulate`.
@@ -43,6 +43,9 @@ pub(super) struct RunArgs {
     /// Time between two rows of the result
     #[arg(long, value_name = "TIME", value_parser = duration, allow_hyphen_values = true)]
     output_interval: Option<f64>,
+    /// Rows at events (two each): `all`, `none`, or how many at most [default: 100000]
+    #[arg(long, value_name = "NUMBER|all|none", value_parser = event_rows)]
+    event_rows: Option<u64>,
     /// Relative tolerance; the absolute one is this times a variable's nominal value
     #[arg(long, value_name = "NUMBER", value_parser = tolerance)]
     relative_tolerance: Option<f64>,
@@ -114,6 +117,7 @@ impl RunArgs {
             start_time: self.start_time,
             stop_time: self.stop_time,
             output_interval: self.output_interval,
+            event_rows: self.event_rows,
             relative_tolerance: self.relative_tolerance,
             variables: self.variables.clone(),
             output_file: self.output_file.clone(),

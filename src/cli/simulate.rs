@@ -129,7 +129,10 @@ fn settings(experiment: &Experiment, annotation: &flat::Experiment, recorded: &R
         interval: experiment.output_interval.or(annotation.interval),
         tolerance: experiment.relative_tolerance.or(annotation.tolerance),
     };
-    let settings = Settings::from_experiment(&said);
+    let mut settings = Settings::from_experiment(&said);
+    if let Some(most) = experiment.event_rows {
+        (settings.event_rows, settings.most_event_rows) = (most > 0, most);
+    }
     if settings.stop_time < settings.start_time {
         let text = format!(
             "the stop time {} s lies before the start time {} s",

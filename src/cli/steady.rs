@@ -69,7 +69,10 @@ pub(super) fn run(args: &SteadyArgs, messages: &mut Messages) -> Result<Ending, 
         }
         files::ready(path)?;
     }
-    args.output_file.as_deref().map_or(Ok(()), files::ready)?;
+    if let Some(path) = &args.output_file {
+        files::ending(path, "a table", &["csv"])?;
+        files::ready(path)?;
+    }
     let experiment = args.model.experiment(None, messages)?;
     let model = model::compile(&experiment, messages)?;
     if args.transient {

@@ -72,6 +72,9 @@ fn part(text: &str) -> Result<(usize, usize), String> {
 }
 
 pub(super) fn run(args: &SweepArgs, messages: &mut Messages) -> Result<Ending, Failure> {
+    if let Some(path) = &args.output_file {
+        files::ending(path, "a table of runs", &["csv", "parquet"])?;
+    }
     if args.merge {
         return merge(args, messages);
     }

@@ -113,6 +113,7 @@ codes! {
     BadData = "E601", Error, "a data file cannot be used";
     BadExperiment = "E602", Error, "an experiment file cannot be used";
     LargeResult = "N603", Note, "the result will be large";
+    EventsThinned = "N610", Note, "not every event has rows";
     BadStudy = "E604", Error, "a study cannot be used";
     StuckSignal = "W605", Warning, "a recorded column never changes";
     BadCheckpoint = "E606", Error, "a run cannot go on from a checkpoint";

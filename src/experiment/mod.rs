@@ -37,6 +37,8 @@ pub struct Experiment {
     pub stop_time: Option<f64>,
     /// Seconds between output rows.
     pub output_interval: Option<f64>,
+    /// Event rows at most: 0 for none, `u64::MAX` for all.
+    pub event_rows: Option<u64>,
     /// Relative tolerance of the integration.
     pub relative_tolerance: Option<f64>,
     /// Patterns of variables to write.
@@ -81,6 +83,7 @@ impl Experiment {
             start_time: self.start_time.or(other.start_time),
             stop_time: self.stop_time.or(other.stop_time),
             output_interval: self.output_interval.or(other.output_interval),
+            event_rows: self.event_rows.or(other.event_rows),
             relative_tolerance: self.relative_tolerance.or(other.relative_tolerance),
             variables: or(self.variables, other.variables),
             output_file: self.output_file.or(other.output_file),
@@ -109,6 +112,21 @@ pub fn seconds(text: &str) -> Result<f64, String> {
         Some(unit) => unit.convert(value, &second),
     };
     time.filter(|t| t.is_finite()).ok_or_else(|| format!("`{text}` is no time; write `2`, `2 s` or `500 ms`"))
+}
+
+/// How many event rows a result may have: `all`, `none` or a number.
+///
+/// # Errors
+/// A sentence saying what is expected.
+pub fn event_rows(text: &str) -> Result<u64, String> {
+    match text.trim() {
+        "all" => Ok(u64::MAX),
+        "none" => Ok(0),
+        number => match number.parse::<f64>() {
+            Ok(n) if n >= 0.0 && n.fract() == 0.0 => Ok(n as u64),
+            _ => Err(format!("`{text}` is no number of rows; write `all`, `none` or a number such as `100000`")),
+        },
+    }
 }
 
 /// A length of time in seconds, written like [`seconds`].

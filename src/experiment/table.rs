@@ -5,7 +5,7 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::{Experiment, Hold, InputMap, duration, seconds, tolerance};
+use super::{Experiment, Hold, InputMap, duration, event_rows, seconds, tolerance};
 use crate::diag::{Checked, Code, Diagnostic, FileId, Sources, Span, nearest};
 use crate::results::glob;
 
@@ -17,6 +17,7 @@ const KEYS: &[&str] = &[
     "start-time",
     "stop-time",
     "output-interval",
+    "event-rows",
     "relative-tolerance",
     "variables",
     "output-file",
@@ -90,6 +91,7 @@ impl Reader {
             "start-time" => self.experiment.start_time = self.number(key, value, seconds),
             "stop-time" => self.experiment.stop_time = self.number(key, value, seconds),
             "output-interval" => self.experiment.output_interval = self.number(key, value, duration),
+            "event-rows" => self.experiment.event_rows = self.number(key, value, event_rows),
             "relative-tolerance" => self.experiment.relative_tolerance = self.number(key, value, tolerance),
             "variables" => self.experiment.variables = self.list(key, value),
             "output-file" => self.experiment.output_file = self.text(key, value),
@@ -132,7 +134,7 @@ impl Reader {
     }
 
     /// A number, or a text that `read` understands.
-    fn number(&mut self, key: &str, value: &Value<'_>, read: fn(&str) -> Result<f64, String>) -> Option<f64> {
+    fn number<T>(&mut self, key: &str, value: &Value<'_>, read: fn(&str) -> Result<T, String>) -> Option<T> {
         let text = match value.get_ref() {
             DeValue::Integer(_) | DeValue::Float(_) | DeValue::String(_) => scalar(value.get_ref())?,
             _ => {

@@ -81,6 +81,8 @@ pub fn instantiate<'a, 'l>(library: &'l mut Library<'a>, request: &ModelRequest)
         diagnostics: Vec::new(),
         templates: FxHashMap::default(),
         packages: FxHashMap::default(),
+        bare: FxHashMap::default(),
+        gathering: Vec::new(),
         dynamic_packages: Vec::new(),
         array_values: FxHashMap::default(),
         inner_declared: FxHashMap::default(),

@@ -56,10 +56,15 @@ impl<'a> Instance<'a, '_> {
         view: View,
         span: Span,
     ) -> Option<Option<Val>> {
-        if function.parts.len() != 1 || function.global {
+        if function.parts.len() != 1 {
             return None;
         }
-        let name = function.parts[0].name.name.as_str();
+        let first = function.parts[0].name.name;
+        // `.sin(u)`: a built-in function, unless a class of the top level bears its name
+        if function.global && self.library.top(first).is_some() {
+            return None;
+        }
+        let name = first.as_str();
         if UNSUPPORTED.contains(&name) {
             self.unsupported_function(span, name);
             return Some(None);

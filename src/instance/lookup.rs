@@ -7,7 +7,7 @@ use crate::diag::{Code, Diagnostic, Span};
 use crate::resolve::ClassId;
 use crate::syntax::ast::{self, ClassBody, Import};
 use crate::syntax::symbol::Symbol;
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
 use std::rc::Rc;
 
 /// The types that need no declaration.
@@ -189,7 +189,12 @@ impl<'a> Instance<'a, '_> {
     /// A member of something found: a class in a package, a constant, an inherited class.
     pub fn member(&mut self, found: &Found<'a>, name: Symbol) -> Option<Found<'a>> {
         let Found::Class(class) = found else { return None };
-        let scope = self.package(class);
+        let scope = if self.gathering.contains(&(class.class, class.parent)) {
+            // `package P extends P.Icons.Package`: what P inherits is not known yet, what is written in it is.
+            self.bare_scope(class.class, class.parent)
+        } else {
+            self.package(class)
+        };
         let template = self.scope(scope).template.clone();
         if let Some(&i) = template.by_name.get(&name) {
             return Some(self.found(scope, &template, i));
@@ -249,20 +254,14 @@ impl<'a> Instance<'a, '_> {
 
     /// A scope that knows only the classes and imports written in a class itself.
     fn bare_scope(&mut self, class: ClassId, parent: View) -> ScopeId {
+        if let Some(&scope) = self.bare.get(&(class, parent)) {
+            return scope;
+        }
         let ast = self.library.class(class);
-        let ClassBody::Long(body) = &ast.body else { unreachable!("the caller checked") };
-        let mut base = Base {
-            class,
-            ast,
-            parent,
-            names: FxHashSet::default(),
-            imports: Vec::new(),
-            short: false,
-            broken_connects: Vec::new(),
-            broken_components: Vec::new(),
-        };
+        let mut base = Base::of(class, ast, parent);
         let mut elements = Vec::new();
-        for e in &body.elements {
+        let written = if let ClassBody::Long(body) = &ast.body { body.elements.as_slice() } else { &[] };
+        for e in written {
             match &e.kind {
                 ast::ElementKind::Import(i) => base.imports.push(i),
                 ast::ElementKind::Class(c) if !c.prefixes.redeclare => {
@@ -294,7 +293,9 @@ impl<'a> Instance<'a, '_> {
             broken: false,
         };
         let name = self.library.full_name(class);
-        self.new_scope(Rc::new(template), name, Rc::from([]), None, ast.name.span)
+        let scope = self.new_scope(Rc::new(template), name, Rc::from([]), None, ast.name.span);
+        self.bare.insert((class, parent), scope);
+        scope
     }
 
     pub(super) fn new_scope(

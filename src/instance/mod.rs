@@ -213,6 +213,10 @@ pub struct Instance<'a, 'l> {
     pub diagnostics: Vec<Diagnostic>,
     templates: FxHashMap<(ClassId, View), Rc<Template<'a>>>,
     packages: FxHashMap<(ClassId, View), ScopeId>,
+    /// Classes as they are written, without what they inherit: where their bases are looked up.
+    bare: FxHashMap<(ClassId, View), ScopeId>,
+    /// Classes whose bases are being looked up, innermost last.
+    gathering: Vec<(ClassId, View)>,
     dynamic_packages: Vec<(ClassRef<'a>, ScopeId)>,
     array_values: FxHashMap<(*const ast::Expr, View, bool), Val>,
     inner_declared: FxHashMap<(ScopeId, Symbol), NodeId>,

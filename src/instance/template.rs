@@ -53,6 +53,22 @@ pub struct Base<'a> {
     pub broken_components: Vec<Symbol>,
 }
 
+impl<'a> Base<'a> {
+    /// A class before its elements are known.
+    pub(super) fn of(class: ClassId, ast: &'a ast::Class, parent: View) -> Self {
+        Base {
+            class,
+            ast,
+            parent,
+            names: FxHashSet::default(),
+            imports: Vec::new(),
+            short: !matches!(ast.body, ClassBody::Long(_)),
+            broken_connects: Vec::new(),
+            broken_components: Vec::new(),
+        }
+    }
+}
+
 /// One element.
 pub struct Element<'a> {
     /// Its name.
@@ -98,7 +114,7 @@ pub enum What<'a> {
     Class(&'a ast::Class),
 }
 
-/// The longest chain of `extends`.
+/// The longest chain of `extends`, and the most classes whose bases are being looked up inside each other.
 const DEEPEST: usize = 100;
 
 impl<'a> Instance<'a, '_> {
@@ -120,28 +136,45 @@ impl<'a> Instance<'a, '_> {
             kind: ast.kind,
             broken: false,
         };
-        self.gather(&mut t, class, parent, &mut Vec::new());
+        if self.gathering.len() < DEEPEST {
+            self.gathering.push((class, parent));
+            self.gather(&mut t, class, parent, &mut Vec::new());
+            self.gathering.pop();
+        } else {
+            self.endless_lookup(class);
+            t.broken = true;
+            t.bases.push(Base::of(class, ast, parent));
+        }
         let t = Rc::new(t);
         self.templates.insert((class, parent), t.clone());
         t
+    }
+
+    /// A base class whose own lookup asks for further bases without end.
+    fn endless_lookup(&mut self, class: ClassId) {
+        let mut circle: Vec<String> = Vec::new();
+        for &(c, _) in self.gathering.iter().rev() {
+            let name = self.library.full_name(c);
+            if circle.contains(&name) {
+                break;
+            }
+            circle.push(name);
+        }
+        circle.reverse();
+        let (span, name) = (self.library.class(class).name.span, self.library.full_name(class));
+        self.report(
+            Diagnostic::new(Code::CyclicExtends, format!("the base classes of `{name}` need each other to be found"))
+                .at(span, "found again while its own bases are being looked up")
+                .class(name)
+                .help(format!("these look for their bases inside each other: {}", circle.join(", "))),
+        );
     }
 
     /// Adds a class and what it extends to the template; returns the index of its base.
     fn gather(&mut self, t: &mut Template<'a>, class: ClassId, parent: View, chain: &mut Vec<ClassId>) -> u32 {
         let ast = self.library.class(class);
         let base = u32::try_from(t.bases.len()).expect("fewer than 2^32 bases");
-        let short = !matches!(ast.body, ClassBody::Long(_));
-        let (names, imports) = (FxHashSet::default(), Vec::new());
-        t.bases.push(Base {
-            class,
-            ast,
-            parent,
-            names,
-            imports,
-            short,
-            broken_connects: Vec::new(),
-            broken_components: Vec::new(),
-        });
+        t.bases.push(Base::of(class, ast, parent));
         if chain.contains(&class) || chain.len() > DEEPEST {
             let name = self.library.full_name(class);
             self.report(

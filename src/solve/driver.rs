@@ -257,7 +257,9 @@ fn prepare<'a, 'c>(
         slots: settings.wanted.iter().map(|&v| system.layout.var(v)).collect(),
         row: vec![0.0; settings.wanted.len() * (1 + directions)],
         silent: grid.is_some(),
-        grid: grid.unwrap_or_else(|| Grid::new(start, settings.stop_time, settings.interval)),
+        grid: grid.unwrap_or_else(|| {
+            Grid::new(start, settings.stop_time, settings.interval).with_event_rows(settings.most_event_rows)
+        }),
         choice: None,
         creep: 0,
         renewed: f64::NEG_INFINITY,
@@ -320,6 +322,7 @@ impl<'a> Driver<'a, '_> {
             }
         };
         self.count_work();
+        self.note_thinned();
         let run = Run {
             end,
             time: self.t,

@@ -113,7 +113,8 @@ pub fn resume(
     if let Some(choice) = &from.choice {
         course.states.choose(choice, control);
     }
-    let grid = output::Grid::after(settings.start_time, settings.stop_time, settings.interval, from.rows);
+    let grid = output::Grid::after(settings.start_time, settings.stop_time, settings.interval, from.rows)
+        .with_event_rows(settings.most_event_rows);
     let mut leg = course.leg(driver::From::Switch(&from.state, grid), sink, control);
     leg.run.statistics.add(&from.statistics);
     course.complete(leg, sink, control)

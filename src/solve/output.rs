@@ -70,6 +70,10 @@ pub struct Grid {
     /// is the number nearest to its decimal notation, 0.3 and not 0.30000000000000004.
     decimal: Option<Decimal>,
     next: u64,
+    /// Events since the last row of the grid, how many of an interval have rows, and whether some had none.
+    events: u64,
+    recorded: u64,
+    thinned: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -97,7 +101,28 @@ impl Grid {
     /// Standing at the first row.
     pub fn new(start: f64, stop: f64, interval: f64) -> Self {
         let interval = if interval > 0.0 { interval } else { f64::INFINITY };
-        Grid { start, stop, interval, decimal: Decimal::new(start, interval), next: 0 }
+        let decimal = Decimal::new(start, interval);
+        Grid { start, stop, interval, decimal, next: 0, events: 0, recorded: u64::MAX, thinned: false }
+    }
+
+    /// With so many event rows in all at most, in equal parts for each interval of the grid.
+    pub fn with_event_rows(mut self, most: u64) -> Self {
+        let intervals = ((self.stop - self.start) / self.interval).ceil().max(1.0);
+        self.recorded = ((most / 2) as f64 / intervals) as u64;
+        self
+    }
+
+    /// Counts an event, and says whether it has rows.
+    pub fn records_event(&mut self) -> bool {
+        self.events += 1;
+        let recorded = self.events <= self.recorded;
+        self.thinned |= !recorded;
+        recorded
+    }
+
+    /// How many events of an interval have rows, where some interval had more.
+    pub fn thinned(&self) -> Option<u64> {
+        self.thinned.then_some(self.recorded)
     }
 
     /// Standing behind some rows.
@@ -134,6 +159,7 @@ impl Grid {
                 return;
             }
             self.next += 1;
+            self.events = 0;
         }
     }
 }
@@ -149,6 +175,23 @@ mod tests {
             grid.pass(grid.next());
         }
         times
+    }
+
+    #[test]
+    fn of_each_interval_the_first_events_have_rows() {
+        let mut grid = Grid::new(0.0, 1.0, 0.5).with_event_rows(8);
+        let mut recorded = |times: &[f64]| {
+            let mut one = |&t: &f64| {
+                let records = grid.records_event();
+                grid.pass(t);
+                records
+            };
+            times.iter().map(&mut one).filter(|r| *r).count()
+        };
+        assert_eq!(recorded(&[0.1, 0.2, 0.3, 0.4]), 2);
+        assert_eq!(recorded(&[0.5, 0.6, 0.7]), 2);
+        assert_eq!(grid.thinned(), Some(2));
+        assert_eq!(Grid::new(0.0, 1.0, 0.0).with_event_rows(100).recorded, 50);
     }
 
     #[test]

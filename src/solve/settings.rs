@@ -5,6 +5,9 @@ use super::modes::same_time;
 use crate::expr::VarId;
 use crate::flat::Experiment;
 
+/// Event rows that a run has at most unless it is asked for more: some tens of megabytes with thirty variables.
+pub const MOST_EVENT_ROWS: u64 = 100_000;
+
 /// How to run. Times in seconds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
@@ -24,6 +27,8 @@ pub struct Settings {
     pub wanted: Vec<VarId>,
     /// Two rows of equal time, before and after, at each event.
     pub event_rows: bool,
+    /// Event rows at most, in equal parts for each interval of the grid: what chatters fills no disk.
+    pub most_event_rows: u64,
     /// How many events may happen in a billionth of the run before it counts as chattering.
     pub events_at_once: u32,
     /// Distance of checkpoints, at which the integrator begins afresh; infinite for none.
@@ -43,6 +48,7 @@ impl Default for Settings {
             parameters: Vec::new(),
             wanted: Vec::new(),
             event_rows: true,
+            most_event_rows: MOST_EVENT_ROWS,
             events_at_once: 200,
             checkpoint_every: f64::INFINITY,
             tangents: None,

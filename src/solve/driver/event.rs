@@ -1,7 +1,7 @@
 //! What happens at an event: causes, iteration, assertions, and how the integrator goes on.
 
 use super::{Cause, Driver, Flow, Stop};
-use crate::diag::Code;
+use crate::diag::{Code, Diagnostic};
 use crate::lower::Layout;
 use crate::solve::events::{EventFailure, Outcome};
 use crate::solve::ida::Failure;
@@ -104,7 +104,8 @@ impl<'a> Driver<'a, '_> {
                 driver.tangents_before(model, cause, &y)?;
                 model.observe(t, &y, &yp);
             }
-            if driver.settings.event_rows {
+            let recorded = driver.settings.event_rows && driver.grid.records_event();
+            if recorded {
                 driver.tangent_cells(model);
                 driver.write_row(model)?;
             }
@@ -115,7 +116,7 @@ impl<'a> Driver<'a, '_> {
             driver.restart.gather(driver.system, &model.values);
             driver.remember_event(model, cause, &outcome, &before);
             driver.tangents_after(model, &outcome, ready)?;
-            if driver.settings.event_rows || same_time(driver.grid.next(), t) {
+            if recorded || same_time(driver.grid.next(), t) {
                 driver.tangent_cells(model);
                 driver.write_row(model)?;
             }
@@ -130,6 +131,17 @@ impl<'a> Driver<'a, '_> {
             }
         }
         self.look_outside()
+    }
+
+    /// Says that not every event has rows.
+    pub(super) fn note_thinned(&mut self) {
+        let Some(recorded) = self.grid.thinned() else { return };
+        let text = format!("not every event has rows: of each output interval the first {recorded} have");
+        self.diagnostics.push(
+            Diagnostic::new(Code::EventsThinned, text)
+                .note("events follow each other so closely that their rows would fill the disk")
+                .help("`--event-rows all` records every event, `--event-rows none` only the rows of the grid"),
+        );
     }
 
     /// Notes which root functions have crossed.

@@ -127,7 +127,8 @@ impl Parser<'_> {
             return Err(self.unexpected_with("`=` or `(`", Some(help)));
         }
         let modification = self.modification()?;
-        if modification.is_none() && !matches!(self.kind(), TokenKind::String | TokenKind::RightParen) {
+        let ends = matches!(self.kind(), TokenKind::String | TokenKind::Comma | TokenKind::RightParen);
+        if modification.is_none() && !ends {
             return Err(self.unexpected("`=` or `(`"));
         }
         Ok(ArgumentKind::Modify { path, modification, description: self.description() })
