@@ -183,6 +183,54 @@ proptest! {
     }
 }
 
+/// Packages that extend, import and redeclare each other at random: whatever their names mean, looking them up ends.
+fn entangled(choices: &[u8]) -> String {
+    let mut choices = choices.iter().copied();
+    let mut next = |below: u8| choices.next().unwrap_or(0) % below;
+    let mut open: Vec<char> = Vec::new();
+    let mut text = String::from("package T\n");
+    for _ in 0..40 {
+        let name = |n: u8| char::from(b'A' + n);
+        let mut path = |next: &mut dyn FnMut(u8) -> u8| -> String {
+            let parts: Vec<String> = (0..=next(3)).map(|_| name(next(4)).to_string()).collect();
+            parts.join(".")
+        };
+        let redeclared = |p: &str, n: char, on: u8| if on == 0 { format!("(redeclare package {n} = {p})") } else { String::new() };
+        let (kind, n, m) = (next(8), name(next(4)), name(next(4)));
+        let (a, b) = (path(&mut next), path(&mut next));
+        let on = next(2);
+        text += &match kind {
+            0 | 1 if open.len() < 3 => {
+                open.push(n);
+                format!("package {n}\n")
+            }
+            2 => open.pop().map_or(String::new(), |n| format!("end {n};\n")),
+            3 => format!("replaceable package {n} = {a}{};\n", redeclared(&b, m, on)),
+            4 => format!("import {a}.*;\n"),
+            5 => format!("model {n} {a} x; end {n};\n"),
+            6 => format!("import {n} = {a};\n"),
+            _ => format!("extends {a}{};\n", redeclared(&b, m, on)),
+        };
+    }
+    while let Some(n) = open.pop() {
+        text += &format!("end {n};\n");
+    }
+    text + "model M extends A; B y; Real x = 1; end M;\nend T;\n"
+}
+
+proptest! {
+    #[test]
+    fn entangled_packages_end(choices in prop::collection::vec(any::<u8>(), 200..400)) {
+        let text = entangled(&choices);
+        let world = MemoryWorld::single("model.mo", &text);
+        let request = Request { source: "model.mo".into(), model: Some("T.M".into()), ..Request::default() };
+        let ended = std::panic::catch_unwind(|| bramah::flatten(&world, &request).diagnostics.len());
+        if ended.is_err() {
+            return Err(TestCaseError::fail(format!("panics:\n{text}")));
+        }
+    }
+}
+
 fn model(body: &str) -> String {
     format!("model M {body} end M;")
 }

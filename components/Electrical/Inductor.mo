@@ -1,6 +1,6 @@
 within Electrical;
 model Inductor "Inductor"
-  extends Bases.OnePort(i(start = i_start, fixed = true));
+  extends Bases.OnePort(i(start = i_start));
   parameter SI.Inductance L(min = 1e-9, max = 1e6, nominal = 1e-3) = 1e-3 "Inductance";
   parameter SI.Current i_start = 0 "Current at the start";
 equation

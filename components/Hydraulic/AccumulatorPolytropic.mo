@@ -10,7 +10,7 @@ model AccumulatorPolytropic "Bladder accumulator, polytropic gas"
   parameter Real V_min(unit = "1", min = 0.001, max = 0.5) = 0.02 "Oil left when empty, over V_0";
   parameter Real w_stop(unit = "1", min = 1e-4, max = 0.1) = 0.01 "Rounding of the empty stop, over V_0";
   parameter Real V_full(unit = "1", min = 0.001, max = 0.5) = 0.02 "Gas left when full, over V_0";
-  SI.Pressure p(start = p_start, fixed = true, nominal = 1e6, stateSelect = StateSelect.prefer) "Pressure of the oil";
+  SI.Pressure p(start = p_start, nominal = 1e6, stateSelect = StateSelect.prefer) "Pressure of the oil";
   SI.Volume V_gas(nominal = 1e-3) "Volume of the gas";
   SI.Volume V_oil(nominal = 1e-3) "Volume of the oil";
   SI.Mass mass(nominal = 1) "Mass of the oil";

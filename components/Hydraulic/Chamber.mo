@@ -11,7 +11,7 @@ model Chamber "Chamber of a cylinder: oil behind a moving piston"
   parameter SI.Pressure p_ambient(nominal = 1e5) = 101325 "Pressure on the other side of the piston, absolute";
   parameter SI.Pressure p_start(nominal = 1e6) = 101325 "Pressure at the start";
   replaceable model Air = EntrainedAir.Frozen constrainedby EntrainedAir.Law "What becomes of the air in the oil";
-  SI.Pressure p(start = p_start, fixed = true, nominal = 1e6, stateSelect = StateSelect.prefer) "Pressure";
+  SI.Pressure p(start = p_start, nominal = 1e6, stateSelect = StateSelect.prefer) "Pressure";
   SI.Volume V(nominal = 1e-4) "Volume";
   SI.Mass mass(nominal = 0.1) "Mass of the oil";
   Air air(p = p, V = max(V, V_min), supply = noEvent(max(oil.density(p)*port.q, 0))*(oil.x_u - air.x)) "Air in the oil";

@@ -15,8 +15,8 @@ model Line "Pipe or hose of n cells: inertia of the oil, laminar and turbulent f
   parameter SI.Pressure p_b_start(nominal = 1e6) = p_start "Pressure at the start, at port b";
   parameter SI.MassFlowRate m_flow_start(nominal = 0.1) = 0 "Mass flow at the start";
   replaceable model Air = EntrainedAir.Frozen constrainedby EntrainedAir.Law "What becomes of the air in the oil";
-  SI.Pressure p[N](start = {p_start + (p_b_start - p_start)*x[i] for i in 1:N}, each fixed = true, each nominal = 1e6) "Pressures of the cells";
-  SI.MassFlowRate m_flow[M](each start = m_flow_start, each fixed = true, each nominal = 0.1) "Mass flows between the cells, from a to b";
+  SI.Pressure p[N](start = {p_start + (p_b_start - p_start)*x[i] for i in 1:N}, each nominal = 1e6) "Pressures of the cells";
+  SI.MassFlowRate m_flow[M](each start = m_flow_start, each nominal = 0.1) "Mass flows between the cells, from a to b";
   SI.Mass mass(nominal = 1) "Mass of the oil";
   Air air[N](p = p, V = V_p, supply = supply) "Air in the cells";
   Friction friction[M](L = share*L, each d = d) "Friction between the cells";

@@ -36,7 +36,7 @@ model PistonMachine "Axial piston machine, chamber by chamber: port timing, comp
   SI.AngularVelocity w(nominal = 100) "Speed of the shaft";
   SI.Pressure dp(nominal = 1e6) "Pressure of A above B";
   SI.VolumeFlowRate Q_A(nominal = 1e-4) "Volume flow out of port A";
-  SI.Pressure p[z](each start = p_start, each fixed = true, each nominal = 1e6) "Pressures of the chambers";
+  SI.Pressure p[z](each start = p_start, each nominal = 1e6) "Pressures of the chambers";
   SI.Volume V[z](each nominal = 1e-7) "Volumes of the chambers";
   SI.VolumeFlowRate q_a[z](each nominal = 1e-5) "Flows from the chambers to port A, at mean density";
   SI.VolumeFlowRate q_b[z](each nominal = 1e-5) "Flows from port B to the chambers, at mean density";

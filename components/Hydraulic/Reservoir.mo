@@ -9,7 +9,7 @@ model Reservoir "Reservoir with a level: open, or closed with a cushion of gas"
   parameter Boolean closed = false "true: closed, with gas above the oil" annotation(Evaluate = true);
   parameter SI.Pressure p_gas(min = 1e3, max = 1e7, nominal = 1e5) = 101325 "Pressure above the oil; closed: at the start";
   parameter Real n_g(unit = "1", min = 1, max = 1.67) = 1.2 "Polytropic exponent of the gas";
-  SI.Height h(start = h_start, fixed = true, nominal = 0.1) "Level";
+  SI.Height h(start = h_start, nominal = 0.1) "Level";
   SI.Pressure p(nominal = 1e5) "Pressure above the oil";
   SI.Mass mass(nominal = 100) "Mass of the oil";
 protected

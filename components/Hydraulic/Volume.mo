@@ -6,7 +6,7 @@ model Volume "Oil in a rigid or compliant volume"
   parameter SI.BulkModulus beta_wall(min = 1e6, nominal = 1e9) = Modelica.Constants.inf "Modulus of the wall: 0.5 to 1 GPa for hoses, infinite for tubes";
   parameter SI.Pressure p_start(nominal = 1e6) = 101325 "Pressure at the start";
   replaceable model Air = EntrainedAir.Frozen constrainedby EntrainedAir.Law "What becomes of the air in the oil";
-  SI.Pressure p(start = p_start, fixed = true, nominal = 1e6, stateSelect = StateSelect.prefer) "Pressure";
+  SI.Pressure p(start = p_start, nominal = 1e6, stateSelect = StateSelect.prefer) "Pressure";
   SI.Mass mass(nominal = 1) "Mass of the oil";
   Air air(p = p, V = V_p, supply = noEvent(max(oil.density(p)*port.q, 0))*(oil.x_u - air.x)) "Air in the oil";
 protected
@@ -22,7 +22,7 @@ equation
   annotation(Documentation(info = "<html>
 <p>Balance of mass, <code>d(rho V_p)/dt = rho q</code>, written for the pressure: <code>(V_p/beta + V/beta_wall) dp/dt = q</code>. With the wall,
 <code>V_p = V (1 + (p - p_0)/beta_wall)</code>. Any number of lines may be joined to the port. Two volumes joined without a restriction become one by index
-reduction; give only one of them a fixed start.</p>
+reduction; the start that the circuit gives one of them counts for both.</p>
 <p>The air in the oil is frozen; <code>redeclare model Air = EntrainedAir.Dissolving</code> lets it dissolve and come out of solution with time.</p>
 <p>Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, section 3.10.</p></html>"));
 end Volume;

@@ -6,7 +6,7 @@ model OilMass "Heat storage of the oil of a circuit with its tank, cooled by the
   parameter SI.ThermalConductance G(min = 0, max = 1e6, nominal = 10) = 12.5 "Heat transfer to the surroundings";
   parameter SI.Temperature T_ambient(min = 220, max = 420) = 293.15 "Temperature of the surroundings";
   parameter SI.Temperature T_start(min = 220, max = 420) = T_ambient "Temperature at the start";
-  SI.Temperature T_oil(start = T_start, fixed = true, nominal = 300) "Temperature of the oil";
+  SI.Temperature T_oil(start = T_start, nominal = 300) "Temperature of the oil";
 equation
   assert(C > 0 and G >= 0, "The heat capacity C must be positive, G not negative");
   C*der(T_oil) = port.Q_flow - G*(T_oil - T_ambient);

@@ -4,12 +4,12 @@ use super::census::Census;
 use super::equations::Walker;
 use super::numbers::Numbers;
 use super::{
-    Equation, Experiment, FlatModel, InstanceInfo, Origin, OriginKind, StateSelect, Type, Variability, Variable,
+    Confidence, Equation, Experiment, FlatModel, InstanceInfo, Origin, OriginKind, StateSelect, Type, Variability, Variable,
 };
 use super::{balance, discrete, equations, ports};
 use crate::diag::{Checked, Code, Diagnostic};
-use crate::expr::{ExprId, Exprs};
-use crate::instance::{Instance, ScopeId};
+use crate::expr::{ExprId, Exprs, VarId};
+use crate::instance::{ElementState, Instance, Node, ScopeId, View};
 use crate::network::{Network, component_scopes};
 use crate::syntax::ast::{self, ArgumentKind, ClassBody, Modification};
 use crate::syntax::symbol::Symbol;
@@ -107,6 +107,7 @@ fn attributes(instance: &mut Instance<'_, '_>, i: u32, v: &mut Variable) {
             "fixed" => {
                 if let Some(x) = instance.known_attribute(i, name, &b, Type::Boolean) {
                     v.fixed = x != 0.0;
+                    v.confidence.free = x == 0.0;
                 }
             }
             "unbounded" => {
@@ -129,7 +130,11 @@ fn attributes(instance: &mut Instance<'_, '_>, i: u32, v: &mut Variable) {
                     continue;
                 }
                 match name.as_str() {
-                    "start" => v.start = e,
+                    "start" => {
+                        v.start = e;
+                        let (depth, reach) = given(instance, i, b.view.scope, e);
+                        v.confidence = Confidence { depth, reach, ..v.confidence };
+                    }
                     "min" => v.min = e,
                     "max" => v.max = e,
                     _ => v.nominal = e,
@@ -138,6 +143,50 @@ fn attributes(instance: &mut Instance<'_, '_>, i: u32, v: &mut Variable) {
             _ => {}
         }
     }
+}
+
+/// How far out a start value was given, and how far that reaches in: where it is written, or further out where one of the
+/// parameters in it is.
+fn given(instance: &Instance<'_, '_>, variable: u32, written: ScopeId, start: Option<ExprId>) -> (u32, i32) {
+    let mut least = depth(instance, written);
+    for parameter in start.into_iter().flat_map(|e| instance.exprs.variables(e)) {
+        let mut next = Some(parameter);
+        // parameters in a circle have a message of their own, but this must end in any case
+        for _ in 0..LONGEST_CHAIN {
+            let Some(p) = next else { break };
+            let Some(b) = &instance.variable(p).binding else { break };
+            let (view, expr) = (b.view, b.expr);
+            least = least.min(depth(instance, view.scope));
+            next = lone_parameter(instance, view, expr);
+        }
+    }
+    let own = depth(instance, instance.variables[variable as usize].scope);
+    (least, i32::try_from(least).unwrap_or(i32::MAX).saturating_sub(i32::try_from(own).unwrap_or(i32::MAX)))
+}
+
+/// Parameters bound to each other in a chain are followed so far.
+const LONGEST_CHAIN: usize = 30;
+
+/// The parameter that a binding consists of.
+fn lone_parameter(instance: &Instance<'_, '_>, view: View, expr: &ast::Expr) -> Option<VarId> {
+    let ast::ExprKind::Reference(r) = &expr.kind else { return None };
+    let [part] = r.parts.as_slice() else { return None };
+    let scope = instance.scope(view.scope);
+    let &index = scope.template.by_name.get(&part.name.name)?;
+    let ElementState::Node(node) = scope.elements[index as usize] else { return None };
+    let Node::Var(v) = instance.node(node) else { return None };
+    Some(instance.variables[*v as usize].id)
+}
+
+/// Components around the elements of a scope; more than any for those of packages.
+fn depth(instance: &Instance<'_, '_>, mut scope: ScopeId) -> u32 {
+    let mut depth = 0;
+    while scope != instance.root {
+        let Some(owner) = instance.scope(scope).owner else { return u32::MAX };
+        scope = owner;
+        depth += 1;
+    }
+    depth
 }
 
 /// Bindings of parameters stay with the variable; bindings of other variables are equations.

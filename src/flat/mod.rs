@@ -163,6 +163,8 @@ pub struct Variable {
     pub binding: Option<ExprId>,
     /// `start`: a parameter expression. `None` when not given (0 or `false`, first literal).
     pub start: Option<ExprId>,
+    /// How much `start` counts beside the starts of others, where not all can hold.
+    pub confidence: Confidence,
     /// `fixed`: the start value holds at the beginning of the run (for parameters: false means found at initialization).
     pub fixed: bool,
     /// `min`
@@ -183,7 +185,44 @@ pub struct Variable {
     pub origin: Origin,
 }
 
+/// Who gave a start value that is not `fixed`: of two for one quantity the one given further outside counts (the
+/// confidence numbers of MLS 8.6.2), and of two given equally far outside the one that reaches further in. Less is more
+/// confident.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Confidence {
+    /// `fixed = false` was written: the start of any other goes first.
+    pub free: bool,
+    /// Components around the place where the value was written; 0 in the model itself.
+    pub depth: u32,
+    /// Components from there in to the variable's own class, as a negative number.
+    pub reach: i32,
+}
+
+impl Confidence {
+    /// Whether the model itself says how one of its components starts.
+    pub fn is_said(&self) -> bool {
+        !self.free && self.depth == 0 && self.reach < 0
+    }
+
+    /// Whether it is the start of a component: by its class, or as the model says.
+    pub fn is_of_component(&self) -> bool {
+        self.depth != u32::MAX && (self.depth > 0 || self.reach < 0)
+    }
+}
+
+impl Default for Confidence {
+    /// Of a variable without a start.
+    fn default() -> Self {
+        Confidence { free: false, depth: u32::MAX, reach: 0 }
+    }
+}
+
 impl Variable {
+    /// Whether its start is a condition: `fixed`, or said by the model of one of its components.
+    pub fn start_is_said(&self) -> bool {
+        self.fixed || self.start.is_some() && self.confidence.is_said()
+    }
+
     /// A variable of which nothing is said but this: no attributes, visible, not fixed.
     pub fn plain(name: impl Into<String>, ty: Type, variability: Variability, origin: Origin) -> Self {
         Variable {
@@ -196,6 +235,7 @@ impl Variable {
             hidden: false,
             binding: None,
             start: None,
+            confidence: Confidence::default(),
             fixed: false,
             min: None,
             max: None,

@@ -369,15 +369,16 @@ fn merge(draft: &mut Draft, known: &mut parameters::Known, alias: Alias, diagnos
     let start = from.start.map(|e| if alias.negated { draft.exprs.neg(e) } else { e });
     draft.when_assigned[alias.target.index()] |= draft.when_assigned[alias.variable.index()];
     let target = &draft.variables[alias.target.index()];
-    if from.fixed && target.fixed {
+    if from.start_is_said() && target.start_is_said() {
         compare_starts(draft, known, alias, start, diagnostics);
     }
     let target = &mut draft.variables[alias.target.index()];
     if from.fixed && !target.fixed {
         target.start = start;
         target.fixed = true;
-    } else if target.start.is_none() && !target.fixed {
+    } else if !target.fixed && start.is_some() && (target.start.is_none() || from.confidence < target.confidence) {
         target.start = start;
+        target.confidence = from.confidence;
     }
     if target.nominal.is_none() {
         target.nominal = from.nominal;

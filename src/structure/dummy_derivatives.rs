@@ -147,7 +147,7 @@ type Ranked = (Wish, u32);
 struct Wish {
     select: StateSelect,
     asked: bool,
-    fixed: bool,
+    said: bool,
     given: bool,
 }
 
@@ -164,7 +164,7 @@ fn candidates(draft: &Draft, reduction: &Reduction, rows: &[&Row], preferred: &S
             StateSelect::Avoid | StateSelect::Default | StateSelect::Prefer if asked => StateSelect::Prefer,
             other => other,
         };
-        Wish { select, asked, fixed: attributes.fixed, given: attributes.start.is_some() }
+        Wish { select, asked, said: attributes.start_is_said(), given: attributes.start.is_some() }
     };
     let mut ranked: Vec<Ranked> = columns.into_iter().map(|c| (wish(c), c)).collect();
     ranked.sort_unstable();

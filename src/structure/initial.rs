@@ -40,6 +40,7 @@ pub(super) fn assemble(draft: &mut Draft, model: &Model) -> Start {
     assembly.fixed_starts(draft, model);
     assembly.discrete_defaults(draft);
     assembly.choose_starts(draft, model);
+    assembly.check_said_starts(draft, model);
     assembly.finish(draft)
 }
 
@@ -256,17 +257,34 @@ impl Assembly {
         }
     }
 
+    /// What the model says of its components holds for a variable that another one took the place of as state, too.
+    fn check_said_starts(&mut self, draft: &mut Draft, model: &Model) {
+        for &v in model.demoted {
+            let variable = &draft.variables[v.index()];
+            if variable.fixed || !variable.start_is_said() || self.chosen.contains(&v) {
+                continue;
+            }
+            let row = self.push_start(draft, v);
+            let SystemRow { equation, index, .. } = self.rows[row as usize];
+            let difference = draft.exprs.sub(equation.lhs, equation.rhs);
+            self.checks.push((difference, index));
+        }
+    }
+
+    /// States and what was differentiated before others: those with the more confident start, then those that would
+    /// rather be states.
     fn start_candidates(&self, draft: &Draft, model: &Model) -> Vec<VarId> {
-        let mut found: Vec<VarId> = Vec::new();
-        let mut states = model.states.to_vec();
-        let wish = |v: VarId| {
-            let v = &draft.variables[v.index()];
-            (v.state_select, v.start.is_some())
-        };
-        states.sort_by_key(|&v| std::cmp::Reverse(wish(v)));
-        found.extend(states);
         let is_state = |v: &VarId| model.states.binary_search(v).is_ok();
-        let mut others: Vec<VarId> = draft.with_role(Role::Continuous).into_iter().filter(|v| !is_state(v)).collect();
+        let is_differentiated = |v: &VarId| is_state(v) || model.demoted.binary_search(v).is_ok();
+        let wish = |v: VarId| {
+            let variable = &draft.variables[v.index()];
+            (variable.state_select, variable.start.is_some())
+        };
+        let by_wish = |v: &VarId| (draft.variables[v.index()].confidence, !is_state(v), std::cmp::Reverse(wish(*v)));
+        let mut found: Vec<VarId> = model.states.iter().chain(model.demoted).copied().collect();
+        found.sort_by_key(by_wish);
+        let mut others: Vec<VarId> =
+            draft.with_role(Role::Continuous).into_iter().filter(|v| !is_differentiated(v)).collect();
         others.sort_by_key(|&v| std::cmp::Reverse(wish(v)));
         found.extend(others);
         found.extend(draft.with_role(Role::FreeParameter));
@@ -302,8 +320,11 @@ impl Assembly {
             system.matching.join(system.rows.len() as u32 - 1, column);
         }
         let mut diagnostics = self.diagnostics;
-        if diagnostics.is_empty() && !self.chosen.is_empty() {
-            diagnostics.push(messages::chosen_starts(draft, &self.chosen));
+        // what a component's class says of its start needs no words
+        let unsaid: Vec<VarId> =
+            self.chosen.iter().copied().filter(|v| !draft.variables[v.index()].confidence.is_of_component()).collect();
+        if diagnostics.is_empty() && !unsaid.is_empty() {
+            diagnostics.push(messages::chosen_starts(draft, &unsaid));
         }
         Start { system, chosen: self.chosen, checks: self.checks, diagnostics }
     }

@@ -43,7 +43,8 @@ pub(super) fn contradicting_aliases(draft: &Draft, known: &mut Known, alias: Ali
     let mut said = |v: VarId| {
         let behind = starts::parameter_behind(&draft.exprs, &draft.variables, v);
         let behind = behind.map_or(String::new(), |p| format!(" by `{p}`"));
-        format!("{} starts at {}{behind}, fixed", name(draft, v), value(v))
+        let fixed = if draft.variables[v.index()].fixed { ", fixed" } else { "" };
+        format!("{} starts at {}{behind}{fixed}", name(draft, v), value(v))
     };
     let (at_a, at_b) = (said(a), said(b));
     let mut made = Diagnostic::new(Code::InitialOver, message);

@@ -1,7 +1,7 @@
 //! E401 at 4: "as by `load(s(fixed = false))`"
 model M
   Hydraulic.Cylinder cylinder(s_start = 0.1);
-  Mechanical.Translational.Mass load(m = 1000);
+  Mechanical.Translational.Mass load(m = 1000, s(start = 0.3));
   Hydraulic.Tank a, b;
   inner Oil.ISOVG46 oil;
   Hydraulic.Orifice way_a, way_b;

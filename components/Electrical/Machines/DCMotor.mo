@@ -6,7 +6,7 @@ model DCMotor "DC motor with permanent magnets"
   parameter SI.Resistance R(min = 1e-6) = 1 "Armature resistance";
   parameter SI.Inductance L(min = 1e-9) = 1e-3 "Armature inductance";
   parameter SI.ElectricalTorqueConstant k(min = 0) = 0.1 "Torque constant";
-  SI.Current i(start = 0, fixed = true) "Current";
+  SI.Current i(start = 0) "Current";
   SI.Torque T_e "Torque";
   SI.AngularVelocity w "Speed";
 equation

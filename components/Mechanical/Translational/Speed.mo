@@ -2,7 +2,7 @@ within Mechanical.Translational;
 model Speed "Moves a flange exactly with the speed of a signal"
   Interfaces.TranslationalFlange flange "Flange";
   Interfaces.RealInput v_ref(unit = "m/s") "Speed";
-  SI.Position s(nominal = 1e-2, start = 0, fixed = true) "Position";
+  SI.Position s(nominal = 1e-2, start = 0) "Position";
   SI.Velocity v(nominal = 0.1) "Speed";
 equation
   flange.s = s;

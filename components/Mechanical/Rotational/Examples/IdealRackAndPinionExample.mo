@@ -3,7 +3,7 @@ model IdealRackAndPinionExample "A motor moves a carriage"
   ConstantTorque drive(tau_constant = 1);
   Inertia mass(J = 1e-3);
   IdealRackAndPinion rack(ratio = 100);
-  Mechanical.Translational.Mass carriage(m = 10, s(fixed = false), v(fixed = false));
+  Mechanical.Translational.Mass carriage(m = 10);
 equation
   connect(drive.flange, mass.flange_a);
   connect(mass.flange_b, rack.flangeR);

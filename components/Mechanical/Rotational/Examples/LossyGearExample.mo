@@ -4,7 +4,7 @@ model LossyGearExample "A load behind a gear"
   Torque drive;
   Inertia mass(J = 0.1);
   LossyGear gear(ratio = 3, eta = 0.9);
-  Inertia load(J = 1, phi(fixed = false), w(fixed = false));
+  Inertia load(J = 1);
   Fixed housing;
   Damper friction(d = 0.5);
 equation

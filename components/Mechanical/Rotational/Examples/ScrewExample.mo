@@ -4,7 +4,7 @@ model ScrewExample "A spindle lifts a load and lets it down"
   Torque drive;
   Inertia mass(J = 1e-3);
   Screw screw(eta = 0.8);
-  Mechanical.Translational.Mass load(m = 100, s(fixed = false), v(fixed = false));
+  Mechanical.Translational.Mass load(m = 100);
   Mechanical.Translational.Gravity weight(m = 100);
 equation
   connect(sine.y, drive.tau);

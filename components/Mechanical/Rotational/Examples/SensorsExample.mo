@@ -8,7 +8,7 @@ model SensorsExample "Sensors on one shaft"
   PositionSensor position;
   SpeedSensor speed;
   AccelerationSensor acceleration;
-  Inertia load(J = 1, phi(fixed = false), w(fixed = false));
+  Inertia load(J = 1);
 equation
   connect(sine.y, drive.tau);
   connect(drive.flange, mass.flange_a);

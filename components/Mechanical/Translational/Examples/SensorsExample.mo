@@ -8,7 +8,7 @@ model SensorsExample "Sensors on one rod"
   PositionSensor position;
   SpeedSensor speed;
   AccelerationSensor acceleration;
-  Mass load(m = 1, s(fixed = false), v(fixed = false));
+  Mass load(m = 1);
 equation
   connect(sine.y, drive.f);
   connect(drive.flange, mass.flange_a);
