@@ -17,7 +17,7 @@ model System "Pump-controlled cylinder with position loop (paper's Fig. 1): exte
   inner Oil.ServoPumpOil oil(T_0 = Modelica.Units.Conversions.from_degC(theta_oil)) "Oil";
   Signal.SmoothMove reference(amplitude = x_ref - x_start, rising = t_move, holding = t_hold, falling = t_move, offset = x_start, startTime = t_extend) "Reference of position";
   PositionControl control(K_x = K_x, A = cylinder.A_1, D = pump.V/(2*Modelica.Constants.pi)) "11: controller";
-  replaceable ContinuousDrive drive constrainedby Drive "1: servo motor";
+  replaceable FieldOrientedDrive drive constrainedby Drive "1: servo motor, a PMSM with field-oriented current control";
   Mechanical.Rotational.Inertia rotor(J = 1.8e-4) "Inertia of motor and pump";
   replaceable BenchPump pump constrainedby PumpPorts "2: pump";
   Hydraulic.PressureSensor lowPressure "3: low-pressure sensor";
@@ -32,7 +32,7 @@ model System "Pump-controlled cylinder with position loop (paper's Fig. 1): exte
     A_1 = A_1, A_2 = A_2, stroke = 0.18, V_01 = V_A, V_02 = V_B, s_start = x_start,
     p_1_start = max(oil.p_0 + (F_load + A_2*(5e5 - oil.p_0))/A_1, 5e5), p_2_start = max(oil.p_0 + (A_1*(5e5 - oil.p_0) - F_load)/A_2, 5e5)) "9: cylinder";
   Mechanical.Translational.PositionSensor positionSensor "10: displacement sensor";
-  Mechanical.Translational.Mass load(m = m_load, s(start = x_start, fixed = false), v(fixed = false)) "Load";
+  Mechanical.Translational.Mass load(m = m_load) "Load";
   Signal.Ramp loadForce(offset = -F_load, height = F_load + F_return, duration = t_turn, startTime = t_extend + t_move) "Course of the load force";
   Mechanical.Translational.Force force "Load force";
   SI.Position x(nominal = 0.1) "Position of the rod";
@@ -85,5 +85,5 @@ equation
   T_sh = pump.T_sh;
   annotation(
     experiment(StartTime = 0, StopTime = 3, Interval = 0.002, Tolerance = 1e-6),
-    Documentation(info = "<html><p>The load always acts against the motion, as in a press that also lifts its tool out: extending, A is the high side and the accumulator supplies the difference of the areas through 7.2; retracting, B is the high side and A returns the surplus through 7.1, which B holds open.</p><p>The pump moves the rod by 7.6 mm/s at most. The default stroke of 5 mm and its return take 3 s; a farther <code>x_ref</code> takes longer (<code>t_move</code>), so that the stop time must grow with it: <code>t_extend + 2 t_move + t_hold</code> and some tenths.</p></html>"));
+    Documentation(info = "<html><p>The pump is driven by a PMSM with field-oriented current control on an averaged inverter; <code>redeclare ServoPump.ContinuousDrive drive</code> takes an ideal torque source with a lag in its place.</p><p>The load always acts against the motion, as in a press that also lifts its tool out: extending, A is the high side and the accumulator supplies the difference of the areas through 7.2; retracting, B is the high side and A returns the surplus through 7.1, which B holds open.</p><p>The pump moves the rod by 7.6 mm/s at most. The default stroke of 5 mm and its return take 3 s; a farther <code>x_ref</code> takes longer (<code>t_move</code>), so that the stop time must grow with it: <code>t_extend + 2 t_move + t_hold</code> and some tenths.</p></html>"));
 end System;

@@ -16,8 +16,9 @@ use std::fmt;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-/// What went wrong, with the texts that its places point into. Prints as short messages, one a line.
-#[derive(Clone, Debug)]
+/// What went wrong, with the texts that its places point into. Prints as short messages, one a line, in `Debug` too: a
+/// test's `unwrap` shows what a user reads, not the texts of the library.
+#[derive(Clone)]
 pub struct Error {
     /// The diagnostics, errors among them.
     pub diagnostics: Vec<Diagnostic>,
@@ -28,6 +29,12 @@ pub struct Error {
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(render(&self.sources, &self.diagnostics, Format::Short, 120, false).trim_end())
+    }
+}
+
+impl fmt::Debug for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Error(\n{self}\n)")
     }
 }
 

@@ -11,24 +11,30 @@ use crate::diag::{Code, Diagnostic};
 
 const CIRCUIT: &str = include_str!("new/circuit.mo");
 const EXPERIMENT: &str = include_str!("new/experiment.toml");
+const RIG: &str = include_str!("new/rig.mo");
+const STUDY: &str = include_str!("new/study.toml");
 
-/// Begin a new circuit: a commented model and an experiment file
+/// Begin a new circuit: a commented model and an experiment file, or a study of recordings
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
   bramah new press         writes press/Press.mo and press/press.toml
-  cd press && bramah simulate press.toml")]
+  cd press && bramah simulate press.toml
+  bramah new rig --study   writes rig/Rig.mo and rig/rig.toml: a nominal model and a study for your recordings")]
 pub(super) struct NewArgs {
     /// The folder to write into; it is made if it does not exist
     #[arg(value_name = "DIR")]
     folder: PathBuf,
+    /// A study for `bramah gap` and `bramah identify`, every line explained, and a nominal model with inputs
+    #[arg(long)]
+    study: bool,
 }
 
 pub(super) fn run(args: &NewArgs, messages: &Messages) -> Result<Ending, Failure> {
     let class = class_name(&args.folder)?;
     let name = class.to_lowercase();
-    let files =
-        [(args.folder.join(format!("{class}.mo")), CIRCUIT), (args.folder.join(format!("{name}.toml")), EXPERIMENT)];
+    let (model, table) = if args.study { (RIG, STUDY) } else { (CIRCUIT, EXPERIMENT) };
+    let files = [(args.folder.join(format!("{class}.mo")), model), (args.folder.join(format!("{name}.toml")), table)];
     for (path, _) in &files {
         if path.exists() {
             let text = format!("`{}` is already there; nothing was written", path.display());
@@ -41,6 +47,13 @@ pub(super) fn run(args: &NewArgs, messages: &Messages) -> Result<Ending, Failure
         messages.remark(&format!("wrote {}", path.display()));
     }
     let folder = args.folder.display();
+    if args.study {
+        messages.remark(&format!(
+            "next:\n  bramah gap {folder}/{name}.toml --list\n  put your recordings beside it, name their columns in \
+             {folder}/{name}.toml, then\n  bramah gap {folder}/{name}.toml --report {folder}/gap.html"
+        ));
+        return Ok(Ending::Fine);
+    }
     messages.remark(&format!(
         "next:\n  bramah check {folder}/{class}.mo\n  bramah simulate {folder}/{name}.toml\n  \
          bramah plot {folder}/{name}.csv -o {folder}/report.html"

@@ -16,6 +16,7 @@ pub mod data;
 pub mod diagnose;
 pub mod effects;
 pub mod evidence;
+pub mod figures;
 pub mod filter;
 pub mod fit;
 pub mod fixed;

@@ -30,6 +30,22 @@ pub const SLOWER: f64 = 4.0;
 /// Noise may be so much above what sixth differences show.
 const MOST_NOISE: f64 = 1.1;
 
+/// The unit in which a signal is spoken of: that of the study's column.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shown {
+    /// The unit; empty where there is none.
+    pub unit: String,
+    /// Differences in SI units times this are differences in the unit.
+    pub factor: f64,
+}
+
+impl Shown {
+    /// A difference in the unit.
+    pub fn value(&self, si: f64) -> f64 {
+        si * self.factor
+    }
+}
+
 /// A parameter that may be off within its tolerance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tolerance {
@@ -67,6 +83,8 @@ pub struct Problem<'a> {
     pub signals: Vec<Signal>,
     /// Full scales of the signals, SI.
     pub full_scale: Vec<f64>,
+    /// In which units the signals are spoken of.
+    pub shown: Vec<Shown>,
     /// Noise that the samples show, SI: an upper bound where signals move fast.
     pub noise_floor: Vec<f64>,
     /// Parameters with their tolerances.

@@ -3,6 +3,7 @@
 use super::data::Recording;
 use super::held;
 use super::problem::Problem;
+use std::ops::Range;
 
 /// Correlation with the simulation above which a signal is taken for the one that is simulated.
 const ALIKE: f64 = 0.9;
@@ -31,7 +32,11 @@ pub fn gross_errors(problem: &Problem<'_>) -> Vec<Gross> {
         found.extend(stuck(problem, recording, number));
         // from the model's own start: the recording's may be what is wrong
         let Some(simulated) = held::from_start(&setting, recording) else { continue };
-        found.extend(compare(recording, &simulated, number));
+        // what is wrong is so from beginning to end; what the model's start leaves behind is not
+        let half = recording.len() / 2;
+        let [first, second] = [0..half, half..recording.len()].map(|part| compare(recording, &simulated, part, number));
+        let lasts = |g: &&Gross| second.iter().any(|o| o.signal == g.signal && o.error == g.error);
+        found.extend(first.iter().filter(lasts).cloned());
     }
     // an error of the sensor is there in every recording, else it is something else
     let everywhere = |g: &Gross| {
@@ -56,9 +61,9 @@ fn stuck(problem: &Problem<'_>, recording: &Recording, number: usize) -> Vec<Gro
     found
 }
 
-fn compare(recording: &Recording, simulated: &[Vec<f64>], number: usize) -> Vec<Gross> {
+fn compare(recording: &Recording, simulated: &[Vec<f64>], part: Range<usize>, number: usize) -> Vec<Gross> {
     let count = simulated.len();
-    let pair = |i: usize, j: usize| relation(&recording.signals[i], &simulated[j]);
+    let pair = |i: usize, j: usize| relation(&recording.signals[i][part.clone()], &simulated[j][part.clone()]);
     let mut found = Vec::new();
     for i in 0..count {
         let (correlation, slope) = pair(i, i);

@@ -8,9 +8,9 @@ use super::held;
 use super::hypotheses::{Hypothesis, Site};
 use super::locate;
 use super::problem::Problem;
-use super::verdict::{Columns, Effect, Maybe, Side, Verdict};
+use super::verdict::{Columns, Effect, Maybe, Side, SignalGap, Verdict};
 use super::whiteness::{Whiteness, whiteness};
-use super::words::{distance, number, percent, words};
+use super::words::{distance, number, percent, significant, words};
 use crate::compile::flatten;
 use crate::plot::network::{self, Mark};
 use crate::plot::svg::escape;
@@ -52,7 +52,7 @@ fn before(problem: &Problem<'_>, v: &Verdict, left: &[Left]) -> String {
     let mut out: String = words(v).lines().map(line).collect();
     out.push_str(&picture(problem, v));
     out.push_str(&table("Effects", EFFECTS, &effects(v)));
-    out.push_str(&table("Gap in parts of full scale", GAPS, &gaps(v)));
+    out.push_str(&table("Gap: RMS of measured minus simulated, in brackets of the range of these recordings", GAPS, &gaps(v)));
     out.push_str(&table("Parameters against their tolerances", DRIFTS, &drifts(v)));
     out.push_str(&table("Places where model and bench part", PLACES, &places(v)));
     out.push_str(&table("What stays unexplained", UNEXPLAINED, &unexplained(v)));
@@ -88,7 +88,7 @@ const EFFECTS: &[&str] = &[
     "closes last",
     "cannot be told from",
 ];
-const GAPS: &[&str] = &["recordings", "signal", "nominal", "within tolerances", "with effects"];
+const GAPS: &[&str] = &["recordings", "signal", "nominal", "within tolerances", "with effects", "sensor noise"];
 const DRIFTS: &[&str] = &["parameter", "nominal", "fitted", "std", "tolerances"];
 const PLACES: &[&str] = &["place", "kind", "evidence in nats", "share", "the same place"];
 const UNEXPLAINED: &[&str] = &["share of the nominal gap", "place", "shape", "part of the gap's square"];
@@ -149,12 +149,26 @@ fn share(v: Maybe) -> String {
 }
 
 fn gaps(v: &Verdict) -> Vec<Vec<String>> {
-    let row = |which: &str, name: &str, c: &Columns| {
-        vec![which.to_string(), name.to_string(), share(c.nominal), share(c.tolerances), share(c.effects)]
+    let cell = |rms: Maybe, share: Maybe| match (rms, share) {
+        (Some(rms), Some(share)) => format!("{} ({})", significant(rms), percent(share)),
+        _ => "stops early".to_string(),
+    };
+    let signal = |which: &str, name: &str, g: &SignalGap| {
+        let name = if g.unit.is_empty() { escape(name) } else { escape(&format!("{name} in {}", g.unit)) };
+        let cells = [
+            cell(g.rms.nominal, g.of_range.nominal),
+            cell(g.rms.tolerances, g.of_range.tolerances),
+            cell(g.rms.effects, g.of_range.effects),
+            significant(g.noise),
+        ];
+        [vec![which.to_string(), name], cells.to_vec()].concat()
+    };
+    let all = |which: &str, c: &Columns| {
+        let parts = [c.nominal, c.tolerances, c.effects].map(share);
+        [vec![which.to_string(), "<b>all, of full scale</b>".to_string()], parts.to_vec(), vec![String::new()]].concat()
     };
     let rows = |which: &str, side: &Side| -> Vec<Vec<String>> {
-        let signals = side.signals.iter().map(|(n, c)| row(which, &escape(n), c));
-        signals.chain([row(which, "<b>all</b>", &side.total)]).collect()
+        side.signals.iter().map(|(n, g)| signal(which, n, g)).chain([all(which, &side.total)]).collect()
     };
     [rows("held", &v.gap.held), rows("used", &v.gap.train)].concat()
 }

@@ -35,6 +35,10 @@ pub fn advance(out: &mut DMatrix<f64>, m: &DMatrix<f64>, coupled: usize, a: &DMa
         return out.gemm(1.0, m, a, 0.0);
     }
     let rows = m.nrows();
+    // a model without states has nothing to advance
+    if rows == 0 {
+        return;
+    }
     for (to, from) in out.as_mut_slice().chunks_exact_mut(rows).zip(a.as_slice().chunks_exact(rows)) {
         to[..coupled].fill(0.0);
         (coupled..rows).for_each(|i| to[i] = m[(i, i)] * from[i]);

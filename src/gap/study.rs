@@ -5,7 +5,7 @@ use super::circuit::{self, Circuit};
 use super::data::Recording;
 use super::effects::{self, Effect};
 use super::hypotheses::{self, Free, Hypothesis, Signal};
-use super::problem::{Problem, Tolerance};
+use super::problem::{Problem, Shown, Tolerance};
 use super::shapes;
 use crate::analysis::{lift::is_root, noise};
 use crate::diag::{Code, Diagnostic, Sources};
@@ -14,6 +14,7 @@ use crate::flat::{FlatModel, Variability};
 use crate::lower::{Options, lower};
 use crate::solve::Interpolation;
 use crate::study::{Bound, BoundSignal, Knowledge, Role, Study, full_scales};
+use crate::units::Unit;
 use crate::world::World;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -146,6 +147,7 @@ impl Nominal {
             disturbances: Vec::new(),
             noise_floor: vec![1.0; signals.len()],
             full_scale: vec![1.0; signals.len()],
+            shown: self.bound.signals.iter().map(shown).collect(),
             signals,
             tolerances: Vec::new(),
             files: Vec::new(),
@@ -178,6 +180,7 @@ impl Nominal {
         diagnostics.extend(offer.diagnostics);
         let mut disturbances = hypotheses::hypotheses(&offer.circuit, &offer.sources, &signals, &[]);
         disturbances.retain(|d| d.attachments.len() == 1);
+        let shown = bound.signals.iter().map(shown).collect();
         let files = train.iter().map(|r| r.file.clone()).collect();
         let train: Vec<Recording> = train.into_iter().map(|r| recording(&flat, &bound, r)).collect();
         let noise_floor = full_scale.iter().enumerate().map(|(i, scale)| floor(&train, i, *scale)).collect();
@@ -190,6 +193,7 @@ impl Nominal {
             disturbances,
             signals,
             full_scale,
+            shown,
             noise_floor,
             tolerances,
             files,
@@ -245,6 +249,17 @@ fn signals(flat: &FlatModel, bound: &Bound, ranges: &[f64]) -> Vec<Signal> {
     let name = |v: VarId| flat.variables[v.index()].name.clone();
     let signal = |(s, &scale): (&BoundSignal, &f64)| Signal { name: s.name.clone(), variable: name(s.variable), scale };
     bound.signals.iter().zip(ranges).map(signal).collect()
+}
+
+/// The unit of a signal's column: differences are converted, so that the zero of a temperature does not matter.
+fn shown(signal: &BoundSignal) -> Shown {
+    let own = Shown { unit: signal.unit.clone(), factor: 1.0 };
+    let Some(unit) = &signal.entry.unit else { return own };
+    let (Ok(from), Ok(to)) = (Unit::parse(&signal.unit), Unit::parse(unit)) else { return own };
+    match (from.convert(1.0, &to), from.convert(0.0, &to)) {
+        (Some(one), Some(zero)) => Shown { unit: unit.clone(), factor: one - zero },
+        _ => own,
+    }
 }
 
 fn free(tolerances: &[Tolerance]) -> Vec<Free> {

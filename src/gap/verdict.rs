@@ -11,7 +11,8 @@ pub type Maybe = Option<f64>;
 pub struct Verdict {
     /// Version of this layout.
     pub schema: u32,
-    /// The first that holds of `recording_error`, `effects`, `outside_library`, `undecidable`, `nothing_found`.
+    /// The first that holds of `recording_error`, `effects`, `outside_library`, `gap_open`, `undecidable`,
+    /// `nothing_found`. The last is said only where the gap on held recordings is closed.
     pub verdict: &'static str,
     /// Standard deviation of each sensor's noise, SI.
     pub noise: BTreeMap<String, f64>,
@@ -25,7 +26,7 @@ pub struct Verdict {
     pub effects: Vec<Effect>,
     /// Every free parameter.
     pub drifts: Vec<Drift>,
-    /// The gap in parts of full scale.
+    /// The gap, raw.
     pub gap: Gaps,
     /// Part of the held gap that is closed by tolerances and effects.
     pub closed: Maybe,
@@ -33,6 +34,9 @@ pub struct Verdict {
     pub closed_by_effects: Maybe,
     /// What is left.
     pub unexplained: Unexplained,
+    /// Signals at which the last model leaves a gap wider than three times the noise and a quarter of a per cent of the
+    /// range.
+    pub open: Vec<OpenGap>,
     /// What to measure next, where the data cannot tell.
     pub next_experiment: Option<String>,
     /// Time that the diagnosis took.
@@ -153,10 +157,28 @@ pub struct Side {
     /// RMS over the signals.
     pub total: Columns,
     /// Per signal.
-    pub signals: BTreeMap<String, Columns>,
+    pub signals: BTreeMap<String, SignalGap>,
 }
 
-/// The gap of three models.
+/// The gap at one signal: root mean squares of measured minus simulated, from which nothing is subtracted.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct SignalGap {
+    /// In parts of the sensor's full scale.
+    #[serde(flatten)]
+    pub of_full_scale: Columns,
+    /// In parts of the range of these recordings.
+    pub of_range: Columns,
+    /// In the unit.
+    pub rms: Columns,
+    /// The unit of the study's column.
+    pub unit: String,
+    /// How far the signal moves in these recordings, in the unit.
+    pub range: f64,
+    /// Standard deviation of the noise that the samples show, in the unit.
+    pub noise: f64,
+}
+
+/// The gap of three models; nothing where a run stops early.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Columns {
     /// As the study gives it.
@@ -176,6 +198,21 @@ pub struct Unexplained {
     pub place: Option<String>,
     /// What it follows, if anything.
     pub shape: Option<Vec<Term>>,
+}
+
+/// A signal at which the gap stays open.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct OpenGap {
+    /// The signal.
+    pub signal: String,
+    /// RMS that the last model leaves, in the unit; nothing where its run stops early.
+    pub rms: Maybe,
+    /// The same as part of the recordings' range.
+    pub of_range: Maybe,
+    /// The unit of the study's column.
+    pub unit: String,
+    /// Recordings in which it is open, of how many.
+    pub recordings: (usize, usize),
 }
 
 /// A term of the missing through variable.

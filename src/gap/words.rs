@@ -1,6 +1,6 @@
 //! The verdict in words, one screen of them.
 
-use super::verdict::{Effect, Verdict};
+use super::verdict::{Effect, OpenGap, SignalGap, Verdict};
 use std::fmt::Write;
 
 /// What the diagnosis found, for people.
@@ -19,33 +19,11 @@ pub fn words(v: &Verdict) -> String {
     for (i, e) in v.effects.iter().enumerate() {
         text.push_str(&effect(i, e));
     }
-    let place = v.places.first().filter(|p| p.evidence > 8.0).map(|p| format!("`{}` ({})", p.place, p.kind));
-    match (v.verdict, &place) {
-        ("outside_library", Some(p)) => {
-            let _ = writeln!(text, "Something is missing at {p} that none of the known effects explains.");
-        }
-        ("outside_library", None) => text.push_str(
-            "Several times the noise stays open, no place stands out, and none of the known effects explains it.\n",
-        ),
-        ("undecidable", _) => {
-            text.push_str("The recordings cannot tell: effects of usual size would hardly show in them.\n")
-        }
-        ("nothing_found", _) => text.push_str(
-            "Nothing is missing that these recordings could show: what is left is within tolerances and noise.\n",
-        ),
-        _ => {}
-    }
-    let held = &v.gap.held.total;
-    if let (Some(n), Some(t), Some(e)) = (held.nominal, held.tolerances, held.effects) {
-        let _ = writeln!(
-            text,
-            "Gap on recordings that were not used, of full scale: {} nominal, {} with parameters within their tolerances, {} with the effects.",
-            percent(n),
-            percent(t),
-            percent(e)
-        );
-    }
-    if let Some(share) = v.unexplained.share {
+    text.push_str(&found_nothing(v));
+    text.push_str(&gaps(v));
+    if v.open.is_empty() {
+        text.push_str("What is left lies within three times the noise or a quarter of a per cent of the range.\n");
+    } else if let Some(share) = v.unexplained.share {
         let at = v.unexplained.place.as_ref().map(|p| format!(", most of it at `{p}`")).unwrap_or_default();
         let _ = writeln!(text, "Not explained: {} of the nominal gap{at}.", percent(share));
     }
@@ -69,6 +47,83 @@ pub fn words(v: &Verdict) -> String {
         let _ = writeln!(text, "To decide: {next}.");
     }
     text
+}
+
+/// What is said where no effect is named.
+fn found_nothing(v: &Verdict) -> String {
+    let place = v.places.first().filter(|p| p.evidence > 8.0).map(|p| format!("`{}` ({})", p.place, p.kind));
+    match (v.verdict, place) {
+        ("outside_library", Some(p)) => {
+            format!("Something is missing at {p} that none of the known effects explains.\n")
+        }
+        ("outside_library", None) => {
+            "Several times the noise stays open, no place stands out, and none of the known effects explains it.\n".into()
+        }
+        ("gap_open", place) => open(v, place),
+        ("undecidable", _) => "The recordings cannot tell: effects of usual size would hardly show in them.\n".into(),
+        ("nothing_found", _) => {
+            "Nothing is missing that these recordings could show: what is left is within tolerances and noise.\n".into()
+        }
+        _ => String::new(),
+    }
+}
+
+/// How much stays open, where, and whether it repeats.
+fn open(v: &Verdict, place: Option<String>) -> String {
+    let one = |o: &OpenGap| {
+        let size = match (o.rms, o.of_range) {
+            (Some(rms), Some(share)) => {
+                format!("{} ({} of its range)", quantity(rms, &o.unit), percent(share))
+            }
+            _ => "the run stops early".to_string(),
+        };
+        let (some, all) = o.recordings;
+        let recordings = if all == 1 { "recording" } else { "recordings" };
+        format!("`{}`: {size}, in {some} of {all} {recordings}", o.signal)
+    };
+    let signals: Vec<String> = v.open.iter().map(one).collect();
+    let most = place.map_or(String::new(), |p| format!(" The place that explains most of it is {p}."));
+    format!("The gap stays open at {}. No known effect can be named for it.{most}\n", signals.join("; "))
+}
+
+/// Raw gaps, a line a signal.
+fn gaps(v: &Verdict) -> String {
+    let signals = &v.gap.held.signals;
+    if signals.is_empty() {
+        return String::new();
+    }
+    let cell = |rms: Option<f64>, share: Option<f64>| match (rms, share) {
+        (Some(rms), Some(share)) => format!("{} ({})", significant(rms), percent(share)),
+        _ => "stops early".to_string(),
+    };
+    let head = ["", "nominal", "within tolerances", "with effects", "sensor noise"].map(String::from);
+    let row = |(name, g): (&String, &SignalGap)| {
+        [
+            if g.unit.is_empty() { name.clone() } else { format!("{name} in {}", g.unit) },
+            cell(g.rms.nominal, g.of_range.nominal),
+            cell(g.rms.tolerances, g.of_range.tolerances),
+            cell(g.rms.effects, g.of_range.effects),
+            significant(g.noise),
+        ]
+    };
+    let rows: Vec<[String; 5]> = std::iter::once(head).chain(signals.iter().map(row)).collect();
+    let width = |i: usize| rows.iter().map(|r| r[i].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..5).map(width).collect();
+    let line = |r: &[String; 5]| {
+        let cells: Vec<String> = r.iter().zip(&widths).map(|(c, w)| format!("{c:<w$}")).collect();
+        format!("  {}\n", cells.join("  ").trim_end())
+    };
+    let lines: String = rows.iter().map(line).collect();
+    format!("Gap on the held recordings: RMS of measured minus simulated, in brackets of the signal's range there.\n{lines}")
+}
+
+/// Three significant digits.
+pub(super) fn significant(v: f64) -> String {
+    crate::results::number::rounded(v, 3)
+}
+
+fn quantity(v: f64, unit: &str) -> String {
+    format!("{} {unit}", significant(v)).trim_end().to_string()
 }
 
 fn effect(i: usize, e: &Effect) -> String {

@@ -2,7 +2,8 @@
 
 use super::super::data::Recording;
 use super::super::filter::Setting;
-use super::super::held::{self, Gap};
+use super::super::figures::{self, Left, Open};
+use super::super::held;
 use super::super::hypotheses::{Hypothesis, Place, Site};
 use super::super::locate::Located;
 use super::super::problem::{Chosen, Problem, Tolerance};
@@ -32,14 +33,17 @@ impl Conclusion<'_> {
         let problem = self.problem;
         let held = if held.is_empty() { &problem.train[..] } else { held };
         let nominal = self.nominal();
-        let side =
-            |recordings: &[Recording]| [&nominal, &s.base.setting, &s.last.setting].map(|f| self.gap(f, recordings));
-        let (on_held, on_train) = (side(held), side(&problem.train));
-        let [n, t, e] = &on_held;
+        let models = [&nominal, &s.base.setting, &s.last.setting];
+        let on_held = models.map(|f| held::simulate_all(f, held));
+        let left_of_held = on_held.each_ref().map(|runs| Left::new(runs, held));
+        let left_of_train = models.map(|f| Left::new(&held::simulate_all(f, &problem.train), &problem.train));
+        let noise = &s.last.setting.noise;
+        let [n, _, e] = on_held.each_ref().map(|runs| held::gap(runs, held, noise, &problem.full_scale));
         let measurable = n.total > 2.0 * n.error && n.total > 0.0;
-        let closed = measurable.then(|| 1.0 - e.total / n.total);
-        let by_effects = (measurable && t.total > 0.0).then(|| 1.0 - e.total / t.total);
-        let share = measurable.then(|| e.total / n.total);
+        let [nominal_total, tolerated, effects_total] =
+            left_of_held.each_ref().map(|l| l.total(&problem.full_scale).filter(|_| measurable));
+        let share = ratio(effects_total, nominal_total);
+        let open = figures::open(problem, &left_of_held[2], held);
         // a slow error of one sensor is a disturbance whose colour is another: what has a name would have been named
         let physical =
             |l: &&Located| !matches!(problem.disturbances[l.disturbance].attachments[0].site, Site::Sensor(_));
@@ -49,14 +53,13 @@ impl Conclusion<'_> {
         // what several times the noise leaves open is something, even where no place stands out; disturbances that the
         // filter follows as it should leave as much
         let followed = s.base.share > WHITE && s.left.iter().all(|l| l.evidence < NOTICED);
-        let plain = share.is_some_and(|share| share > 0.1)
-            && e.is_plain(&s.last.setting.noise, &problem.full_scale)
-            && !followed;
+        let plain = share.is_some_and(|share| share > 0.1) && e.is_plain(noise, &problem.full_scale) && !followed;
         let outside = s.accepted.is_empty() && (place.is_some() || plain || s.shape.is_some());
         let verdict = match () {
             () if !s.gross.is_empty() => "recording_error",
             () if !s.accepted.is_empty() => "effects",
             () if outside => "outside_library",
+            () if !open.is_empty() => "gap_open",
             () if s.visible < 0.2 => "undecidable",
             () => "nothing_found",
         };
@@ -67,16 +70,20 @@ impl Conclusion<'_> {
             assumed: problem.tolerances.iter().filter(|t| t.assumed).map(|t| (t.name.clone(), t.sigma)).collect(),
             recording: self.gross(),
             places: self.places(&s.places),
-            effects: self.effects(held, t.total),
+            effects: self.effects(held, left_of_held[1].total(&problem.full_scale).unwrap_or(0.0)),
             drifts: self.drifts(),
-            gap: v::Gaps { held: self.side(&on_held), train: self.side(&on_train) },
-            closed,
-            closed_by_effects: by_effects,
+            gap: v::Gaps {
+                held: figures::side(problem, left_of_held.each_ref(), held),
+                train: figures::side(problem, left_of_train.each_ref(), &problem.train),
+            },
+            closed: share.map(|s| 1.0 - s),
+            closed_by_effects: ratio(effects_total, tolerated).map(|s| 1.0 - s),
             unexplained: v::Unexplained {
                 share,
                 place: self.left_at(place),
                 shape: s.shape.as_ref().map(|shape| vec![self.term(shape)]),
             },
+            open: open.iter().map(|o| self.open(o, &left_of_held[2], held)).collect(),
             next_experiment: self.next_experiment(verdict),
             seconds,
         }
@@ -128,23 +135,26 @@ impl Conclusion<'_> {
         setting
     }
 
-    fn gap(&self, setting: &Setting, recordings: &[Recording]) -> Gap {
-        held::gap_of(self.problem, setting, recordings, &self.search.last.setting.noise)
+    /// The raw gap of a model, of full scale; `None` where a run stops early.
+    fn total(&self, setting: &Setting, recordings: &[Recording]) -> Option<f64> {
+        Left::new(&held::simulate_all(setting, recordings), recordings).total(&self.problem.full_scale)
+    }
+
+    fn open(&self, open: &Open, left: &Left, held: &[Recording]) -> v::OpenGap {
+        let side = figures::side(self.problem, [left, left, left], held);
+        let name = &self.problem.signals[open.signal].name;
+        let gap = &side.signals[name];
+        v::OpenGap {
+            signal: name.clone(),
+            rms: gap.rms.effects,
+            of_range: gap.of_range.effects,
+            unit: gap.unit.clone(),
+            recordings: (open.recordings, held.len()),
+        }
     }
 
     fn by_signal(&self, values: &[f64]) -> BTreeMap<String, f64> {
         self.problem.signals.iter().zip(values).map(|(s, v)| (s.name.clone(), *v)).collect()
-    }
-
-    fn side(&self, [n, t, e]: &[Gap; 3]) -> v::Side {
-        let columns = |n, t, e| v::Columns { nominal: Some(n), tolerances: Some(t), effects: Some(e) };
-        let signals = self.problem.signals.iter().enumerate();
-        v::Side {
-            total: columns(n.total, t.total, e.total),
-            signals: signals
-                .map(|(i, s)| (s.name.clone(), columns(n.signals[i], t.signals[i], e.signals[i])))
-                .collect(),
-        }
     }
 
     fn places(&self, places: &[Located]) -> Vec<v::Located> {
@@ -173,7 +183,7 @@ impl Conclusion<'_> {
 
     fn effects(&self, held: &[Recording], tolerated: f64) -> Vec<v::Effect> {
         let s = self.search;
-        let full = self.gap(&s.last.setting, held).total;
+        let full = self.total(&s.last.setting, held);
         let mut gaps = BTreeMap::new();
         (0..s.accepted.len())
             .map(|i| {
@@ -215,7 +225,7 @@ impl Conclusion<'_> {
         i: usize,
         held: &[Recording],
         tolerated: f64,
-        full: f64,
+        full: Option<f64>,
         gaps: &mut BTreeMap<Vec<usize>, Option<f64>>,
     ) -> (v::Maybe, v::Maybe) {
         let s = self.search;
@@ -223,18 +233,18 @@ impl Conclusion<'_> {
             return (None, None);
         }
         if s.accepted.len() == 1 {
-            let closes = Some(1.0 - full / tolerated);
+            let closes = full.map(|full| 1.0 - full / tolerated);
             return (closes, closes);
         }
         let found = |set: &[usize]| {
             let accepted: Vec<Accepted> = set.iter().map(|&k| s.accepted[k].clone()).collect();
             let (fit, _) = fitted(self.problem, &s.base, &accepted)?;
-            Some(self.gap(&driven::simulating(self.problem, fit).setting, held).total)
+            self.total(&driven::simulating(self.problem, fit).setting, held)
         };
         let mut gap = |set: Vec<usize>| *gaps.entry(set.clone()).or_insert_with(|| found(&set));
         let alone = gap(vec![i]).map(|g| 1.0 - g / tolerated);
         let without = gap((0..s.accepted.len()).filter(|k| *k != i).collect());
-        (alone, without.map(|g| (g - full) / tolerated))
+        (alone, without.zip(full).map(|(g, full)| (g - full) / tolerated))
     }
 
     fn estimates(&self, i: usize, h: &Hypothesis) -> BTreeMap<String, v::Estimate> {
@@ -264,6 +274,12 @@ impl Conclusion<'_> {
         };
         self.problem.tolerances.iter().enumerate().map(drift).collect()
     }
+}
+
+/// One gap over another, where both are known.
+fn ratio(a: v::Maybe, b: v::Maybe) -> v::Maybe {
+    let b = b.filter(|b| *b > 0.0)?;
+    a.map(|a| a / b)
 }
 
 fn spots(h: &Hypothesis) -> Vec<v::Spot> {

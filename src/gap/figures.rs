@@ -1,0 +1,139 @@
+//! How large the gap is, as it is: root mean squares of measured minus simulated. Nothing is subtracted from them.
+
+use super::data::Recording;
+use super::held::Residuals;
+use super::problem::Problem;
+use super::verdict::{Columns, Maybe, Side, SignalGap};
+use std::collections::BTreeMap;
+
+/// A gap within so many standard deviations of the sensor's noise is closed: hardly any sample of a model without fault
+/// lies further off.
+const CLOSED_NOISE: f64 = 3.0;
+/// A gap within this part of the signal's range is closed: the class of a good sensor.
+const CLOSED_RANGE: f64 = 2.5e-3;
+
+/// What one model leaves of each recording.
+pub struct Left {
+    /// Per recording and signal the sum of squares and the number of samples, SI; `None` where the run stops early.
+    recordings: Vec<Option<Vec<(f64, f64)>>>,
+}
+
+impl Left {
+    /// From the runs of a model, a recording each.
+    pub fn new(runs: &[Option<Residuals>], recordings: &[Recording]) -> Self {
+        let of_signal = |run: &Residuals, r: &Recording, i: usize| {
+            let errors = (1..run.simulated[i].len()).map(|k| run.error(r, i, k)).filter(|e| !e.is_nan());
+            errors.fold((0.0, 0.0), |(sum, n), e| (sum + e * e, n + 1.0))
+        };
+        let of_run = |(run, r): (&Option<Residuals>, &Recording)| {
+            let run = run.as_ref()?;
+            Some((0..r.signals.len()).map(|i| of_signal(run, r, i)).collect())
+        };
+        Left { recordings: runs.iter().zip(recordings).map(of_run).collect() }
+    }
+
+    /// RMS of a signal over all recordings, SI; `None` where a run stops early, or nothing was measured.
+    pub fn signal(&self, i: usize) -> Maybe {
+        let mut all = (0.0, 0.0);
+        for r in &self.recordings {
+            let (sum, n) = r.as_ref()?[i];
+            all = (all.0 + sum, all.1 + n);
+        }
+        (all.1 > 0.0).then(|| (all.0 / all.1).sqrt())
+    }
+
+    /// RMS over the signals of their parts of full scale; signals that were not measured do not count.
+    pub fn total(&self, full_scale: &[f64]) -> Maybe {
+        if self.recordings.iter().any(Option::is_none) {
+            return None;
+        }
+        let parts: Vec<f64> =
+            full_scale.iter().enumerate().filter_map(|(i, f)| Some((self.signal(i)? / f).powi(2))).collect();
+        (!parts.is_empty()).then(|| (parts.iter().sum::<f64>() / parts.len() as f64).sqrt())
+    }
+
+    /// The number of recordings in which a signal's gap is wider than a bound.
+    fn wider(&self, i: usize, bound: f64) -> usize {
+        let wide = |r: &&Option<Vec<(f64, f64)>>| match r {
+            Some(signals) => signals[i].1 > 0.0 && (signals[i].0 / signals[i].1).sqrt() > bound,
+            None => true,
+        };
+        self.recordings.iter().filter(wide).count()
+    }
+}
+
+/// A signal whose gap is open: wider than its sensor and its range allow.
+pub struct Open {
+    /// Which signal.
+    pub signal: usize,
+    /// In how many recordings.
+    pub recordings: usize,
+}
+
+/// Signals at which a model leaves an open gap on these recordings, the widest part of its range first.
+pub fn open(problem: &Problem<'_>, left: &Left, recordings: &[Recording]) -> Vec<Open> {
+    let share = |i: usize| left.signal(i).map_or(f64::INFINITY, |rms| rms / range(recordings, i));
+    let mut found: Vec<Open> = (0..problem.signals.len())
+        .filter_map(|i| {
+            let bound = (CLOSED_NOISE * problem.noise_floor[i]).max(CLOSED_RANGE * range(recordings, i));
+            let measured = left.signal(i).is_some() || left.recordings.iter().any(Option::is_none);
+            let wide = measured && left.signal(i).is_none_or(|rms| rms > bound);
+            wide.then(|| Open { signal: i, recordings: left.wider(i, bound) })
+        })
+        .collect();
+    found.sort_by(|a, b| share(b.signal).total_cmp(&share(a.signal)));
+    found
+}
+
+/// How far a signal moves in recordings, SI; its size where it stands still.
+fn range(recordings: &[Recording], i: usize) -> f64 {
+    let values = || recordings.iter().flat_map(|r| r.signals[i].iter().copied()).filter(|v| !v.is_nan());
+    let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+    if high > low { high - low } else { high.abs().max(f64::MIN_POSITIVE) }
+}
+
+/// The figures of three models (nominal, within tolerances, with effects) on recordings of one kind.
+pub fn side(problem: &Problem<'_>, models: [&Left; 3], recordings: &[Recording]) -> Side {
+    let columns = |of: &dyn Fn(&Left) -> Maybe| {
+        let [nominal, tolerances, effects] = models.map(of);
+        Columns { nominal, tolerances, effects }
+    };
+    let signal = |i: usize| {
+        let (scale, range) = (problem.full_scale[i], range(recordings, i));
+        let shown = &problem.shown[i];
+        SignalGap {
+            of_full_scale: columns(&|l| Some(l.signal(i)? / scale)),
+            of_range: columns(&|l| Some(l.signal(i)? / range)),
+            rms: columns(&|l| Some(shown.value(l.signal(i)?))),
+            unit: shown.unit.clone(),
+            range: shown.value(range),
+            noise: shown.value(problem.noise_floor[i]),
+        }
+    };
+    let signals = problem.signals.iter().enumerate().map(|(i, s)| (s.name.clone(), signal(i)));
+    Side { total: columns(&|l| l.total(&problem.full_scale)), signals: signals.collect::<BTreeMap<_, _>>() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Arc;
+
+    fn recording(values: &[f64]) -> Recording {
+        let times: Arc<[f64]> = (0..values.len()).map(|k| k as f64).collect();
+        Recording { times, inputs: Vec::new(), linear: Vec::new(), signals: vec![Arc::from(values)] }
+    }
+
+    #[test]
+    fn nothing_is_subtracted_and_what_stops_early_has_no_figure() {
+        let recordings = [recording(&[0.0, 3.0, f64::NAN, 3.0]), recording(&[0.0, 1.0, 1.0, 1.0])];
+        let run = |level: f64| Some(Residuals { from: 0, simulated: vec![vec![level; 4]] });
+        let left = Left::new(&[run(0.0), run(1.0)], &recordings);
+        // two errors of 3 and three of 0; the first sample of a run is where it begins
+        assert!((left.signal(0).unwrap() - (18.0_f64 / 5.0).sqrt()).abs() < 1e-15);
+        assert!((left.total(&[2.0]).unwrap() - (18.0_f64 / 5.0).sqrt() / 2.0).abs() < 1e-15);
+        assert_eq!(left.wider(0, 1.0), 1);
+        let stopped = Left::new(&[run(0.0), None], &recordings);
+        assert_eq!((stopped.signal(0), stopped.total(&[1.0]), stopped.wider(0, 1.0)), (None, None, 2));
+    }
+}
