@@ -10,7 +10,7 @@ use super::locate;
 use super::problem::Problem;
 use super::verdict::{Columns, Effect, Maybe, Side, SignalGap, Verdict};
 use super::whiteness::{Whiteness, whiteness};
-use super::words::{distance, number, percent, significant, words};
+use super::words::{distance, findings, number, percent, rest, significant};
 use crate::compile::flatten;
 use crate::plot::network::{self, Mark};
 use crate::plot::svg::escape;
@@ -49,7 +49,8 @@ pub fn report(problem: &Problem<'_>, search: &Search, verdict: &Verdict, held: &
 /// Everything above the curves.
 fn before(problem: &Problem<'_>, v: &Verdict, left: &[Left]) -> String {
     let line = |line: &str| format!("<p>{}</p>\n", escape(line));
-    let mut out: String = words(v).lines().map(line).collect();
+    // the gap has a table of its own below
+    let mut out: String = [findings(v), rest(v)].concat().lines().map(line).collect();
     out.push_str(&picture(problem, v));
     out.push_str(&table("Effects", EFFECTS, &effects(v)));
     out.push_str(&table("Gap: RMS of measured minus simulated, in brackets of the range of these recordings", GAPS, &gaps(v)));

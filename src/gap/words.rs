@@ -3,8 +3,13 @@
 use super::verdict::{Effect, OpenGap, SignalGap, Verdict};
 use std::fmt::Write;
 
-/// What the diagnosis found, for people.
+/// What the diagnosis found, for people: findings, the gap as a table, what is left.
 pub fn words(v: &Verdict) -> String {
+    [findings(v), gaps(v), rest(v)].concat()
+}
+
+/// Recording errors and effects, or what is said where there are none.
+pub(super) fn findings(v: &Verdict) -> String {
     let mut text = String::new();
     for r in &v.recording {
         let what = match r.error {
@@ -20,7 +25,12 @@ pub fn words(v: &Verdict) -> String {
         text.push_str(&effect(i, e));
     }
     text.push_str(&found_nothing(v));
-    text.push_str(&gaps(v));
+    text
+}
+
+/// What is left, and what to do about it.
+pub(super) fn rest(v: &Verdict) -> String {
+    let mut text = String::new();
     if v.open.is_empty() {
         text.push_str("What is left lies within three times the noise or a quarter of a per cent of the range.\n");
     } else if let Some(share) = v.unexplained.share {
