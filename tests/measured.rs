@@ -27,7 +27,7 @@ fn verdict(bench: &str, class: &str, recordings: &str) -> Option<Value> {
     Some(serde_json::from_slice(&said.stdout).unwrap())
 }
 
-/// The first effect is of this family at this place, and closes this part of the held gap.
+/// The first effect is of this family at this place, and closes this part of the held gap, sensors' noise included.
 fn finds(bench: &str, recordings: &str, family: &str, place: &str, closes: f64) {
     let Some(verdict) = verdict(bench, "Nominal", recordings) else { return };
     let first = &verdict["effects"][0];
@@ -49,7 +49,7 @@ fn claims_nothing(bench: &str, recordings: &str) {
 
 #[test]
 fn coupled_drives() {
-    finds("CoupledDrives", "ced_coupled_drives", "sensor_rectification", "y", 0.7);
+    finds("CoupledDrives", "ced_coupled_drives", "sensor_rectification", "y", 0.65);
     claims_nothing("CoupledDrives", "ced_coupled_drives");
 }
 

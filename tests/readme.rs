@@ -2,8 +2,8 @@
 
 #![allow(clippy::disallowed_methods, reason = "reads the page, runs the command")]
 
-use bramah::results::Trajectory;
 use bramah::Simulation;
+use bramah::results::Trajectory;
 use std::path::Path;
 use std::process::Command;
 
@@ -22,7 +22,8 @@ fn blocks<'a>(page: &'a str, language: &str) -> Vec<&'a str> {
 /// Whether two words are the same, or numbers that differ by less than one in twenty: machines round differently.
 fn alike(a: &str, b: &str) -> bool {
     let number = |word: &str| word.trim_matches(|c: char| "()%,;`:".contains(c)).parse::<f64>().ok();
-    a == b || matches!((number(a), number(b)), (Some(a), Some(b)) if (a - b).abs() <= 0.05 * a.abs().max(b.abs()) + 0.11)
+    a == b
+        || matches!((number(a), number(b)), (Some(a), Some(b)) if (a - b).abs() <= 0.05 * a.abs().max(b.abs()) + 0.11)
 }
 
 #[test]
@@ -59,19 +60,16 @@ fn the_first_circuit_runs() {
 
 /// Slope and intercept of p_A - p_B over the speed, bar and rev/min, from 50 to 210 bar.
 fn dead_zone() -> (f64, f64) {
-    let t: Trajectory = Simulation::shipped("ServoPump.DeadZone")
-        .and_then(|s| s.run())
-        .unwrap_or_else(|e| panic!("{e}"))
-        .trajectory;
+    let t: Trajectory =
+        Simulation::shipped("ServoPump.DeadZone").and_then(|s| s.run()).unwrap_or_else(|e| panic!("{e}")).trajectory;
     let column = |name: &str| t.signals.iter().position(|s| s.name == name).map(|i| t.columns[i].clone()).expect(name);
     let (n, a, b) = (column("N"), column("p_A"), column("p_B"));
     let points = n.iter().zip(a.iter().zip(&b)).map(|(n, (a, b))| (*n, (a - b) / 1e5));
     let points: Vec<(f64, f64)> = points.filter(|(_, dp)| (50.0..=210.0).contains(dp)).collect();
     let count = points.len() as f64;
     let (x, y) = points.iter().fold((0.0, 0.0), |(x, y), p| (x + p.0 / count, y + p.1 / count));
-    let (xx, xy) = points.iter().fold((0.0, 0.0), |(xx, xy), p| {
-        (xx + (p.0 - x) * (p.0 - x), xy + (p.0 - x) * (p.1 - y))
-    });
+    let (xx, xy) =
+        points.iter().fold((0.0, 0.0), |(xx, xy), p| (xx + (p.0 - x) * (p.0 - x), xy + (p.0 - x) * (p.1 - y)));
     (xy / xx, y - xy / xx * x)
 }
 

@@ -195,7 +195,8 @@ fn entangled(choices: &[u8]) -> String {
             let parts: Vec<String> = (0..=next(3)).map(|_| name(next(4)).to_string()).collect();
             parts.join(".")
         };
-        let redeclared = |p: &str, n: char, on: u8| if on == 0 { format!("(redeclare package {n} = {p})") } else { String::new() };
+        let redeclared =
+            |p: &str, n: char, on: u8| if on == 0 { format!("(redeclare package {n} = {p})") } else { String::new() };
         let (kind, n, m) = (next(8), name(next(4)), name(next(4)));
         let (a, b) = (path(&mut next), path(&mut next));
         let on = next(2);

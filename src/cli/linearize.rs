@@ -106,7 +106,11 @@ fn fits(args: &LinearizeArgs) -> Result<(), Failure> {
     let pictures = args.bode.iter().chain(&args.poles);
     pictures.map(PathBuf::as_path).try_for_each(plot::ready)?;
     let Some(path) = &args.output_file else { return Ok(()) };
-    if args.schedule.is_empty() { linear_ending(path)? } else { quasi_linear_ending(path)? };
+    if args.schedule.is_empty() {
+        linear_ending(path)?
+    } else {
+        quasi_linear_ending(path)?
+    };
     files::ready(Path::new(path))
 }
 

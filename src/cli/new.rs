@@ -14,7 +14,7 @@ const EXPERIMENT: &str = include_str!("new/experiment.toml");
 const RIG: &str = include_str!("new/rig.mo");
 const STUDY: &str = include_str!("new/study.toml");
 
-/// Begin a new circuit: a commented model and an experiment file, or a study of recordings
+/// Begin a circuit, or a study of recordings, every line explained
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -84,6 +84,19 @@ mod tests {
         assert_eq!(class_name(Path::new("press/")).unwrap(), "Press");
         assert!(class_name(Path::new("9")).is_err());
         assert!(class_name(Path::new("/")).is_err());
+    }
+
+    #[test]
+    fn the_study_ties_to_its_model() {
+        let named = |text: &str| text.replace("{{Name}}", "Rig").replace("{{name}}", "rig");
+        let mut world = crate::world::MemoryWorld::single("Rig.mo", &named(RIG));
+        world.add("rig.toml", named(STUDY));
+        let mut sources = crate::diag::Sources::default();
+        let study = crate::study::Study::read(&world, Path::new("rig.toml"), &mut sources).value.unwrap();
+        let flat = crate::flatten(&world, &study.request()).value.unwrap().flat;
+        let bound = study.bind(&flat);
+        assert_eq!(bound.diagnostics, []);
+        assert_eq!(bound.value.unwrap().parameters.len(), 4);
     }
 
     #[test]

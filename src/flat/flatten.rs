@@ -4,7 +4,8 @@ use super::census::Census;
 use super::equations::Walker;
 use super::numbers::Numbers;
 use super::{
-    Confidence, Equation, Experiment, FlatModel, InstanceInfo, Origin, OriginKind, StateSelect, Type, Variability, Variable,
+    Confidence, Equation, Experiment, FlatModel, InstanceInfo, Origin, OriginKind, StateSelect, Type, Variability,
+    Variable,
 };
 use super::{balance, discrete, equations, ports};
 use crate::diag::{Checked, Code, Diagnostic};

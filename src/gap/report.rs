@@ -53,7 +53,11 @@ fn before(problem: &Problem<'_>, v: &Verdict, left: &[Left]) -> String {
     let mut out: String = [findings(v), rest(v)].concat().lines().map(line).collect();
     out.push_str(&picture(problem, v));
     out.push_str(&table("Effects", EFFECTS, &effects(v)));
-    out.push_str(&table("Gap: RMS of measured minus simulated, in brackets of the range of these recordings", GAPS, &gaps(v)));
+    out.push_str(&table(
+        "Gap: RMS of measured minus simulated, in brackets of the range of these recordings",
+        GAPS,
+        &gaps(v),
+    ));
     out.push_str(&table("Parameters against their tolerances", DRIFTS, &drifts(v)));
     out.push_str(&table("Places where model and bench part", PLACES, &places(v)));
     out.push_str(&table("What stays unexplained", UNEXPLAINED, &unexplained(v)));

@@ -67,7 +67,8 @@ fn found_nothing(v: &Verdict) -> String {
             format!("Something is missing at {p} that none of the known effects explains.\n")
         }
         ("outside_library", None) => {
-            "Several times the noise stays open, no place stands out, and none of the known effects explains it.\n".into()
+            "Several times the noise stays open, no place stands out, and none of the known effects explains it.\n"
+                .into()
         }
         ("gap_open", place) => open(v, place),
         ("undecidable", _) => "The recordings cannot tell: effects of usual size would hardly show in them.\n".into(),
@@ -124,7 +125,9 @@ fn gaps(v: &Verdict) -> String {
         format!("  {}\n", cells.join("  ").trim_end())
     };
     let lines: String = rows.iter().map(line).collect();
-    format!("Gap on the held recordings: RMS of measured minus simulated, in brackets of the signal's range there.\n{lines}")
+    format!(
+        "Gap on the held recordings: RMS of measured minus simulated, in brackets of the signal's range there.\n{lines}"
+    )
 }
 
 /// Three significant digits.

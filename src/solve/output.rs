@@ -180,6 +180,7 @@ mod tests {
     #[test]
     fn of_each_interval_the_first_events_have_rows() {
         let mut grid = Grid::new(0.0, 1.0, 0.5).with_event_rows(8);
+        grid.pass(0.0);
         let mut recorded = |times: &[f64]| {
             let mut one = |&t: &f64| {
                 let records = grid.records_event();

@@ -3,7 +3,7 @@
 model M
   inner Oil.ISOVG46 oil;
   Hydraulic.Tank tank(p = 3e5);
-  Hydraulic.Cylinder cylinder;
+  Hydraulic.Cylinder cylinder(p_2_start = 2e5);
   Hydraulic.Orifice way;
 equation
   connect(tank.port, cylinder.port_2);

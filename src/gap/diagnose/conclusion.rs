@@ -1,8 +1,8 @@
 //! What the search came to, said as a verdict.
 
 use super::super::data::Recording;
-use super::super::filter::Setting;
 use super::super::figures::{self, Left, Open};
+use super::super::filter::Setting;
 use super::super::held;
 use super::super::hypotheses::{Hypothesis, Place, Site};
 use super::super::locate::Located;
