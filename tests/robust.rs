@@ -191,7 +191,7 @@ fn entangled(choices: &[u8]) -> String {
     let mut text = String::from("package T\n");
     for _ in 0..40 {
         let name = |n: u8| char::from(b'A' + n);
-        let mut path = |next: &mut dyn FnMut(u8) -> u8| -> String {
+        let path = |next: &mut dyn FnMut(u8) -> u8| -> String {
             let parts: Vec<String> = (0..=next(3)).map(|_| name(next(4)).to_string()).collect();
             parts.join(".")
         };

@@ -32,6 +32,14 @@ fn code(error: &Error) -> Code {
     error.diagnostics[0].code
 }
 
+/// A failed `unwrap` shows the messages, not the texts of the library.
+#[test]
+fn an_error_in_debug_is_its_messages() {
+    let error = Simulation::from_text("model M Hydraulic.Volume v(W = 1); end M;").unwrap_err();
+    let shown = format!("{error:?}");
+    assert!(shown.contains("E012") && shown.len() < 2000, "{shown}");
+}
+
 #[test]
 fn steps_give_what_a_recorded_input_gives() {
     let mut whole = lag();

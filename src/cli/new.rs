@@ -89,7 +89,7 @@ mod tests {
     #[test]
     fn the_study_ties_to_its_model() {
         let named = |text: &str| text.replace("{{Name}}", "Rig").replace("{{name}}", "rig");
-        let mut world = crate::world::MemoryWorld::single("Rig.mo", &named(RIG));
+        let mut world = crate::world::MemoryWorld::single("Rig.mo", named(RIG));
         world.add("rig.toml", named(STUDY));
         let mut sources = crate::diag::Sources::default();
         let study = crate::study::Study::read(&world, Path::new("rig.toml"), &mut sources).value.unwrap();

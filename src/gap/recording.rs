@@ -3,7 +3,6 @@
 use super::data::Recording;
 use super::held;
 use super::problem::Problem;
-use std::ops::Range;
 
 /// Correlation with the simulation above which a signal is taken for the one that is simulated.
 const ALIKE: f64 = 0.9;
@@ -32,11 +31,8 @@ pub fn gross_errors(problem: &Problem<'_>) -> Vec<Gross> {
         found.extend(stuck(problem, recording, number));
         // from the model's own start: the recording's may be what is wrong
         let Some(simulated) = held::from_start(&setting, recording) else { continue };
-        // what is wrong is so from beginning to end; what the model's start leaves behind is not
-        let half = recording.len() / 2;
-        let [first, second] = [0..half, half..recording.len()].map(|part| compare(recording, &simulated, part, number));
-        let lasts = |g: &&Gross| second.iter().any(|o| o.signal == g.signal && o.error == g.error);
-        found.extend(first.iter().filter(lasts).cloned());
+        let gross = compare(recording, &simulated, number);
+        found.extend(gross.into_iter().filter(|g| !is_start(recording, &simulated, g)));
     }
     // an error of the sensor is there in every recording, else it is something else
     let everywhere = |g: &Gross| {
@@ -61,9 +57,17 @@ fn stuck(problem: &Problem<'_>, recording: &Recording, number: usize) -> Vec<Gro
     found
 }
 
-fn compare(recording: &Recording, simulated: &[Vec<f64>], part: Range<usize>, number: usize) -> Vec<Gross> {
+/// Whether the second half shows the signal as it is simulated: then it was the model's start that made it look wrong.
+fn is_start(recording: &Recording, simulated: &[Vec<f64>], gross: &Gross) -> bool {
+    let half = recording.len() / 2..recording.len();
+    let (measured, simulated) = (&recording.signals[gross.signal][half.clone()], &simulated[gross.signal][half]);
+    let (correlation, slope) = relation(measured, simulated);
+    correlation > ALIKE && (1.0 / FACTOR..=FACTOR).contains(&slope)
+}
+
+fn compare(recording: &Recording, simulated: &[Vec<f64>], number: usize) -> Vec<Gross> {
     let count = simulated.len();
-    let pair = |i: usize, j: usize| relation(&recording.signals[i][part.clone()], &simulated[j][part.clone()]);
+    let pair = |i: usize, j: usize| relation(&recording.signals[i], &simulated[j]);
     let mut found = Vec::new();
     for i in 0..count {
         let (correlation, slope) = pair(i, i);
@@ -107,6 +111,21 @@ fn relation(measured: &[f64], simulated: &[f64]) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_start_that_dies_out_is_no_factor() {
+        let times: Vec<f64> = (0..200).map(f64::from).collect();
+        let wave: Vec<f64> = times.iter().map(|t| (t * 0.2).sin()).collect();
+        let simulated = vec![wave.iter().zip(&times).map(|(w, t)| w + 40.0 * (-t * 0.1).exp()).collect::<Vec<f64>>()];
+        let measured = |factor: f64| {
+            let values: Vec<f64> = wave.iter().map(|w| factor * w).collect();
+            Recording { times: times.clone().into(), inputs: vec![], linear: vec![], signals: vec![values.into()] }
+        };
+        let gross = |value| Gross { recording: 0, signal: 0, error: "factor", value };
+        assert!(is_start(&measured(1.0), &simulated, &gross(0.1)));
+        assert!(!is_start(&measured(10.0), &simulated, &gross(10.0)));
+        assert!(!is_start(&measured(-1.0), &simulated, &gross(-1.0)));
+    }
 
     #[test]
     fn relations_of_signals() {
