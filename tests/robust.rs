@@ -232,6 +232,32 @@ proptest! {
     }
 }
 
+/// Found by the test above: without a bound on all bases together each of ten `extends A` looks through all of them again.
+#[test]
+fn packages_that_go_in_circles_many_times_over_are_told() {
+    let again = "extends A(redeclare package A = A);".repeat(10);
+    let text = format!(
+        "package T import C = D.D;
+         package A import D = C.B;
+           package B extends D; replaceable package B = B.B; model B C x; end B;
+             package C extends D.D(redeclare package C = A.C); import C = C; extends A.A(redeclare package C = D);
+               extends A(redeclare package A = D.B); replaceable package C = D.A; import A = A.A.B; import B.C.D.*;
+               model B D x; end B; replaceable package B = D.C.B(redeclare package B = B.B.A);
+               extends D.C(redeclare package B = A); extends B.B.C(redeclare package B = B.C.B); import C.*;
+               extends C.C; import D.A.A.*; extends A.B; extends A.B; end C;
+             replaceable package B = C.D; import D.B.C.*;
+             package D extends A.B.B(redeclare package B = D); extends D.C; {again} end D;
+           end B;
+         end A;
+         model M extends A; B y; Real x = 1; end M;
+         end T;"
+    );
+    let world = MemoryWorld::single("model.mo", &text);
+    let request = Request { source: "model.mo".into(), model: Some("T.M".into()), ..Request::default() };
+    let diagnostics = bramah::flatten(&world, &request).diagnostics;
+    assert!(diagnostics.iter().any(|d| d.code.id() == "E014" && d.message.contains("need each other")));
+}
+
 fn model(body: &str) -> String {
     format!("model M {body} end M;")
 }

@@ -83,6 +83,8 @@ pub fn instantiate<'a, 'l>(library: &'l mut Library<'a>, request: &ModelRequest)
         packages: FxHashMap::default(),
         bare: FxHashMap::default(),
         gathering: Vec::new(),
+        gathered: 0,
+        tangled: false,
         dynamic_packages: Vec::new(),
         array_values: FxHashMap::default(),
         inner_declared: FxHashMap::default(),

@@ -217,6 +217,10 @@ pub struct Instance<'a, 'l> {
     bare: FxHashMap<(ClassId, View), ScopeId>,
     /// Classes whose bases are being looked up, innermost last.
     gathering: Vec<(ClassId, View)>,
+    /// Bases gathered since the outermost of these.
+    gathered: usize,
+    /// These go in circles many times over.
+    tangled: bool,
     dynamic_packages: Vec<(ClassRef<'a>, ScopeId)>,
     array_values: FxHashMap<(*const ast::Expr, View, bool), Val>,
     inner_declared: FxHashMap<(ScopeId, Symbol), NodeId>,

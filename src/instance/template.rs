@@ -117,6 +117,10 @@ pub enum What<'a> {
 /// The longest chain of `extends`, and the most classes whose bases are being looked up inside each other.
 const DEEPEST: usize = 100;
 
+/// The most bases that are gathered for one class, those found on the way to them included: a class of a large library
+/// has some hundreds. What goes in circles many times over would take for ever before it is [`DEEPEST`].
+const MOST_BASES: usize = 20_000;
+
 impl<'a> Instance<'a, '_> {
     /// The template of a class at a place.
     pub fn template(&mut self, class: ClassId, parent: View) -> Rc<Template<'a>> {
@@ -136,6 +140,9 @@ impl<'a> Instance<'a, '_> {
             kind: ast.kind,
             broken: false,
         };
+        if self.gathering.is_empty() {
+            self.gathered = 0;
+        }
         if self.gathering.len() < DEEPEST {
             self.gathering.push((class, parent));
             self.gather(&mut t, class, parent, &mut Vec::new());
@@ -183,6 +190,16 @@ impl<'a> Instance<'a, '_> {
                     .class(name)
                     .help("remove one of the `extends` clauses of the circle"),
             );
+            t.broken = true;
+            return base;
+        }
+        self.gathered += 1;
+        // told once, and then not tried to its end again
+        if self.gathered > if self.tangled { DEEPEST } else { MOST_BASES } {
+            if !self.tangled {
+                self.endless_lookup(class);
+            }
+            self.tangled = true;
             t.broken = true;
             return base;
         }
