@@ -190,6 +190,12 @@ pub(super) fn ready(path: &Path) -> Result<(), Failure> {
     if path == Path::new("-") || pipe { Ok(()) } else { NewFile::create(path).map(drop) }
 }
 
+/// Says before the work that a file cannot be written, by its name or its place: [`ending`] and [`ready`].
+pub(super) fn ready_as(path: &Path, what: &str, known: &[&'static str]) -> Result<(), Failure> {
+    ending(path, what, known)?;
+    ready(path)
+}
+
 /// Writes to stdout. A reader that has gone away (`| head`) is no mistake.
 pub(super) fn print(text: &str) -> Result<(), Failure> {
     let mut out = io::stdout().lock();

@@ -68,8 +68,7 @@ pub(super) fn run(args: &GapArgs, messages: &mut Messages) -> Result<Ending, Fai
         (args.report.as_ref(), "a report", "html"),
     ];
     for (path, what, known) in outputs.into_iter().filter_map(|(p, what, known)| Some((Path::new(p?), what, known))) {
-        files::ending(path, what, &[known])?;
-        files::ready(path)?;
+        files::ready_as(path, what, &[known])?;
     }
     if args.plan { weigh_plan(args, &study, messages) } else { diagnose(args, &study, messages) }
 }

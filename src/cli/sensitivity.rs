@@ -56,12 +56,8 @@ const SHOWN: usize = 6;
 const RANKED: usize = 20;
 
 pub(super) fn run(args: &SensitivityArgs, messages: &mut Messages) -> Result<Ending, Failure> {
-    args.output_file.as_deref().map_or(Ok(()), files::ready)?;
+    args.output_file.as_deref().map_or(Ok(()), |path| files::ready_as(path, "a table", &["csv"]))?;
     args.plot.as_deref().map_or(Ok(()), plot::ready)?;
-    if let Some(path) = &args.output_file {
-        files::ending(path, "a table", &["csv"])?;
-        files::ready(path)?;
-    }
     let experiment = args.model.experiment(None, messages)?;
     let model = model::compile(&experiment, messages)?;
     let wanted = variables(args, &model)?;

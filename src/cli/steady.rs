@@ -69,10 +69,7 @@ pub(super) fn run(args: &SteadyArgs, messages: &mut Messages) -> Result<Ending, 
         }
         files::ready(path)?;
     }
-    if let Some(path) = &args.output_file {
-        files::ending(path, "a table", &["csv"])?;
-        files::ready(path)?;
-    }
+    args.output_file.as_deref().map_or(Ok(()), |path| files::ready_as(path, "a table", &["csv"]))?;
     let experiment = args.model.experiment(None, messages)?;
     let model = model::compile(&experiment, messages)?;
     if args.transient {

@@ -2,8 +2,9 @@
 
 use super::data::Recording;
 use super::held::Residuals;
+use super::hypotheses::Signal;
 use super::problem::Problem;
-use super::verdict::{Columns, Maybe, Side, SignalGap};
+use super::verdict::{Columns, Maybe, OpenGap, Side, SignalGap};
 use std::collections::BTreeMap;
 
 /// A gap within so many standard deviations of the sensor's noise is closed: hardly any sample of a model without fault
@@ -62,26 +63,25 @@ impl Left {
     }
 }
 
-/// A signal whose gap is open: wider than its sensor and its range allow.
-pub struct Open {
-    /// Which signal.
-    pub signal: usize,
-    /// In how many recordings.
-    pub recordings: usize,
-}
-
-/// Signals at which a model leaves an open gap on these recordings, the widest part of its range first.
-pub fn open(problem: &Problem<'_>, left: &Left, recordings: &[Recording]) -> Vec<Open> {
-    let share = |i: usize| left.signal(i).map_or(f64::INFINITY, |rms| rms / range(recordings, i));
-    let mut found: Vec<Open> = (0..problem.signals.len())
-        .filter_map(|i| {
-            let bound = (CLOSED_NOISE * problem.noise_floor[i]).max(CLOSED_RANGE * range(recordings, i));
-            let measured = left.signal(i).is_some() || left.recordings.iter().any(Option::is_none);
-            let wide = measured && left.signal(i).is_none_or(|rms| rms > bound);
-            wide.then(|| Open { signal: i, recordings: left.wider(i, bound) })
+/// Signals at which a model leaves an open gap on these recordings, wider than sensor and range allow; the widest part of
+/// its range first.
+pub fn open(problem: &Problem<'_>, left: &Left, recordings: &[Recording]) -> Vec<OpenGap> {
+    let stops = left.recordings.iter().any(Option::is_none);
+    let gap = |(i, signal): (usize, &Signal)| {
+        let (rms, range, shown) = (left.signal(i), range(recordings, i), &problem.shown[i]);
+        let bound = (CLOSED_NOISE * problem.noise_floor[i]).max(CLOSED_RANGE * range);
+        let wide = rms.map_or(stops, |rms| rms > bound);
+        wide.then(|| OpenGap {
+            signal: signal.name.clone(),
+            rms: rms.map(|rms| shown.value(rms)),
+            of_range: rms.map(|rms| rms / range),
+            unit: shown.unit.clone(),
+            recordings: (left.wider(i, bound), recordings.len()),
         })
-        .collect();
-    found.sort_by(|a, b| share(b.signal).total_cmp(&share(a.signal)));
+    };
+    let mut found: Vec<OpenGap> = problem.signals.iter().enumerate().filter_map(gap).collect();
+    let share = |o: &OpenGap| o.of_range.unwrap_or(f64::INFINITY);
+    found.sort_by(|a, b| share(b).total_cmp(&share(a)));
     found
 }
 

@@ -62,7 +62,12 @@ fn is_start(recording: &Recording, simulated: &[Vec<f64>], gross: &Gross) -> boo
     let half = recording.len() / 2..recording.len();
     let (measured, simulated) = (&recording.signals[gross.signal][half.clone()], &simulated[gross.signal][half]);
     let (correlation, slope) = relation(measured, simulated);
-    correlation > ALIKE && (1.0 / FACTOR..=FACTOR).contains(&slope)
+    correlation > ALIKE && is_gain(slope)
+}
+
+/// Whether a sensor may have this gain.
+fn is_gain(slope: f64) -> bool {
+    (1.0 / FACTOR..=FACTOR).contains(&slope)
 }
 
 fn compare(recording: &Recording, simulated: &[Vec<f64>], number: usize) -> Vec<Gross> {
@@ -73,7 +78,7 @@ fn compare(recording: &Recording, simulated: &[Vec<f64>], number: usize) -> Vec<
         let (correlation, slope) = pair(i, i);
         let error = if correlation < -ALIKE {
             Some(("sign", slope))
-        } else if correlation > ALIKE && !(1.0 / FACTOR..=FACTOR).contains(&slope) {
+        } else if correlation > ALIKE && !is_gain(slope) {
             Some(("factor", slope))
         } else {
             None

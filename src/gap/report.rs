@@ -10,7 +10,7 @@ use super::locate;
 use super::problem::Problem;
 use super::verdict::{Columns, Effect, Maybe, Side, SignalGap, Verdict};
 use super::whiteness::{Whiteness, whiteness};
-use super::words::{distance, findings, number, percent, rest, significant};
+use super::words::{distance, findings, gap_row, number, percent, rest};
 use crate::compile::flatten;
 use crate::plot::network::{self, Mark};
 use crate::plot::svg::escape;
@@ -154,19 +154,9 @@ fn share(v: Maybe) -> String {
 }
 
 fn gaps(v: &Verdict) -> Vec<Vec<String>> {
-    let cell = |rms: Maybe, share: Maybe| match (rms, share) {
-        (Some(rms), Some(share)) => format!("{} ({})", significant(rms), percent(share)),
-        _ => "stops early".to_string(),
-    };
     let signal = |which: &str, name: &str, g: &SignalGap| {
-        let name = if g.unit.is_empty() { escape(name) } else { escape(&format!("{name} in {}", g.unit)) };
-        let cells = [
-            cell(g.rms.nominal, g.of_range.nominal),
-            cell(g.rms.tolerances, g.of_range.tolerances),
-            cell(g.rms.effects, g.of_range.effects),
-            significant(g.noise),
-        ];
-        [vec![which.to_string(), name], cells.to_vec()].concat()
+        let cells = gap_row(name, g).map(|cell| escape(&cell));
+        [vec![which.to_string()], cells.to_vec()].concat()
     };
     let all = |which: &str, c: &Columns| {
         let parts = [c.nominal, c.tolerances, c.effects].map(share);

@@ -1,6 +1,6 @@
 //! The verdict in words, one screen of them.
 
-use super::verdict::{Effect, OpenGap, SignalGap, Verdict};
+use super::verdict::{Effect, Maybe, OpenGap, SignalGap, Verdict};
 use std::fmt::Write;
 
 /// What the diagnosis found, for people: findings, the gap as a table, what is left.
@@ -103,21 +103,9 @@ fn gaps(v: &Verdict) -> String {
     if signals.is_empty() {
         return String::new();
     }
-    let cell = |rms: Option<f64>, share: Option<f64>| match (rms, share) {
-        (Some(rms), Some(share)) => format!("{} ({})", significant(rms), percent(share)),
-        _ => "stops early".to_string(),
-    };
     let head = ["", "nominal", "within tolerances", "with effects", "sensor noise"].map(String::from);
-    let row = |(name, g): (&String, &SignalGap)| {
-        [
-            if g.unit.is_empty() { name.clone() } else { format!("{name} in {}", g.unit) },
-            cell(g.rms.nominal, g.of_range.nominal),
-            cell(g.rms.tolerances, g.of_range.tolerances),
-            cell(g.rms.effects, g.of_range.effects),
-            significant(g.noise),
-        ]
-    };
-    let rows: Vec<[String; 5]> = std::iter::once(head).chain(signals.iter().map(row)).collect();
+    let rows: Vec<[String; 5]> =
+        std::iter::once(head).chain(signals.iter().map(|(name, g)| gap_row(name, g))).collect();
     let width = |i: usize| rows.iter().map(|r| r[i].chars().count()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..5).map(width).collect();
     let line = |r: &[String; 5]| {
@@ -130,8 +118,23 @@ fn gaps(v: &Verdict) -> String {
     )
 }
 
+/// A signal with its unit, what three models leave of it, and its noise.
+pub(super) fn gap_row(name: &str, g: &SignalGap) -> [String; 5] {
+    let cell = |rms: Maybe, share: Maybe| match (rms, share) {
+        (Some(rms), Some(share)) => format!("{} ({})", significant(rms), percent(share)),
+        _ => "stops early".to_string(),
+    };
+    [
+        if g.unit.is_empty() { name.to_string() } else { format!("{name} in {}", g.unit) },
+        cell(g.rms.nominal, g.of_range.nominal),
+        cell(g.rms.tolerances, g.of_range.tolerances),
+        cell(g.rms.effects, g.of_range.effects),
+        significant(g.noise),
+    ]
+}
+
 /// Three significant digits.
-pub(super) fn significant(v: f64) -> String {
+fn significant(v: f64) -> String {
     crate::results::number::rounded(v, 3)
 }
 

@@ -195,7 +195,8 @@ impl<'a> Instance<'a, '_> {
         }
         self.gathered += 1;
         // told once, and then not tried to its end again
-        if self.gathered > if self.tangled { DEEPEST } else { MOST_BASES } {
+        let most = if self.tangled { DEEPEST } else { MOST_BASES };
+        if self.gathered > most {
             if !self.tangled {
                 self.endless_lookup(class);
             }

@@ -193,9 +193,7 @@ impl Assembly {
                 continue;
             }
             if model.demoted.binary_search(&v).is_ok() {
-                let SystemRow { equation, index, .. } = self.rows[row as usize];
-                let difference = draft.exprs.sub(equation.lhs, equation.rhs);
-                self.checks.push((difference, index));
+                self.check(draft, row);
             } else {
                 self.report(draft, row);
             }
@@ -265,10 +263,15 @@ impl Assembly {
                 continue;
             }
             let row = self.push_start(draft, v);
-            let SystemRow { equation, index, .. } = self.rows[row as usize];
-            let difference = draft.exprs.sub(equation.lhs, equation.rhs);
-            self.checks.push((difference, index));
+            self.check(draft, row);
         }
+    }
+
+    /// A row that determines nothing must hold all the same.
+    fn check(&mut self, draft: &mut Draft, row: u32) {
+        let SystemRow { equation, index, .. } = self.rows[row as usize];
+        let difference = draft.exprs.sub(equation.lhs, equation.rhs);
+        self.checks.push((difference, index));
     }
 
     /// States and what was differentiated before others: those with the more confident start, then those that would

@@ -1,7 +1,7 @@
 //! What the search came to, said as a verdict.
 
 use super::super::data::Recording;
-use super::super::figures::{self, Left, Open};
+use super::super::figures::{self, Left};
 use super::super::filter::Setting;
 use super::super::held;
 use super::super::hypotheses::{Hypothesis, Place, Site};
@@ -70,7 +70,7 @@ impl Conclusion<'_> {
             assumed: problem.tolerances.iter().filter(|t| t.assumed).map(|t| (t.name.clone(), t.sigma)).collect(),
             recording: self.gross(),
             places: self.places(&s.places),
-            effects: self.effects(held, left_of_held[1].total(&problem.full_scale).unwrap_or(0.0)),
+            effects: self.effects(held, [&left_of_held[1], &left_of_held[2]]),
             drifts: self.drifts(),
             gap: v::Gaps {
                 held: figures::side(problem, left_of_held.each_ref(), held),
@@ -83,7 +83,7 @@ impl Conclusion<'_> {
                 place: self.left_at(place),
                 shape: s.shape.as_ref().map(|shape| vec![self.term(shape)]),
             },
-            open: open.iter().map(|o| self.open(o, &left_of_held[2], held)).collect(),
+            open,
             next_experiment: self.next_experiment(verdict),
             seconds,
         }
@@ -140,19 +140,6 @@ impl Conclusion<'_> {
         Left::new(&held::simulate_all(setting, recordings), recordings).total(&self.problem.full_scale)
     }
 
-    fn open(&self, open: &Open, left: &Left, held: &[Recording]) -> v::OpenGap {
-        let side = figures::side(self.problem, [left, left, left], held);
-        let name = &self.problem.signals[open.signal].name;
-        let gap = &side.signals[name];
-        v::OpenGap {
-            signal: name.clone(),
-            rms: gap.rms.effects,
-            of_range: gap.of_range.effects,
-            unit: gap.unit.clone(),
-            recordings: (open.recordings, held.len()),
-        }
-    }
-
     fn by_signal(&self, values: &[f64]) -> BTreeMap<String, f64> {
         self.problem.signals.iter().zip(values).map(|(s, v)| (s.name.clone(), *v)).collect()
     }
@@ -181,9 +168,11 @@ impl Conclusion<'_> {
         all.iter().map(located).collect()
     }
 
-    fn effects(&self, held: &[Recording], tolerated: f64) -> Vec<v::Effect> {
+    /// `left` is what parameters within tolerances, and the effects with them, leave of the held recordings.
+    fn effects(&self, held: &[Recording], left: [&Left; 2]) -> Vec<v::Effect> {
         let s = self.search;
-        let full = self.total(&s.last.setting, held);
+        let [tolerated, full] = left.map(|l| l.total(&self.problem.full_scale));
+        let tolerated = tolerated.unwrap_or(0.0);
         let mut gaps = BTreeMap::new();
         (0..s.accepted.len())
             .map(|i| {
