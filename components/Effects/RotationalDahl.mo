@@ -7,5 +7,5 @@ model RotationalDahl "Friction with a hysteresis before it slides (Dahl)"
 equation
   b*der(x) = w - Smooth.mag(w, 0.5)*x;
   tau = tau_c*x;
-  annotation(__bramah(family = "dry_friction", id = "E27", coefficients = {"tau_c"}, shapes(b = {0.003, 0.03, 0.3})));
+  annotation(__bramah(family = "hysteresis", law = "dry friction", id = "E27", coefficients = {"tau_c"}, shapes(b = {0.003, 0.03, 0.3})));
 end RotationalDahl;

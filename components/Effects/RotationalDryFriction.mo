@@ -5,5 +5,5 @@ model RotationalDryFriction "Coulomb friction, smooth through zero speed"
   parameter SI.AngularVelocity v_c(min = 1e-9) = 0.5 "Speed over which it changes sign";
 equation
   tau = tau_c*tanh(w/v_c);
-  annotation(__bramah(family = "dry_friction", id = "E02", coefficients = {"tau_c"}, shapes(v_c = {0.5})));
+  annotation(__bramah(family = "dry_friction", law = "dry friction", id = "E02", coefficients = {"tau_c"}, shapes(v_c = {0.5})));
 end RotationalDryFriction;

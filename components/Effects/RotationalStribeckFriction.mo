@@ -7,5 +7,5 @@ model RotationalStribeckFriction "Coulomb friction and a rise towards zero speed
   parameter SI.AngularVelocity v_s(min = 1e-9) = 10 "Speed over which the rise falls";
 equation
   tau = (tau_c + tau_s*exp(-(w/v_s)^2))*tanh(w/v_c);
-  annotation(__bramah(family = "dry_friction", id = "E27", coefficients = {"tau_c", "tau_s"}, shapes(v_c = {0.5}, v_s = {2, 10, 50})));
+  annotation(__bramah(family = "dry_friction", law = "dry friction", id = "E27", coefficients = {"tau_c", "tau_s"}, shapes(v_c = {0.5}, v_s = {2, 10, 50})));
 end RotationalStribeckFriction;

@@ -7,5 +7,5 @@ model RotationalStribeckFrictionBetween "Coulomb friction and a rise towards zer
   parameter SI.AngularVelocity v_s(min = 1e-9) = 10 "Speed over which the rise falls";
 equation
   tau = (tau_c + tau_s*exp(-(w_rel/v_s)^2))*tanh(w_rel/v_c);
-  annotation(__bramah(family = "dry_friction", id = "E27", coefficients = {"tau_c", "tau_s"}, shapes(v_c = {0.5}, v_s = {2, 10, 50}), ends = "free"));
+  annotation(__bramah(family = "dry_friction", law = "dry friction", id = "E27", coefficients = {"tau_c", "tau_s"}, shapes(v_c = {0.5}, v_s = {2, 10, 50}), ends = "free"));
 end RotationalStribeckFrictionBetween;

@@ -7,5 +7,5 @@ model TranslationalDahl "Friction with a hysteresis before it slides (Dahl)"
 equation
   b*der(x) = v - Smooth.mag(v, 0.003)*x;
   f = F_c*x;
-  annotation(__bramah(family = "dry_friction", id = "E27", coefficients = {"F_c"}, shapes(b = {3e-5, 3e-4, 3e-3})));
+  annotation(__bramah(family = "hysteresis", law = "dry friction", id = "E27", coefficients = {"F_c"}, shapes(b = {3e-5, 3e-4, 3e-3})));
 end TranslationalDahl;

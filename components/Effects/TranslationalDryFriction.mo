@@ -5,5 +5,5 @@ model TranslationalDryFriction "Coulomb friction, smooth through zero speed"
   parameter SI.Velocity v_c(min = 1e-9) = 0.003 "Speed over which it changes sign";
 equation
   f = F_c*tanh(v/v_c);
-  annotation(__bramah(family = "dry_friction", id = "E02", coefficients = {"F_c"}, shapes(v_c = {0.003})));
+  annotation(__bramah(family = "dry_friction", law = "dry friction", id = "E02", coefficients = {"F_c"}, shapes(v_c = {0.003})));
 end TranslationalDryFriction;

@@ -5,5 +5,5 @@ model TranslationalDryFrictionBetween "Coulomb friction, smooth through zero spe
   parameter SI.Velocity v_c(min = 1e-9) = 0.003 "Speed over which it changes sign";
 equation
   f = F_c*tanh(v_rel/v_c);
-  annotation(__bramah(family = "dry_friction", id = "E02", coefficients = {"F_c"}, shapes(v_c = {0.003}), ends = "free"));
+  annotation(__bramah(family = "dry_friction", law = "dry friction", id = "E02", coefficients = {"F_c"}, shapes(v_c = {0.003}), ends = "free"));
 end TranslationalDryFrictionBetween;

@@ -7,5 +7,5 @@ model TranslationalStribeckFriction "Coulomb friction and a rise towards zero sp
   parameter SI.Velocity v_s(min = 1e-9) = 0.04 "Speed over which the rise falls";
 equation
   f = (F_c + F_s*exp(-(v/v_s)^2))*tanh(v/v_c);
-  annotation(__bramah(family = "dry_friction", id = "E27", coefficients = {"F_c", "F_s"}, shapes(v_c = {0.003}, v_s = {0.01, 0.04, 0.15})));
+  annotation(__bramah(family = "dry_friction", law = "dry friction", id = "E27", coefficients = {"F_c", "F_s"}, shapes(v_c = {0.003}, v_s = {0.01, 0.04, 0.15})));
 end TranslationalStribeckFriction;

@@ -7,5 +7,5 @@ model TranslationalStribeckFrictionBetween "Coulomb friction and a rise towards 
   parameter SI.Velocity v_s(min = 1e-9) = 0.04 "Speed over which the rise falls";
 equation
   f = (F_c + F_s*exp(-(v_rel/v_s)^2))*tanh(v_rel/v_c);
-  annotation(__bramah(family = "dry_friction", id = "E27", coefficients = {"F_c", "F_s"}, shapes(v_c = {0.003}, v_s = {0.01, 0.04, 0.15}), ends = "free"));
+  annotation(__bramah(family = "dry_friction", law = "dry friction", id = "E27", coefficients = {"F_c", "F_s"}, shapes(v_c = {0.003}, v_s = {0.01, 0.04, 0.15}), ends = "free"));
 end TranslationalStribeckFrictionBetween;

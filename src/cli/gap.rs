@@ -46,12 +46,22 @@ pub(super) struct GapArgs {
     /// What was found as one HTML page, `-` for stdout
     #[arg(long, value_name = "FILE")]
     report: Option<String>,
+    /// Which judge names effects
+    #[arg(long, value_enum, default_value = "filter")]
+    judge: Judge,
     /// List every effect at every place where it fits, and stop
     #[arg(long)]
     list: bool,
     /// Say what the planned experiment would show: train recordings need time and inputs only
     #[arg(long, conflicts_with_all = ["list", "write_model", "report"])]
     plan: bool,
+}
+
+/// Which judge names effects.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum Judge {
+    Filter,
+    Simulation,
 }
 
 pub(super) fn run(args: &GapArgs, messages: &mut Messages) -> Result<Ending, Failure> {
@@ -98,6 +108,9 @@ fn diagnose(args: &GapArgs, study: &Study, messages: &mut Messages) -> Result<En
     let question = question(&DiskWorld, study, data, &mut messages.sources).map_err(|why| unusable(why, messages))?;
     messages.say(&question.diagnostics);
     let stages = Stages::new();
+    if args.judge == Judge::Simulation {
+        return by_simulation(args, question, begun, messages);
+    }
     let search = search(&question.problem, &mut |stage| stages.show(stage)).map_err(|t| trouble(&t))?;
     stages.show(Stage::Held);
     let held = question.held(data, &mut messages.sources).map_err(|diagnostics| Failure { diagnostics })?;
@@ -115,6 +128,36 @@ fn diagnose(args: &GapArgs, study: &Study, messages: &mut Messages) -> Result<En
     if let Some(file) = &args.report {
         write_text(file, &report(&question.problem, &search, &verdict, &held))?;
     }
+    Ok(Ending::Fine)
+}
+
+fn by_simulation(
+    args: &GapArgs,
+    mut question: crate::gap::study::Question<'_>,
+    begun: std::time::Instant,
+    messages: &mut Messages,
+) -> Result<Ending, Failure> {
+    let data = args.data.as_deref();
+    let held = question.held(data, &mut messages.sources).map_err(|diagnostics| Failure { diagnostics })?;
+    question.problem.with_mistakes();
+    let problem = &question.problem;
+    let stages = Stages::new();
+    let found = crate::gap::select::search::search(problem, &held, &mut |stage| stages.show(stage))
+        .ok_or_else(|| trouble(&Trouble::Diverges(0.0, "the model has no values on the way".into())))?;
+    let verdict = crate::gap::verdict::conclude(problem, &found, &held, begun.elapsed().as_secs_f64());
+    stages.clear();
+    let all: usize = problem.train.iter().map(|r| r.len()).sum();
+    messages.remark(&format!("{:?} train runs", crate::gap::estimate::candidate::COUNT.each_ref().map(|c| c.load(std::sync::atomic::Ordering::Relaxed) / all)));
+    messages.remark(words(&verdict).trim_end());
+    for t in &found.trials {
+        let h = &problem.hypotheses[t.chosen.hypothesis];
+        messages.remark(&format!(
+            "{} {:40} {:24} gap {:.4} t {:.1} p {:.3} E {:.1} {:?} {:?}",
+            t.step, h.effect, h.attachments[0].place.place, t.gap, t.t, t.chance, t.evidence, t.chosen.values, t.reason
+        ));
+    }
+    let text = serde_json::to_string_pretty(&verdict).expect("numbers and texts always serialize");
+    write_text(&args.output, &format!("{text}\n"))?;
     Ok(Ending::Fine)
 }
 

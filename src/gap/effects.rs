@@ -150,6 +150,8 @@ pub struct Effect {
     pub range: Option<Range>,
     /// Effects of one group are also tried together, with one set of coefficients.
     pub group: Option<String>,
+    /// The law of which it is a form; of these one is at a place.
+    pub law: Option<String>,
     /// A Bridge between nodes of which neither is fixed (another effect of the family covers the fixed ones).
     pub free_ends: bool,
     /// A Bridge that is tried in both directions.
@@ -176,7 +178,7 @@ impl Effect {
     }
 }
 
-/// What may be missing, in the order of the names.
+/// What may be missing, in the order of the packages: what is usual on machines comes first.
 #[derive(Clone, Debug)]
 pub struct Catalogue {
     /// Explanations.
@@ -219,12 +221,14 @@ struct Found {
 #[derive(Default)]
 struct Reader {
     classes: BTreeMap<String, Found>,
+    /// Their names as they were read.
+    order: Vec<String>,
     diagnostics: Vec<Diagnostic>,
 }
 
 impl Reader {
     fn folder(&mut self, world: &dyn World, path: &Path, prefix: &str) {
-        for (name, is_folder) in world.list(path).unwrap_or_default() {
+        for (name, is_folder) in in_order(world, path) {
             let inner = path.join(&name);
             if is_folder {
                 self.folder(world, &inner, &joined(prefix, &name));
@@ -256,6 +260,7 @@ impl Reader {
             extends: extends.collect(),
             annotation: own,
         };
+        self.order.push(full.clone());
         self.classes.insert(full, found);
     }
 
@@ -280,8 +285,9 @@ impl Reader {
 
     fn finish(mut self, world: &dyn World, folder: Option<&Path>) -> Checked<Vec<Arc<Effect>>> {
         let wanted: Vec<(&Found, &Found)> = self
-            .classes
-            .values()
+            .order
+            .iter()
+            .filter_map(|name| self.classes.get(name))
             .filter(|f| !f.partial && argument(&f.annotation, "family").is_some())
             .filter_map(|f| Some((f, self.interface(f)?)))
             .collect();
@@ -300,6 +306,19 @@ impl Reader {
         self.diagnostics.extend(bad);
         Checked { value: Some(effects), diagnostics: self.diagnostics }
     }
+}
+
+/// What a folder holds, in the order of its package; what that does not name comes last.
+fn in_order(world: &dyn World, path: &Path) -> Vec<(String, bool)> {
+    let order = world.read(&path.join("package.order")).unwrap_or_default();
+    let names: Vec<&str> = order.lines().map(str::trim).collect();
+    let mut all = world.list(path).unwrap_or_default();
+    let place = |file: &str| {
+        let name = file.strip_suffix(".mo").unwrap_or(file);
+        names.iter().position(|n| *n == name).unwrap_or(names.len())
+    };
+    all.sort_by_cached_key(|(file, _)| (place(file), file.clone()));
+    all
 }
 
 fn unusable(class: &str, why: &str) -> Diagnostic {
@@ -389,6 +408,7 @@ fn effect(found: &Found, interface: &Found, read: &Attributes<'_>, number: usize
         base: texts(own, "base").iter().map(|n| read.quantity(number, n)).collect::<Result<_, _>>()?,
         range: range(own, read, number)?,
         group: text(own, "group"),
+        law: text(own, "law"),
         free_ends: text(own, "ends").as_deref() == Some("free"),
         directed: text(own, "directed").is_some(),
         without: text(own, "without").and_then(|t| attach(&t)),

@@ -1,6 +1,7 @@
 //! How large the gap is, as it is: root mean squares of measured minus simulated. Nothing is subtracted from them.
 
 use super::data::Recording;
+use super::estimate::candidate::Errors;
 use super::held::Residuals;
 use super::hypotheses::Signal;
 use super::problem::Problem;
@@ -31,6 +32,15 @@ impl Left {
             Some((0..r.signals.len()).map(|i| of_signal(run, r, i)).collect())
         };
         Left { recordings: runs.iter().zip(recordings).map(of_run).collect() }
+    }
+
+    /// From the errors of a model behind the beginning, a recording each.
+    pub fn of(errors: &[Option<Errors>]) -> Self {
+        let signal = |e: &Vec<f64>| {
+            let known = e.iter().filter(|v| !v.is_nan());
+            known.fold((0.0, 0.0), |(sum, n), e| (sum + e * e, n + 1.0))
+        };
+        Left { recordings: errors.iter().map(|e| Some(e.as_ref()?.iter().map(signal).collect())).collect() }
     }
 
     /// RMS of a signal over all recordings, SI; `None` where a run stops early, or nothing was measured.

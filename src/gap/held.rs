@@ -1,11 +1,10 @@
 //! How large the gap is: simulation from the inputs alone, signal by signal, in parts of the full scale.
 
-use super::data::{Inputs, Recording};
+use super::data::Recording;
+use super::estimate::simulation::Course;
 use super::filter::{self, Setting, Tape};
 use super::problem::Problem;
-use super::step::{self, Exponential};
 use crate::analysis::local::Local;
-use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 /// Residuals of one recording behind the window: samples by signals; NaN where nothing was measured.
@@ -77,109 +76,14 @@ pub fn from_start(setting: &Setting, recording: &Recording) -> Option<Vec<Vec<f6
 fn open_loop(setting: &Setting, recording: &Recording, from: usize, state: Vec<f64>) -> Option<Vec<Vec<f64>>> {
     let mut u = vec![0.0; recording.inputs.len()];
     recording.input(from, &mut u);
-    let theta = &setting.theta;
+    let (theta, sizes) = (&setting.theta, &setting.sizes);
     let mut local = Local::start(setting.plan.clone(), recording.times[0], theta, &u).ok()?;
-    let n = state.len();
-    let mut x = state;
-    let mut stepper = Stepper {
-        scale: DVector::from_column_slice(&setting.sizes),
-        exponential: Exponential::new(n, 0),
-        a: DMatrix::zeros(n, n),
-        length: 0.0,
-        since: 0.0,
-        inputs: Inputs::new(recording),
-        u: u.clone(),
-        theta,
-    };
     let mut simulated = vec![Vec::with_capacity(recording.len() - from); setting.noise.len()];
-    for k in from..recording.len() {
-        recording.input(k, &mut u);
-        let t = recording.times[k];
-        local.evaluate(t, &x, theta, &u).ok()?;
+    let mut course = Course { local: &mut local, theta, sizes, state, slopes: None };
+    course.run(recording, from..recording.len(), |_, local, _| {
         simulated.iter_mut().zip(&local.outputs).for_each(|(s, y)| s.push(*y));
-        if k + 1 == recording.len() {
-            break;
-        }
-        stepper.since = t;
-        stepper.inputs.enter(recording, k);
-        stepper.advance(&mut local, t, recording.times[k + 1] - t, &mut x, 0)?;
-        if x.iter().any(|v| !v.is_finite()) {
-            return None;
-        }
-    }
+    })?;
     Some(simulated)
-}
-
-/// Halvings of a step at most.
-const DEEPEST: u32 = 6;
-/// The curvature within a step that is let pass, in parts of the states' sizes.
-const CURVATURE: f64 = 1e-5;
-
-/// Exponential steps (Rosenbrock-Euler; Hochbruck, Ostermann, Acta Numerica 2010, 2.4), halved until the model is nearly
-/// linear over each. A linearisation serves as long as the model keeps to it, and inputs do not move within a step.
-struct Stepper<'a> {
-    scale: DVector<f64>,
-    exponential: Exponential,
-    /// Scaled matrix and step of the last linearisation; no step yet where it is 0.
-    a: DMatrix<f64>,
-    length: f64,
-    /// When the last sample was, and the inputs after it.
-    since: f64,
-    inputs: Inputs,
-    u: Vec<f64>,
-    theta: &'a [f64],
-}
-
-impl Stepper<'_> {
-    /// From `t`, where the model has been evaluated.
-    fn advance(&mut self, local: &mut Local, t: f64, h: f64, x: &mut Vec<f64>, depth: u32) -> Option<()> {
-        let still = DVector::zeros(x.len());
-        if step::as_long(h, self.length) && self.inputs.slope.iter().all(|v| *v == 0.0) {
-            self.exponential.ramped.fill(0.0);
-            let (next, bend) = self.step(local, t, h, x, &still);
-            if bend <= CURVATURE {
-                *x = next;
-                return Some(());
-            }
-        }
-        self.inputs.at(t - self.since, &mut self.u);
-        local.linearize(t, x, self.theta, &self.u).ok()?;
-        let ramp = self.linear(local, h);
-        let (next, bend) = self.step(local, t, h, x, &ramp);
-        if depth < DEEPEST && bend > CURVATURE {
-            self.advance(local, t, 0.5 * h, x, depth + 1)?;
-            let middle = t + 0.5 * h;
-            self.inputs.at(middle - self.since, &mut self.u);
-            local.evaluate(middle, x, self.theta, &self.u).ok()?;
-            return self.advance(local, middle, 0.5 * h, x, depth + 1);
-        }
-        *x = next;
-        Some(())
-    }
-
-    /// Takes over the linearisation; gives how fast the inputs change the rates.
-    fn linear(&mut self, local: &Local, h: f64) -> DVector<f64> {
-        let n = self.scale.len();
-        self.a = DMatrix::from_fn(n, n, |i, j| local.linear.a[(i, j)] * self.scale[j] / self.scale[i]);
-        self.length = h;
-        let ramp = step::ramp(&local.linear.b, &self.inputs.slope).component_div(&self.scale);
-        self.exponential.compute(&self.a, h, Some(&ramp));
-        ramp
-    }
-
-    /// A step from where the model was evaluated last, and how far the model is from linear over it.
-    fn step(&mut self, local: &mut Local, t: f64, h: f64, x: &[f64], ramp: &DVector<f64>) -> (Vec<f64>, f64) {
-        let rate = local.rate_vector().component_div(&self.scale);
-        let change = &self.exponential.integral * &rate + &self.exponential.ramped;
-        let next: Vec<f64> = (0..x.len()).map(|i| x[i] + change[i] * self.scale[i]).collect();
-        let expected = rate + &self.a * change + ramp * h;
-        self.inputs.at(t + h - self.since, &mut self.u);
-        if local.evaluate(t + h, &next, self.theta, &self.u).is_err() {
-            return (next, f64::INFINITY);
-        }
-        let off = |i: usize| 0.5 * h * (local.rates[i] / self.scale[i] - expected[i]).abs();
-        (next, (0..x.len()).map(off).fold(0.0, f64::max))
-    }
 }
 
 /// Simulates all recordings.

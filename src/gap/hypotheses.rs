@@ -185,6 +185,17 @@ impl Hypothesis {
         self.attachments[0].effect.as_ref().is_some_and(|e| e.is_shape())
     }
 
+    /// Whether it is a mistake of the recording, not of the model.
+    pub fn is_recording_error(&self) -> bool {
+        self.family == super::mistakes::FAMILY
+    }
+
+    /// The law whose form it is: of the forms of one law, one is at a place.
+    pub fn law(&self) -> &str {
+        let effect = self.attachments[0].effect.as_ref();
+        effect.and_then(|e| e.law.as_deref()).unwrap_or(&self.effect)
+    }
+
     /// An effect that is there or not: one that has a share of a whole. From where it is not it looks nothing like itself.
     pub fn is_bounded(&self) -> bool {
         self.family != "parameter" && self.coefficients.iter().any(|c| c.whole().is_some())

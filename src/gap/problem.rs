@@ -63,6 +63,8 @@ pub struct Tolerance {
     pub max: f64,
     /// The study does not say it: assumed.
     pub assumed: bool,
+    /// The study leaves it free: the nominal value says nothing, `sigma` is a size.
+    pub free: bool,
 }
 
 /// The whole question.
@@ -77,6 +79,8 @@ pub struct Problem<'a> {
     pub circuit: Circuit,
     /// All explanations.
     pub hypotheses: Vec<Hypothesis>,
+    /// What the study may have got wrong about the recordings.
+    pub mistakes: Vec<Hypothesis>,
     /// One source per node, command and sensor.
     pub disturbances: Vec<Hypothesis>,
     /// Measured signals.
@@ -136,6 +140,12 @@ pub struct Chosen {
 }
 
 impl Problem<'_> {
+    /// Counts mistakes of the recordings among the hypotheses.
+    pub fn with_mistakes(&mut self) {
+        let mistakes = std::mem::take(&mut self.mistakes);
+        self.hypotheses.extend(mistakes);
+    }
+
     /// Physical sources: those at nodes.
     pub fn node_sources(&self) -> Vec<usize> {
         let at_node = |d: &Hypothesis| matches!(d.attachments[0].site, Site::Node(_));

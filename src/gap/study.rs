@@ -5,6 +5,7 @@ use super::circuit::{self, Circuit};
 use super::data::Recording;
 use super::effects::{self, Effect};
 use super::hypotheses::{self, Free, Hypothesis, Signal};
+use super::mistakes::mistakes;
 use super::problem::{Problem, Shown, Tolerance};
 use super::shapes;
 use crate::analysis::{lift::is_root, noise};
@@ -144,6 +145,7 @@ impl Nominal {
             folder: None,
             circuit: offer.circuit,
             hypotheses: Vec::new(),
+            mistakes: Vec::new(),
             disturbances: Vec::new(),
             noise_floor: vec![1.0; signals.len()],
             full_scale: vec![1.0; signals.len()],
@@ -190,6 +192,7 @@ impl Nominal {
             folder: offer.folder,
             circuit: offer.circuit,
             hypotheses: offer.hypotheses,
+            mistakes: Vec::new(),
             disturbances,
             signals,
             full_scale,
@@ -203,6 +206,7 @@ impl Nominal {
         problem.explore();
         shapes::fit(&mut problem);
         capacity::bound(&mut problem);
+        problem.mistakes = mistakes(&problem, &offer.effects);
         Ok(Question { problem, bound, flat, diagnostics })
     }
 }
@@ -229,6 +233,8 @@ struct Offer {
     circuit: Circuit,
     folder: Option<PathBuf>,
     hypotheses: Vec<Hypothesis>,
+    /// The whole catalogue.
+    effects: Vec<Arc<Effect>>,
     /// Disturbances, before they are attached.
     sources: Vec<Arc<Effect>>,
     diagnostics: Vec<Diagnostic>,
@@ -242,7 +248,8 @@ fn offer(world: &dyn World, study: &Study, signals: &[Signal], free: &[Free]) ->
     let Some(catalogue) = checked.value else { return Err(Unusable::study(checked.diagnostics)) };
     let mut hypotheses = hypotheses::hypotheses(&circuit, &catalogue.effects, signals, free);
     hypotheses::narrow(&mut hypotheses, &study.effects);
-    Ok(Offer { circuit, folder, hypotheses, sources: catalogue.disturbances, diagnostics: checked.diagnostics })
+    let (effects, sources) = (catalogue.effects, catalogue.disturbances);
+    Ok(Offer { circuit, folder, hypotheses, effects, sources, diagnostics: checked.diagnostics })
 }
 
 fn signals(flat: &FlatModel, bound: &Bound, ranges: &[f64]) -> Vec<Signal> {
@@ -324,7 +331,8 @@ fn stated(flat: &FlatModel, bound: &Bound, value: &impl Fn(VarId) -> f64) -> Vec
             Knowledge::Absolute(value) => value,
             Knowledge::Free => nominal.abs().max(1e-12),
         };
-        all.push(tolerance(flat, p.variable, nominal, sigma, (p.min, p.max), false));
+        let t = tolerance(flat, p.variable, nominal, sigma, (p.min, p.max), false);
+        all.push(Tolerance { free: matches!(p.knowledge, Knowledge::Free), ..t });
     }
     all
 }
@@ -369,5 +377,6 @@ fn tolerance(
         min: bounds.0.or(declared).or(least).unwrap_or(f64::NEG_INFINITY),
         max: bounds.1.or(number(variable.max)).unwrap_or(f64::INFINITY),
         assumed,
+        free: false,
     }
 }

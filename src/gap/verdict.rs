@@ -1,5 +1,9 @@
 //! The verdict as scripts read it: schema 1.
 
+mod conclude;
+
+pub use conclude::conclude;
+
 use serde::Serialize;
 use std::collections::BTreeMap;
 

@@ -1,0 +1,231 @@
+//! Maximum a posteriori: Levenberg-Marquardt between bounds, on errors weighed as large and as correlated as the fit
+//! leaves them. With a large misfit the data are weak and tolerances hold; once what is missing is in, the errors become
+//! small and independent, and the data speak about parameters too.
+
+use super::super::data::Recording;
+use super::super::policy::{ITERATIONS, LEAST, SETTLED, TRIALS};
+use super::candidate::{Candidate, Errors, Evaluated, Products};
+use super::correlation;
+use nalgebra::{DMatrix, DVector};
+
+/// First damping, what divides it after a step that was taken, and what multiplies it, at least, after one that was not.
+const DAMPING: f64 = 1e-3;
+const EASED: f64 = 5.0;
+const STIFFENED: f64 = 6.0;
+const LEAST_DAMPING: f64 = 1e-4;
+/// Part of the diagonal that keeps a singular system solvable.
+const RIDGE: f64 = 1e-9;
+
+/// How much the errors of each signal count.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Weights {
+    /// Per signal the mean square of its errors.
+    pub square: Vec<f64>,
+    /// Per signal how many samples in a row say the same.
+    pub tau: Vec<f64>,
+}
+
+impl Weights {
+    /// As large and as correlated as errors are.
+    pub fn of(errors: &[Errors], full_scale: &[f64]) -> Self {
+        let one = |(i, scale): (usize, &f64)| {
+            let count = |e: &Errors| e[i].iter().filter(|v| v.is_finite()).count() as f64;
+            let all: f64 = errors.iter().map(count).sum::<f64>().max(1.0);
+            let sum: f64 = errors.iter().flat_map(|e| &e[i]).filter(|v| v.is_finite()).map(|v| v * v).sum();
+            let tau: f64 = errors.iter().map(|e| count(e) * correlation::time(&e[i])).sum::<f64>() / all;
+            let least = (0.01 * LEAST * scale).powi(2);
+            ((sum / all).max(least), tau.max(1.0))
+        };
+        let (square, tau) = full_scale.iter().enumerate().map(one).unzip();
+        Weights { square, tau }
+    }
+
+    /// As if only the sensors' noise were left.
+    pub fn sensors(noise: &[f64], full_scale: &[f64]) -> Self {
+        let square = noise.iter().zip(full_scale).map(|(n, f)| n.max(LEAST * f).powi(2)).collect();
+        Weights { square, tau: vec![1.0; noise.len()] }
+    }
+
+    /// What a squared error of a signal counts.
+    pub fn weight(&self, signal: usize) -> f64 {
+        1.0 / (self.square[signal] * self.tau[signal])
+    }
+
+    /// Sum of weighed squares.
+    pub fn cost(&self, errors: &[Errors]) -> f64 {
+        let one = |i: usize| {
+            let squares = errors.iter().flat_map(|e| &e[i]).filter(|v| v.is_finite()).map(|v| v * v);
+            self.weight(i) * squares.sum::<f64>()
+        };
+        (0..self.square.len()).map(one).sum()
+    }
+}
+
+/// A model at its optimum.
+#[derive(Clone, Debug)]
+pub struct Fit {
+    /// The model.
+    pub candidate: Candidate,
+    /// Its coordinates.
+    pub x: Vec<f64>,
+    /// What it leaves there.
+    pub evaluated: Evaluated,
+    /// How much that counted.
+    pub weights: Weights,
+}
+
+impl Fit {
+    /// Fits a model from `x`: once for each of `rounds`, with weights that the round before left. `first` are those of the
+    /// first round, where they are not to be as the errors are at `x`. `None` where the model does not reach the end of a
+    /// recording.
+    pub fn of(
+        candidate: Candidate,
+        x: Vec<f64>,
+        train: &[Recording],
+        full_scale: &[f64],
+        first: Option<Weights>,
+        rounds: usize,
+    ) -> Option<Fit> {
+        let evaluated = candidate.evaluate(&x, train)?;
+        let weights = first.unwrap_or_else(|| Weights::of(&evaluated.errors, full_scale));
+        let mut fit = Fit { candidate, x, evaluated, weights };
+        for round in 0..rounds {
+            if round > 0 {
+                fit.weights = Weights::of(&fit.evaluated.errors, full_scale);
+            }
+            fit.descend(train);
+        }
+        Some(fit)
+    }
+
+    /// Levenberg-Marquardt with these weights.
+    fn descend(&mut self, train: &[Recording]) {
+        let mut damping = DAMPING;
+        for _ in 0..ITERATIONS {
+            let before = self.cost();
+            let system = self.system(|_, _| true);
+            let mut taken = false;
+            for _ in 0..TRIALS {
+                let x = system.step(self, damping);
+                if x == self.x {
+                    break;
+                }
+                if let Some(evaluated) = self.candidate.evaluate(&x, train) {
+                    let cost = self.weights.cost(&evaluated.errors) + self.candidate.prior(&x);
+                    if cost < before {
+                        (self.x, self.evaluated) = (x, evaluated);
+                        damping /= EASED;
+                        taken = true;
+                        break;
+                    }
+                }
+                damping = damping.max(LEAST_DAMPING) * STIFFENED;
+            }
+            if !taken || before - self.cost() < SETTLED * before {
+                break;
+            }
+        }
+    }
+
+    /// Weighed squares and the prior.
+    pub fn cost(&self) -> f64 {
+        self.weights.cost(&self.evaluated.errors) + self.candidate.prior(&self.x)
+    }
+
+    /// The normal equations of the pieces wanted, by recording and piece.
+    pub fn system(&self, wanted: impl Fn(usize, usize) -> bool) -> System {
+        let mut sum = Products::none(self.x.len());
+        for (number, pieces) in self.evaluated.products.iter().enumerate() {
+            for (_, signals) in pieces.iter().enumerate().filter(|(piece, _)| wanted(number, *piece)) {
+                signals.iter().enumerate().for_each(|(i, p)| sum.add_weighed(p, self.weights.weight(i)));
+            }
+        }
+        for (i, (c, x)) in self.candidate.coordinates.iter().zip(&self.x).enumerate() {
+            if let Some((mean, sigma)) = c.prior {
+                sum.slopes[(i, i)] += sigma.powi(-2);
+                sum.errors[i] -= (x - mean) / (sigma * sigma);
+            }
+        }
+        System { information: sum.slopes, towards: sum.errors }
+    }
+
+    /// Samples of a signal with a value.
+    pub fn samples(&self, signal: usize) -> f64 {
+        let count = |e: &Errors| e[signal].iter().filter(|v| v.is_finite()).count();
+        self.evaluated.errors.iter().map(count).sum::<usize>() as f64
+    }
+
+    /// Minus the log posterior with each signal's variance at its optimum, nats: what orders fits of one model.
+    pub fn nats(&self) -> f64 {
+        let one = |i: usize| {
+            let squares = self.evaluated.errors.iter().flat_map(|e| &e[i]).filter(|v| v.is_finite()).map(|v| v * v);
+            let mean = squares.sum::<f64>() / self.samples(i).max(1.0);
+            0.5 * self.samples(i) / self.weights.tau[i] * mean.max(f64::MIN_POSITIVE).ln()
+        };
+        (0..self.weights.tau.len()).map(one).sum::<f64>() + self.prior()
+    }
+
+    /// Nats that the distance of parameters from their data sheet costs.
+    pub fn prior(&self) -> f64 {
+        0.5 * self.candidate.prior(&self.x)
+    }
+
+    /// Standard deviation of each coordinate, in its units; what a bound holds has none.
+    pub fn deviations(&self) -> Vec<f64> {
+        self.system(|_, _| true).deviations(self)
+    }
+}
+
+/// Normal equations at a point.
+pub struct System {
+    information: DMatrix<f64>,
+    /// Minus half the gradient.
+    towards: DVector<f64>,
+}
+
+impl System {
+    /// Coordinates that are free to go where the gradient leads, and seen at all.
+    fn free(&self, fit: &Fit) -> Vec<usize> {
+        let held = |i: usize| {
+            let c = &fit.candidate.coordinates[i];
+            fit.x[i] <= c.low && self.towards[i] < 0.0 || fit.x[i] >= c.high && self.towards[i] > 0.0
+        };
+        (0..fit.x.len()).filter(|&i| !held(i) && self.information[(i, i)] > 0.0).collect()
+    }
+
+    /// Where a damped Gauss-Newton step leads, within the bounds.
+    pub fn step(&self, fit: &Fit, damping: f64) -> Vec<f64> {
+        let free = self.free(fit);
+        let mut x = fit.x.clone();
+        // in units in which the diagonal is 1
+        let unit: Vec<f64> = free.iter().map(|&i| self.information[(i, i)].sqrt()).collect();
+        let matrix = DMatrix::from_fn(free.len(), free.len(), |a, b| {
+            let scaled = self.information[(free[a], free[b])] / (unit[a] * unit[b]);
+            if a == b { scaled + damping + RIDGE } else { scaled }
+        });
+        let right = DVector::from_fn(free.len(), |a, _| self.towards[free[a]] / unit[a]);
+        let Some(factor) = matrix.cholesky() else { return x };
+        let change = factor.solve(&right);
+        for (a, &i) in free.iter().enumerate() {
+            let c = &fit.candidate.coordinates[i];
+            x[i] = (x[i] + change[a] / unit[a]).clamp(c.low, c.high);
+        }
+        x
+    }
+
+    fn deviations(&self, fit: &Fit) -> Vec<f64> {
+        let free = self.free(fit);
+        let mut deviations = vec![0.0; fit.x.len()];
+        let unit: Vec<f64> = free.iter().map(|&i| self.information[(i, i)].sqrt()).collect();
+        let matrix = DMatrix::from_fn(free.len(), free.len(), |a, b| {
+            let scaled = self.information[(free[a], free[b])] / (unit[a] * unit[b]);
+            if a == b { scaled + RIDGE } else { scaled }
+        });
+        if let Some(inverse) = matrix.try_inverse() {
+            for (a, &i) in free.iter().enumerate() {
+                deviations[i] = inverse[(a, a)].max(0.0).sqrt() / unit[a];
+            }
+        }
+        deviations
+    }
+}

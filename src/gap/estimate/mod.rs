@@ -1,0 +1,11 @@
+//! Estimates: a model simulated from its inputs alone, with derivatives; its parameters as MAP estimate within their
+//! tolerances, with errors as correlated as they are.
+
+pub mod candidate;
+pub mod correlation;
+pub mod map;
+pub mod simulation;
+pub mod start;
+
+pub use candidate::{Candidate, Coordinate};
+pub use map::{Fit, Weights};

@@ -1,0 +1,171 @@
+//! Where a recording begins: the state that its first samples lead to, by least squares between what they show and the
+//! model's own start. A recording rarely begins where the model does, and no study says where.
+
+use super::super::data::{Inputs, Recording};
+use super::simulation::{Course, Slopes};
+use crate::analysis::local::{Local, Plan};
+use nalgebra::{Cholesky, DMatrix, DVector};
+use std::sync::Arc;
+
+/// How far states may be from the model's start when a recording begins: measured ones by their size, the others by these
+/// parts of it or of how far they usually move, absolute temperatures by so much.
+const UNMEASURED: f64 = 0.2;
+const TRAVEL: f64 = 0.5;
+const KELVIN: f64 = 10.0;
+/// Gauss-Newton steps at most, halvings of one that leads nowhere, and the change of the state in its sizes that is none.
+const ROUNDS: usize = 6;
+const HALVINGS: usize = 3;
+const SMALL: f64 = 1e-4;
+
+/// A model with values, and what is known of its states.
+#[derive(Clone, Copy)]
+pub struct Valued<'a> {
+    /// The model.
+    pub plan: &'a Arc<Plan>,
+    /// Values of its parameters.
+    pub theta: &'a [f64],
+    /// Usual size of each state, SI.
+    pub sizes: &'a [f64],
+    /// How far each moves in the nominal model, SI; 0 where that is not known.
+    pub travel: &'a [f64],
+    /// Per signal the deviation that counts as one.
+    pub deviations: &'a [f64],
+}
+
+/// A model at the last sample of a recording's beginning.
+pub struct Begun {
+    /// The model there.
+    pub local: Local,
+    /// Its state, SI.
+    pub state: Vec<f64>,
+    /// How the state depends on what was asked for.
+    pub slopes: Option<Slopes>,
+}
+
+impl Valued<'_> {
+    /// Goes through the beginning of a recording. `moves`: the parameters whose slopes are wanted, and by how much one unit
+    /// of each moves them. `None` where the model has no value there.
+    pub fn begin(&self, recording: &Recording, moves: Option<&[(usize, f64)]>) -> Option<Begun> {
+        let u = Inputs::new(recording).from;
+        let mut local = Local::start(self.plan.clone(), recording.times[0], self.theta, &u).ok()?;
+        let own = local.state();
+        local.linearize(recording.times[0], &own, self.theta, &u).ok()?;
+        let loose = self.looseness(&local);
+        let mut x = DVector::zeros(own.len());
+        let mut best = self.through(recording, &mut local, &own, &loose, &x, moves)?;
+        for _ in 0..ROUNDS {
+            let Some(mut step) = best.step(&x, &loose) else { break };
+            let mut found = None;
+            for _ in 0..HALVINGS {
+                let tried = self.through(recording, &mut local, &own, &loose, &(&x + &step), moves);
+                found = tried.filter(|t| t.cost <= best.cost);
+                if found.is_some() {
+                    break;
+                }
+                step *= 0.5;
+            }
+            let Some(found) = found else { break };
+            x += &step;
+            best = found;
+            if step.amax() < SMALL {
+                break;
+            }
+        }
+        let slopes = moves.map(|moves| best.slopes_of_choices(&loose, moves));
+        Some(Begun { local, state: best.state, slopes })
+    }
+
+    /// Deviations of the states from the model's own start, in their sizes.
+    fn looseness(&self, local: &Local) -> DVector<f64> {
+        DVector::from_fn(self.sizes.len(), |i, _| {
+            let measured = local.linear.c.column(i).iter().any(|c| *c != 0.0);
+            match self.plan.state_unit(i) {
+                Some("K") => KELVIN / self.sizes[i],
+                _ if measured => 1.0,
+                _ => UNMEASURED.max(TRAVEL * self.travel[i] / self.sizes[i]),
+            }
+        })
+    }
+
+    /// The beginning from `x` sizes off the model's own start.
+    fn through(
+        &self,
+        recording: &Recording,
+        local: &mut Local,
+        own: &[f64],
+        loose: &DVector<f64>,
+        x: &DVector<f64>,
+        moves: Option<&[(usize, f64)]>,
+    ) -> Option<Beginning> {
+        let n = own.len();
+        let state: Vec<f64> = (0..n).map(|i| own[i] + x[i] * self.sizes[i]).collect();
+        let moves = moves.unwrap_or(&[]);
+        let width = n + moves.len();
+        let mut slopes = DMatrix::zeros(n, width);
+        slopes.view_mut((0, 0), (n, n)).fill_with_identity();
+        let choices = (0..n).map(|_| None).chain(moves.iter().map(|m| Some(*m))).collect();
+        let slopes = Some(Slopes { states: slopes, moves: choices });
+        let mut gram = DMatrix::zeros(n, width + 1);
+        let mut cost = x.component_div(loose).norm_squared();
+        let mut course = Course { local, theta: self.theta, sizes: self.sizes, state, slopes };
+        course.run(recording, 0..recording.settled() + 1, |k, local, slopes| {
+            let Some(slopes) = slopes else { return };
+            let rows = slopes.outputs(local, self.sizes);
+            for (i, deviation) in self.deviations.iter().enumerate() {
+                let error = (recording.signals[i][k] - local.outputs[i]) / deviation;
+                if !error.is_finite() {
+                    continue;
+                }
+                cost += error * error;
+                let row = rows.row(i) / *deviation;
+                for a in 0..n {
+                    (0..width).for_each(|b| gram[(a, b)] += row[a] * row[b]);
+                    gram[(a, width)] += row[a] * error;
+                }
+            }
+        })?;
+        let (state, slopes) = (course.state, course.slopes?.states);
+        cost.is_finite().then_some(Beginning { state, slopes, gram, cost })
+    }
+}
+
+/// What one passage through the beginning gave.
+struct Beginning {
+    /// State at its last sample.
+    state: Vec<f64>,
+    /// How that depends on the first state and on the parameters.
+    slopes: DMatrix<f64>,
+    /// Products of the first state's columns with all columns and with the errors.
+    gram: DMatrix<f64>,
+    cost: f64,
+}
+
+impl Beginning {
+    /// Products of the first state's columns and the pull to the model's own start.
+    fn information(&self, loose: &DVector<f64>) -> Option<Cholesky<f64, nalgebra::Dyn>> {
+        let n = loose.len();
+        let mut information = self.gram.view((0, 0), (n, n)).into_owned();
+        (0..n).for_each(|i| information[(i, i)] += loose[i].powi(-2));
+        information.cholesky()
+    }
+
+    fn step(&self, x: &DVector<f64>, loose: &DVector<f64>) -> Option<DVector<f64>> {
+        let pull = DVector::from_fn(x.len(), |i, _| x[i] * loose[i].powi(-2));
+        let last = self.gram.ncols() - 1;
+        Some(self.information(loose)?.solve(&(self.gram.column(last) - pull)))
+    }
+
+    /// How the state depends on the parameters, the first state found anew for each: by the implicit function theorem.
+    fn slopes_of_choices(&self, loose: &DVector<f64>, moves: &[(usize, f64)]) -> Slopes {
+        let (n, m) = (loose.len(), moves.len());
+        let direct = self.slopes.columns(n, m);
+        let states = match self.information(loose) {
+            Some(information) => {
+                let first = information.solve(&self.gram.view((0, n), (n, m)).into_owned());
+                direct - self.slopes.columns(0, n) * first
+            }
+            None => direct.into_owned(),
+        };
+        Slopes { states, moves: moves.iter().map(|m| Some(*m)).collect() }
+    }
+}

@@ -1,0 +1,98 @@
+//! What a study gets wrong about a recording: the sign of a column, or its unit. Such a mistake has nothing to fit, so it
+//! is the simplest of all hypotheses.
+
+use super::circuit::same_kind;
+use super::effects::{Coefficient, Effect};
+use super::hypotheses::{Attachment, Hypothesis, Kind, Place, Sharing, Site};
+use super::problem::Problem;
+use std::sync::Arc;
+
+/// Family of such hypotheses.
+pub const FAMILY: &str = "recording_error";
+
+/// Effects that scale a signal by 1 + k.
+const SENSOR: &str = "Effects.SensorGain";
+const COMMAND: &str = "Effects.CommandGain";
+
+/// Units that are taken for each other: the SI unit, and how many of it are one of another.
+const UNITS: &[(&str, &[f64])] = &[
+    ("rad", &[std::f64::consts::PI / 180.0]),
+    ("rad/s", &[std::f64::consts::PI / 30.0, std::f64::consts::PI / 180.0]),
+    ("Pa", &[1e3, 1e5, 1e6, 6894.757_293_168]),
+    ("m3/s", &[1.0 / 6e4, 1e-6]),
+    ("m", &[1e-3]),
+    ("m/s", &[1e-3]),
+    ("N", &[1e3]),
+    ("A", &[1e-3]),
+    ("V", &[1e-3]),
+    ("W", &[1e3]),
+];
+/// Factors of a column of any unit: a shifted point.
+const ANY: &[f64] = &[10.0, 1e3];
+/// Factors nearer than this part are one.
+const SAME: f64 = 1e-3;
+
+/// A wrong sign, and every wrong unit, of each signal and each input.
+pub fn mistakes(problem: &Problem<'_>, catalogue: &[Arc<Effect>]) -> Vec<Hypothesis> {
+    let effect = |class: &str| catalogue.iter().find(|e| e.class == class).cloned();
+    let (Some(sensor), Some(command)) = (effect(SENSOR), effect(COMMAND)) else { return Vec::new() };
+    let signals = problem.signals.iter().flat_map(|s| {
+        let unit = problem.circuit.units.get(&s.variable).map_or("", String::as_str);
+        let site = Site::Sensor(s.name.clone());
+        factors(unit).into_iter().map(move |f| (site.clone(), s.name.clone(), f)).collect::<Vec<_>>()
+    });
+    let inputs = problem.circuit.inputs.iter().filter(|i| i.ty == crate::flat::Type::Real).flat_map(|i| {
+        let site = Site::Command(i.name.clone());
+        factors(&i.unit).into_iter().map(move |f| (site.clone(), i.name.clone(), f)).collect::<Vec<_>>()
+    });
+    let signals = signals.map(|(site, name, f)| hypothesis(&sensor, site, &name, Kind::Sensor, f));
+    let inputs = inputs.map(|(site, name, f)| hypothesis(&command, site, &name, Kind::Signal, f));
+    signals.chain(inputs).collect()
+}
+
+/// The factor by which the column of a mistake is wrong.
+pub fn factor(h: &Hypothesis) -> f64 {
+    1.0 + h.coefficients.first().and_then(|c| c.max).unwrap_or(0.0)
+}
+
+fn factors(unit: &str) -> Vec<f64> {
+    let own = UNITS.iter().filter(|(u, _)| same_kind(u, unit)).flat_map(|(_, f)| f.iter());
+    let mut all = vec![-1.0];
+    for f in own.chain(ANY).flat_map(|f| [*f, 1.0 / f]) {
+        if !all.iter().any(|known| (known / f - 1.0).abs() < SAME) {
+            all.push(f);
+        }
+    }
+    all
+}
+
+fn hypothesis(effect: &Arc<Effect>, site: Site, name: &str, kind: Kind, factor: f64) -> Hypothesis {
+    let place = Place { place: name.into(), node: vec![name.into()], kind };
+    let attachment =
+        Attachment { effect: Some(effect.clone()), site, sense: vec![], base: vec![], temperature: None, place };
+    let k = factor - 1.0;
+    let usual = |c: &Coefficient| Coefficient { min: Some(k), max: Some(k), nominal: k, ..c.clone() };
+    Hypothesis {
+        effect: effect.class.clone(),
+        family: FAMILY.into(),
+        attachments: vec![attachment],
+        sharing: Sharing::Single,
+        coefficients: effect.coefficients.iter().map(usual).collect(),
+        shapes: Vec::new(),
+        changes_order: false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::factors;
+
+    #[test]
+    fn units_that_exist_for_a_dimension() {
+        let all = factors("rad/s");
+        let has = |f: f64| all.iter().any(|x| (x / f - 1.0).abs() < 1e-9);
+        assert!(has(-1.0) && has(30.0 / std::f64::consts::PI) && has(std::f64::consts::PI / 30.0) && has(0.1));
+        assert!(!has(1e5));
+        assert!(factors("Pa").iter().filter(|f| (**f - 1e-3).abs() < 1e-9).count() == 1);
+    }
+}

@@ -1,0 +1,202 @@
+//! Is one model better than another? Two tests on left-out data, numbers alone: block losses under random flips of
+//! sign, and the likelihood ratio as an e-value.
+
+use super::super::policy::{ALPHA, DELTA, FLIPS, LEAST};
+use super::folds::LeftOut;
+
+/// What there is to know of the sensors.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sensors {
+    /// Per signal the standard deviation of its noise.
+    pub noise: Vec<f64>,
+    /// Per signal its full scale.
+    pub full_scale: Vec<f64>,
+}
+
+/// Loss differences of two models, block by block: how much better the second one is. Each block and signal has a
+/// variance of its own, so that one wild block cannot decide; blocks in which both are closed do not vote.
+pub fn differences(a: &LeftOut, b: &LeftOut, sensors: &Sensors) -> Vec<f64> {
+    let signals = sensors.noise.len();
+    let blocks = a.squares.len();
+    let mut all = vec![0.0; blocks];
+    for i in 0..signals {
+        let closed = sensors.noise[i].powi(2) + DELTA * DELTA * a.mean(i).min(b.mean(i)) + least(sensors, i);
+        let samples: f64 = a.samples.iter().map(|s| s[i]).sum();
+        if samples <= 0.0 {
+            continue;
+        }
+        for (k, d) in all.iter_mut().enumerate() {
+            let weight = a.samples[k][i] / samples * blocks as f64;
+            *d += weight * (loss(a.squares[k][i], closed) - loss(b.squares[k][i], closed));
+        }
+    }
+    all
+}
+
+/// Where a simulation does not get, the error is as large as numbers are.
+fn loss(square: f64, closed: f64) -> f64 {
+    (square.min(f64::MAX.sqrt()) + closed).ln()
+}
+
+fn least(sensors: &Sensors, signal: usize) -> f64 {
+    (LEAST * sensors.full_scale[signal]).powi(2)
+}
+
+/// Mean over its standard error, neighbours' correlation included; 0 for less than two.
+pub fn t_statistic(d: &[f64]) -> f64 {
+    let n = d.len() as f64;
+    if d.len() < 2 {
+        return 0.0;
+    }
+    let mean = d.iter().sum::<f64>() / n;
+    let variance = d.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0);
+    let neighbours = d.windows(2).map(|w| (w[0] - mean) * (w[1] - mean)).sum::<f64>() / n;
+    let variance = (variance + 2.0 * neighbours.max(0.0)).max(f64::MIN_POSITIVE);
+    mean / (variance / n).sqrt()
+}
+
+/// Per hypothesis the chance that the best of them all would do as well if none were better than the model without:
+/// the distribution of the largest t under common random signs of the blocks (White, Econometrica 68, 2000; Hansen,
+/// Journal of Business & Economic Statistics 23, 2005). It holds for any number and any correlation of hypotheses.
+pub fn chances(differences: &[Vec<f64>]) -> Vec<f64> {
+    let plain = |d: &[f64], signs: &dyn Fn(usize) -> f64| {
+        let n = d.len() as f64;
+        let mean = d.iter().enumerate().map(|(k, v)| signs(k) * v).sum::<f64>() / n;
+        let square = d.iter().map(|v| v * v).sum::<f64>() / n;
+        mean / ((square - mean * mean).max(f64::MIN_POSITIVE) / (n - 1.0).max(1.0)).sqrt()
+    };
+    let own: Vec<f64> = differences.iter().map(|d| plain(d, &|_| 1.0).min(t_statistic(d))).collect();
+    let mut random = Signs(0x9e37_79b9_7f4a_7c15);
+    let mut above = vec![1.0; own.len()];
+    let blocks = differences.first().map_or(0, Vec::len);
+    for _ in 0..FLIPS {
+        let signs: Vec<f64> = (0..blocks).map(|_| random.next()).collect();
+        let most = differences.iter().map(|d| plain(d, &|k| signs[k])).fold(f64::NEG_INFINITY, f64::max);
+        // equal but for rounding is as good
+        above.iter_mut().zip(&own).filter(|(_, t)| most >= **t - 1e-9 * t.abs()).for_each(|(n, _)| *n += 1.0);
+    }
+    above.into_iter().map(|n| n / (FLIPS as f64 + 1.0)).collect()
+}
+
+/// Random signs: the same at every call (Steele, Lea, Flood, OOPSLA 2014: SplitMix).
+struct Signs(u64);
+
+impl Signs {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        if (z ^ (z >> 31)) & 1 == 0 { 1.0 } else { -1.0 }
+    }
+}
+
+/// Log likelihood ratio of left-out data, nats: how much better the second model is, each signal with the variance that
+/// the model leaves. `independent`: per signal how many samples count. If the first model is true, it exceeds log(m/alpha)
+/// with probability below alpha/m (Markov; Vovk, Wang, Annals of Statistics 49, 2021).
+pub fn evidence(a: &LeftOut, b: &LeftOut, independent: &[f64], sensors: &Sensors) -> f64 {
+    let one = |i: usize| {
+        let floor = least(sensors, i);
+        let worse = |m: f64| m.min(f64::MAX.sqrt()) + floor;
+        0.5 * independent[i] * (worse(a.mean(i)) / worse(b.mean(i))).ln()
+    };
+    (0..sensors.noise.len()).map(one).sum()
+}
+
+/// What evidence must pass where the best of so many hypotheses is asked for, nats.
+pub fn needed(hypotheses: usize) -> f64 {
+    (hypotheses.max(1) as f64 / ALPHA).ln()
+}
+
+/// Noise-free gap of a signal, in its unit.
+pub fn signal_gap(left: &LeftOut, signal: usize, sensors: &Sensors) -> f64 {
+    (left.mean(signal) - sensors.noise[signal].powi(2)).max(0.0).sqrt()
+}
+
+/// Noise-free gap over all signals, in parts of full scale.
+pub fn gap(left: &LeftOut, sensors: &Sensors) -> f64 {
+    let n = sensors.noise.len();
+    let one = |i: usize| (signal_gap(left, i, sensors) / sensors.full_scale[i]).powi(2);
+    ((0..n).map(one).sum::<f64>() / n.max(1) as f64).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sensors() -> Sensors {
+        Sensors { noise: vec![0.0], full_scale: vec![1.0] }
+    }
+
+    fn left(squares: &[f64]) -> LeftOut {
+        LeftOut {
+            squares: squares.iter().map(|s| vec![*s]).collect(),
+            samples: squares.iter().map(|_| vec![10.0]).collect(),
+        }
+    }
+
+    fn random(state: &mut u64) -> f64 {
+        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (*state >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn normal(state: &mut u64) -> f64 {
+        (0..12).map(|_| random(state)).sum::<f64>() - 6.0
+    }
+
+    #[test]
+    fn the_chance_is_that_of_all_flips() {
+        // ten blocks: all 1024 flips can be counted
+        let mut state = 3;
+        let d: Vec<Vec<f64>> = (0..3).map(|_| (0..10).map(|_| normal(&mut state) + 0.4).collect()).collect();
+        let t = |d: &[f64], flip: u32| {
+            let n = d.len() as f64;
+            let signed: Vec<f64> =
+                d.iter().enumerate().map(|(k, v)| if flip >> k & 1 == 0 { *v } else { -v }).collect();
+            let mean = signed.iter().sum::<f64>() / n;
+            mean / (signed.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n / (n - 1.0)).sqrt()
+        };
+        let found = chances(&d);
+        for (own, found) in d.iter().zip(found) {
+            let reached = t(own, 0).min(t_statistic(own));
+            let above = (0..1024).filter(|&f| d.iter().map(|d| t(d, f)).fold(f64::MIN, f64::max) >= reached - 1e-9);
+            let exact = above.count() as f64 / 1024.0;
+            assert!((found - exact).abs() < 0.04, "{found} {exact}");
+        }
+    }
+
+    #[test]
+    fn evidence_is_an_e_value() {
+        // both models are equally good: over many draws the mean of exp(E) stays below 1 for a ratio of fixed variances,
+        // and E with variances of its own exceeds log(1/alpha) no more often than alpha
+        let mut state = 11;
+        let draws = 10_000;
+        let beyond = (0..draws)
+            .filter(|_| {
+                let errors: Vec<(f64, f64)> = (0..50).map(|_| (normal(&mut state), normal(&mut state))).collect();
+                let square = |f: &dyn Fn(&(f64, f64)) -> f64| errors.iter().map(|e| f(e).powi(2)).sum::<f64>() / 50.0;
+                // the second model's prediction adds something independent of what it predicts
+                let (a, b) = (square(&|e| e.0), square(&|e| e.0 + 0.3 * e.1));
+                evidence(&left(&[a]), &left(&[b]), &[50.0], &sensors()) > needed(1)
+            })
+            .count();
+        assert!((beyond as f64) < ALPHA * f64::from(draws), "{beyond}");
+    }
+
+    #[test]
+    fn a_wild_block_does_not_decide_and_scale_does_not_matter() {
+        let worse = left(&[1.0; 24]);
+        let mut better = left(&[0.5; 24]);
+        better.squares[3][0] = 1e6;
+        let d = differences(&worse, &better, &sensors());
+        assert!(d.iter().filter(|v| **v < 0.0).count() == 1);
+        // in another unit the same
+        let scaled = |l: &LeftOut| LeftOut {
+            squares: l.squares.iter().map(|s| vec![s[0] * 1e10]).collect(),
+            samples: l.samples.clone(),
+        };
+        let in_other = Sensors { noise: vec![0.0], full_scale: vec![1e5] };
+        let other = differences(&scaled(&worse), &scaled(&better), &in_other);
+        d.iter().zip(&other).for_each(|(a, b)| assert!((a - b).abs() < 1e-9));
+    }
+}

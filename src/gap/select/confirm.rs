@@ -1,0 +1,61 @@
+//! Held recordings: they take no part in fitting and ranking, and are asked about one hypothesis at a time.
+
+use super::super::data::Recording;
+use super::super::estimate::Fit;
+use super::super::estimate::candidate::Errors;
+use super::super::estimate::correlation;
+use super::super::policy::{ACCURACY, ALPHA, DELTA};
+use super::compare::{Sensors, evidence, gap, needed};
+use super::folds::LeftOut;
+
+/// What held recordings say of a model against the one before, nothing refitted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Asked {
+    /// Evidence for it, nats.
+    pub evidence: f64,
+    /// Noise-free gap of the model before, in parts of full scale.
+    pub before: f64,
+    /// That of the model.
+    pub after: f64,
+}
+
+impl Asked {
+    /// Whether they confirm it. `saved`: nats that it saves of the prior; `hypotheses`: among how many it was found.
+    pub fn confirms(&self, saved: f64, hypotheses: usize) -> bool {
+        // what brings parameters back to their data sheet must only not be contradicted
+        if saved > needed(hypotheses) && self.evidence > -1.0 {
+            return true;
+        }
+        let closes = self.before - self.after >= (0.5 * DELTA * self.before).max(0.5 * ACCURACY);
+        self.evidence > 0.0 && (closes || self.evidence > (1.0 / ALPHA).ln())
+    }
+}
+
+/// Asks the held recordings; `None` where there are none.
+pub fn ask(before: &Fit, after: &Fit, held: &[Recording], sensors: &Sensors) -> Option<Asked> {
+    let errors = |fit: &Fit| -> Vec<Errors> { held.iter().map(|r| of(fit, r)).collect() };
+    if held.is_empty() {
+        return None;
+    }
+    let (a, b) = (errors(before), errors(after));
+    let independent: Vec<f64> = (0..sensors.noise.len())
+        .map(|i| {
+            let samples = |e: &Errors| e[i].iter().filter(|v| !v.is_nan()).count() as f64;
+            let tau = |all: &[Errors]| {
+                let sum: f64 = all.iter().map(|e| samples(e) * correlation::time(&e[i])).sum();
+                sum / all.iter().map(samples).sum::<f64>().max(1.0)
+            };
+            a.iter().map(samples).sum::<f64>() / tau(&a).max(tau(&b)).max(1.0)
+        })
+        .collect();
+    let (a, b) = (LeftOut::of(&a), LeftOut::of(&b));
+    Some(Asked { evidence: evidence(&a, &b, &independent, sensors), before: gap(&a, sensors), after: gap(&b, sensors) })
+}
+
+/// Errors on a recording that took no part; infinite where the simulation does not reach the end.
+fn of(fit: &Fit, recording: &Recording) -> Errors {
+    fit.candidate.errors(&fit.x, recording, None).unwrap_or_else(|| {
+        let samples = recording.len() - recording.settled() - 1;
+        recording.signals.iter().map(|_| vec![f64::INFINITY; samples]).collect()
+    })
+}

@@ -1,0 +1,7 @@
+//! The judge: hypotheses are compared on data that were left out, simulated from the inputs alone.
+
+pub mod compare;
+pub mod confirm;
+pub mod folds;
+pub mod screen;
+pub mod search;

@@ -1,0 +1,434 @@
+//! The search: one effect after another, until no hypothesis is sure, worth it and confirmed.
+
+use super::super::data::Recording;
+use super::super::diagnose::Stage;
+use super::super::estimate::{Candidate, Fit, Weights};
+use super::super::hypotheses::Hypothesis;
+use super::super::policy::{
+    ACCURACY, ALPHA, DELTA, EFFECTS, FITTED, FITTED_WITHOUT, LEAST, NEAR, OPENS, OTHER_WEIGHTING, SURE,
+};
+use super::super::problem::{Chosen, Problem};
+use super::compare::{Sensors, chances, differences, evidence, gap, needed, signal_gap, t_statistic};
+use super::confirm::{Asked, ask};
+use super::folds::{LeftOut, left_out};
+use super::screen::{self, Start};
+use rayon::prelude::*;
+
+/// A fit with what it leaves of left-out data.
+#[derive(Clone, Debug)]
+pub struct Weighed {
+    /// The fit.
+    pub fit: Fit,
+    /// By pieces, and by recordings where there are enough.
+    pub left: Vec<LeftOut>,
+}
+
+/// A hypothesis beside the model of one step.
+#[derive(Clone, Debug)]
+pub struct Rival {
+    /// Index into [`Problem::hypotheses`].
+    pub hypothesis: usize,
+    /// The model with it.
+    pub model: Weighed,
+}
+
+/// Why a hypothesis was not taken.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs, reason = "the variants say what their numbers are")]
+pub enum Reason {
+    /// Left-out data are not sure that it is better: chance, evidence in nats, and what was needed.
+    NotSure { chance: f64, evidence: f64, needed: f64 },
+    /// It closes less than is worth a name.
+    NotWorth,
+    /// The gap over all signals grows by this factor.
+    Opens { factor: f64 },
+    /// Held recordings do not confirm it.
+    NotConfirmed(Asked),
+    /// Another one explains more.
+    Beaten { gap: f64, best: f64 },
+    /// It cannot be told from what was taken, which is simpler or more usual.
+    Alike,
+    /// The screen did not lead to a fit.
+    Screened,
+}
+
+/// A hypothesis that was weighed in a step.
+#[derive(Clone, Debug)]
+pub struct Trial {
+    /// The step: 1, 2, ...
+    pub step: usize,
+    /// What, with fitted values.
+    pub chosen: Chosen,
+    /// Gap that it leaves of left-out data, in parts of full scale.
+    pub gap: f64,
+    /// t statistic over the blocks.
+    pub t: f64,
+    /// Chance that the best of all hypotheses does as well by accident.
+    pub chance: f64,
+    /// Evidence of left-out data and prior, nats.
+    pub evidence: f64,
+    /// Nothing for the one that was taken.
+    pub reason: Option<Reason>,
+}
+
+/// An effect that was taken.
+#[derive(Clone, Debug)]
+pub struct Taken {
+    /// Index into [`Problem::hypotheses`].
+    pub hypothesis: usize,
+    /// Evidence of left-out data and prior when it was taken, nats.
+    pub evidence: f64,
+    /// t statistic over the blocks.
+    pub t: f64,
+    /// What cannot be told from it, with how far it is behind, nats.
+    pub set: Vec<(Chosen, f64)>,
+}
+
+/// What a search came to.
+pub struct Found {
+    /// The model within its tolerances.
+    pub base: Weighed,
+    /// With everything that was taken.
+    pub last: Weighed,
+    /// What was taken, in the order of the last model's causes.
+    pub taken: Vec<Taken>,
+    /// Everything that was weighed, best of each step first.
+    pub trials: Vec<Trial>,
+}
+
+/// A search on its way.
+struct Search<'a> {
+    problem: &'a Problem<'a>,
+    held: &'a [Recording],
+    sensors: Sensors,
+    /// Noise-free gap of each signal before anything was taken.
+    first: Vec<f64>,
+    trials: Vec<Trial>,
+}
+
+/// Searches; held recordings only confirm. `None` where the model within its tolerances does not reach the end of the
+/// recordings.
+pub fn search(problem: &Problem<'_>, held: &[Recording], progress: &mut dyn FnMut(Stage)) -> Option<Found> {
+    progress(Stage::Anchor);
+    let sensors = screen::sensors(problem);
+    let nominal = screen::candidate(problem, &[], None)?;
+    let x = nominal.present();
+    let base = weighed(problem, &sensors, &nominal, &x)?;
+    let first = (0..sensors.noise.len()).map(|i| left_by(&base.left[0], i, &sensors)).collect();
+    let mut search = Search { problem, held, sensors, first, trials: Vec::new() };
+    let (mut last, mut taken) = (base.clone(), Vec::new());
+    for step in 1..=EFFECTS {
+        progress(Stage::Screen(step));
+        let screened = search.screened(&last);
+        progress(Stage::Refine(step));
+        let rivals = search.fitted(screened);
+        let Some((chosen, effect)) = search.choose(step, &last, rivals) else { break };
+        last = chosen;
+        taken.push(effect);
+        search.drop_needless(&mut last, &mut taken);
+        if search.is_recording_error(&taken) {
+            break;
+        }
+    }
+    Some(Found { base, last, taken, trials: search.trials })
+}
+
+/// Both weightings: errors as they are now (tolerances hold), and as if only the sensors' noise were left (the data hold).
+/// Left-out data and the prior decide.
+pub fn weighed(problem: &Problem<'_>, sensors: &Sensors, candidate: &Candidate, x: &[f64]) -> Option<Weighed> {
+    let (train, scale) = (&problem.train, &problem.full_scale);
+    let of = |fit: Fit| Weighed { left: left_out(&fit, train), fit };
+    let one = of(Fit::of(candidate.clone(), x.to_vec(), train, scale, None, 2)?);
+    let white = Weights::sensors(&sensors.noise, scale);
+    let begun = Fit::of(candidate.clone(), one.fit.x.clone(), train, scale, Some(white), 1);
+    let other = begun.and_then(|b| Fit::of(b.candidate, b.x, train, scale, None, 2)).map(of);
+    let better = |o: &Weighed| nats(&one, o, 0, sensors) + saved(&one, o) > OTHER_WEIGHTING;
+    Some(other.filter(better).unwrap_or(one))
+}
+
+/// Evidence of left-out data for the second model, nats.
+fn nats(a: &Weighed, b: &Weighed, scheme: usize, sensors: &Sensors) -> f64 {
+    let tau = |i: usize| a.fit.weights.tau[i].max(b.fit.weights.tau[i]);
+    let independent: Vec<f64> = (0..sensors.noise.len()).map(|i| a.fit.samples(i) / tau(i)).collect();
+    evidence(&a.left[scheme], &b.left[scheme], &independent, sensors)
+}
+
+/// What the second model saves of the prior, nats: without an effect parameters bend, which left-out data do not see.
+fn saved(a: &Weighed, b: &Weighed) -> f64 {
+    a.fit.prior() - b.fit.prior()
+}
+
+fn left_by(left: &LeftOut, signal: usize, sensors: &Sensors) -> f64 {
+    signal_gap(left, signal, sensors).max(0.1 * LEAST * sensors.full_scale[signal])
+}
+
+/// What was found out about a rival.
+struct Judged {
+    t: f64,
+    chance: f64,
+    evidence: f64,
+    gap: f64,
+    sure: bool,
+    worth: bool,
+    opens: f64,
+}
+
+impl Judged {
+    fn accepted(&self) -> bool {
+        self.sure && self.may()
+    }
+
+    fn may(&self) -> bool {
+        self.worth && self.opens <= 1.0 + OPENS
+    }
+
+    fn refused(&self, needed: f64) -> Reason {
+        match () {
+            () if !self.sure => Reason::NotSure { chance: self.chance, evidence: self.evidence, needed },
+            () if !self.worth => Reason::NotWorth,
+            () => Reason::Opens { factor: self.opens },
+        }
+    }
+}
+
+impl Search<'_> {
+    fn h(&self, index: usize) -> &Hypothesis {
+        &self.problem.hypotheses[index]
+    }
+
+    /// Hypotheses that may be tried beside what was taken.
+    fn open(&self, before: &Fit) -> Vec<usize> {
+        let taken: Vec<usize> = before.candidate.causes.iter().map(|c| c.hypothesis).collect();
+        let one_law = |i: usize, t: usize| {
+            let (a, b) = (self.h(i), self.h(t));
+            a.law() == b.law() && a.attachments[0].site.is_at(&b.attachments[0].site)
+        };
+        let free = |i: usize| {
+            let parameter = self.h(i).family == "parameter";
+            let known = |t: &super::super::problem::Tolerance| t.name == self.h(i).attachments[0].place.place && !t.free;
+            !parameter || self.problem.tolerances.iter().any(known)
+        };
+        let open = |&i: &usize| {
+            let first = !self.h(i).is_recording_error() || taken.is_empty();
+            first && !self.h(i).is_shape() && free(i) && !taken.iter().any(|&t| t == i || one_law(i, t))
+        };
+        (0..self.problem.hypotheses.len()).filter(open).collect()
+    }
+
+    /// How many hypotheses there are.
+    fn count(&self) -> usize {
+        self.problem.hypotheses.iter().filter(|h| !h.is_shape()).count()
+    }
+
+    /// The starts of the hypotheses that are worth a fit.
+    fn screened(&self, before: &Weighed) -> Vec<(usize, Vec<Start>)> {
+        let open = self.open(&before.fit);
+        let one = |&i: &usize| (i, screen::starts(self.problem, &before.fit, i));
+        let mut all: Vec<(usize, Vec<Start>)> = open.par_iter().map(one).filter(|s| !s.1.is_empty()).collect();
+        all.sort_by(|a, b| a.1[0].cost.total_cmp(&b.1[0].cost));
+        let (mut with, mut without) = (0, 0);
+        all.retain(|(_, starts)| {
+            let free = starts[0].candidate.own > before.fit.candidate.own;
+            let count = if free { &mut with } else { &mut without };
+            *count += 1;
+            *count <= if free { FITTED } else { FITTED_WITHOUT }
+        });
+        all
+    }
+
+    fn fitted(&self, screened: Vec<(usize, Vec<Start>)>) -> Vec<Rival> {
+        let one = |(hypothesis, starts): (usize, Vec<Start>)| {
+            let fits = starts.iter().filter_map(|s| weighed(self.problem, &self.sensors, &s.candidate, &s.x));
+            let model = fits.min_by(|a, b| a.fit.nats().total_cmp(&b.fit.nats()))?;
+            Some(Rival { hypothesis, model })
+        };
+        screened.into_par_iter().filter_map(one).collect()
+    }
+
+    /// Whether left-out data are sure of each rival, and whether it is worth a name.
+    fn judged(&self, before: &Weighed, rivals: &[Rival]) -> Vec<Judged> {
+        let (schemes, needed) = (before.left.len(), needed(self.count()));
+        let mut all: Vec<Judged> = rivals.iter().map(|r| self.worth(before, &r.model)).collect();
+        for scheme in 0..schemes {
+            let d: Vec<Vec<f64>> = rivals
+                .iter()
+                .map(|r| differences(&before.left[scheme], &r.model.left[scheme], &self.sensors))
+                .collect();
+            let chances = chances(&d);
+            for (i, judged) in all.iter_mut().enumerate() {
+                let found = nats(before, &rivals[i].model, scheme, &self.sensors);
+                judged.t = judged.t.max(t_statistic(&d[i]));
+                judged.chance = judged.chance.min(chances[i]);
+                judged.evidence = judged.evidence.max(found + saved(before, &rivals[i].model));
+            }
+        }
+        for j in &mut all {
+            j.sure = j.chance <= ALPHA / schemes as f64 || j.evidence > needed + (schemes as f64).ln();
+        }
+        all
+    }
+
+    /// The gap of a signal must shrink by a part of what it is and was at first, and by the sensors' accuracy; or the
+    /// parameters return to their data sheet.
+    fn worth(&self, before: &Weighed, model: &Weighed) -> Judged {
+        let closes = |i: usize| {
+            let (a, b) = (left_by(&before.left[0], i, &self.sensors), left_by(&model.left[0], i, &self.sensors));
+            let least = (DELTA * a).max(0.5 * DELTA * self.first[i]).max(ACCURACY * self.sensors.full_scale[i]);
+            a - b >= least
+        };
+        let gap = |w: &Weighed| gap(&w.left[0], &self.sensors);
+        let worth = (0..self.first.len()).any(closes) || saved(before, model) > needed(self.count());
+        let opens = gap(model) / gap(before).max(f64::MIN_POSITIVE);
+        let (t, evidence) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
+        Judged { t, chance: 1.0, evidence, gap: gap(model), sure: false, worth, opens }
+    }
+
+    /// Two models that are one for the user.
+    fn alike(&self, a: f64, best: f64) -> bool {
+        a <= ((1.0 + NEAR) * best).max(best + ACCURACY)
+    }
+
+    /// Whether a model is surely worse than the best.
+    fn worse(&self, best: &Weighed, other: &Weighed) -> bool {
+        let of = |w: &Weighed| gap(&w.left[0], &self.sensors);
+        if self.alike(of(other), of(best)) {
+            return false;
+        }
+        let t = t_statistic(&differences(&other.left[0], &best.left[0], &self.sensors));
+        t > SURE || nats(other, best, 0, &self.sensors) + saved(other, best) > (1.0 / ALPHA).ln()
+    }
+
+    /// Mean loss over blocks and signals: what orders rivals.
+    fn score(&self, model: &Weighed, closed: &[f64]) -> f64 {
+        let left = &model.left[0];
+        let mut sum = 0.0;
+        for (squares, samples) in left.squares.iter().zip(&left.samples) {
+            for i in 0..closed.len() {
+                sum += samples[i] * (squares[i].min(f64::MAX.sqrt()) + closed[i]).ln();
+            }
+        }
+        sum
+    }
+
+    /// The rival that is taken, with what cannot be told from it.
+    fn choose(&mut self, step: usize, before: &Weighed, mut rivals: Vec<Rival>) -> Option<(Weighed, Taken)> {
+        let least = |i: usize| {
+            let all = rivals.iter().map(|r| &r.model).chain([before]).map(|w| w.left[0].mean(i));
+            self.sensors.noise[i].powi(2) + DELTA * DELTA * all.fold(f64::INFINITY, f64::min)
+                + (LEAST * self.sensors.full_scale[i]).powi(2)
+        };
+        let closed: Vec<f64> = (0..self.first.len()).map(least).collect();
+        rivals.sort_by(|a, b| self.score(&a.model, &closed).total_cmp(&self.score(&b.model, &closed)));
+        let judged = self.judged(before, &rivals);
+        let needed = needed(self.count());
+        let mut reasons: Vec<Option<Reason>> =
+            judged.iter().map(|j| (!j.accepted()).then(|| j.refused(needed))).collect();
+        let mut accepted: Vec<usize> = (0..rivals.len()).filter(|&i| judged[i].accepted()).collect();
+        if accepted.is_empty() {
+            accepted.extend(self.with_held(before, &rivals, &judged, &mut reasons));
+        }
+        let order = self.order(&accepted, &rivals, &mut reasons);
+        let taken = order.iter().copied().find(|&i| {
+            let asked = ask(&before.fit, &rivals[i].model.fit, self.held, &self.sensors);
+            let refused =
+                asked.filter(|a| !a.confirms(saved(before, &rivals[i].model), self.count())).map(Reason::NotConfirmed);
+            reasons[i] = refused;
+            reasons[i].is_none()
+        });
+        for &i in order.iter().filter(|i| Some(**i) != taken) {
+            reasons[i].get_or_insert(Reason::Alike);
+        }
+        let trial = |i: usize| Trial {
+            step,
+            chosen: last_cause(&rivals[i].model.fit),
+            gap: judged[i].gap,
+            t: judged[i].t,
+            chance: judged[i].chance,
+            evidence: judged[i].evidence,
+            reason: reasons[i].clone(),
+        };
+        self.trials.extend((0..rivals.len()).map(trial));
+        let first = taken?;
+        let best = &rivals[first].model;
+        let set = order.iter().filter(|i| **i != first).map(|&i| {
+            let behind = nats(&rivals[i].model, best, 0, &self.sensors) + saved(&rivals[i].model, best);
+            (last_cause(&rivals[i].model.fit), behind)
+        });
+        let effect = Taken {
+            hypothesis: rivals[first].hypothesis,
+            evidence: judged[first].evidence,
+            t: judged[first].t,
+            set: set.collect(),
+        };
+        Some((best.clone(), effect))
+    }
+
+    /// Few recordings, few blocks: the one that leaves least is asked of the held recordings too. They are fresh, and a
+    /// product of e-values of independent data is one.
+    fn with_held(
+        &self,
+        before: &Weighed,
+        rivals: &[Rival],
+        judged: &[Judged],
+        reasons: &mut [Option<Reason>],
+    ) -> Option<usize> {
+        let best = (0..rivals.len()).find(|&i| judged[i].may())?;
+        let asked = ask(&before.fit, &rivals[best].model.fit, self.held, &self.sensors)?;
+        let sum = judged[best].evidence + asked.evidence;
+        if sum > needed(self.count()) && asked.evidence > 0.0 {
+            reasons[best] = None;
+            return Some(best);
+        }
+        None
+    }
+
+    /// The set of what cannot be told apart: those that leave hardly more than the best first, of these the simplest, then
+    /// what leaves parameters where they are known to be, then what is usual on machines.
+    fn order(&self, accepted: &[usize], rivals: &[Rival], reasons: &mut [Option<Reason>]) -> Vec<usize> {
+        let Some(&best) = accepted.first() else { return Vec::new() };
+        let of = |i: usize| gap(&rivals[i].model.left[0], &self.sensors);
+        let near = |i: usize| self.alike(of(i), of(best));
+        let mut set = Vec::new();
+        for &i in accepted {
+            if i != best && self.worse(&rivals[best].model, &rivals[i].model) {
+                reasons[i] = Some(Reason::Beaten { gap: of(i), best: of(best) });
+            } else {
+                set.push(i);
+            }
+        }
+        let prior = |i: usize| rivals[i].model.fit.prior();
+        let least = set.iter().filter(|&&i| near(i)).map(|&i| prior(i)).fold(f64::INFINITY, f64::min);
+        let bent = |i: usize| prior(i) - least > (1.0 / ALPHA).ln();
+        set.sort_by_key(|&i| (!near(i), rivals[i].model.fit.candidate.own, bent(i), rivals[i].hypothesis));
+        set
+    }
+
+    /// Drops what was taken before and is not missed any more.
+    fn drop_needless(&self, last: &mut Weighed, taken: &mut Vec<Taken>) {
+        let mut i = 0;
+        while i + 1 < taken.len() {
+            let mut causes = screen::causes(&last.fit);
+            causes.remove(i);
+            let theta = last.fit.candidate.theta(&last.fit.x);
+            let tolerances = &theta[last.fit.candidate.model.free.clone()];
+            let without = screen::candidate(self.problem, &causes, Some(tolerances));
+            let fitted = without.and_then(|c| weighed(self.problem, &self.sensors, &c, &c.present()));
+            match fitted.filter(|f| !self.worse(last, f)) {
+                Some(fitted) => {
+                    *last = fitted;
+                    taken.remove(i);
+                }
+                None => i += 1,
+            }
+        }
+    }
+
+    fn is_recording_error(&self, taken: &[Taken]) -> bool {
+        taken.iter().any(|t| self.h(t.hypothesis).is_recording_error())
+    }
+}
+
+/// The cause that a model has beyond the one before.
+fn last_cause(fit: &Fit) -> Chosen {
+    screen::causes(fit).pop().unwrap_or(Chosen { hypothesis: 0, values: Vec::new() })
+}

@@ -1,0 +1,206 @@
+//! What a search came to, said as a verdict.
+
+use super::super::data::Recording;
+use super::super::estimate::Candidate;
+use super::super::estimate::candidate::Errors;
+use super::super::figures::{self, Left};
+use super::super::hypotheses::{Hypothesis, Place};
+use super::super::mistakes;
+use super::super::problem::{Chosen, Problem, Tolerance};
+use super::super::select::screen;
+use super::super::select::search::{Found, Taken, Weighed, weighed};
+use super::{Alternative, Drift, Effect, Estimate, Gaps, Located, Maybe, RecordingError, Spot, Unexplained, Verdict};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+/// The verdict; without held recordings the train ones stand in.
+pub fn conclude(problem: &Problem<'_>, found: &Found, held: &[Recording], seconds: f64) -> Verdict {
+    let conclusion = Conclusion { problem, found, held: if held.is_empty() { &problem.train } else { held }, own: held.is_empty() };
+    conclusion.verdict(seconds)
+}
+
+struct Conclusion<'a> {
+    problem: &'a Problem<'a>,
+    found: &'a Found,
+    held: &'a [Recording],
+    /// There are no held recordings: these are the train ones.
+    own: bool,
+}
+
+impl Conclusion<'_> {
+    fn verdict(&self, seconds: f64) -> Verdict {
+        let (problem, found) = (self.problem, self.found);
+        let base = &found.base.fit;
+        let nominal = nominal(problem, &base.candidate);
+        let last = &found.last.fit;
+        let models = [(&base.candidate, &nominal), (&base.candidate, &base.x), (&last.candidate, &last.x)];
+        let on_held = models.map(|(c, x)| self.left(c, x));
+        let on_train = models.map(|(c, x)| Left::of(&errors(c, x, &problem.train, true)));
+        let [first, tolerated, effects] = on_held.each_ref().map(|l| l.total(&problem.full_scale));
+        let share = ratio(effects, first);
+        let open = figures::open(problem, &on_held[2], self.held);
+        let recording = self.recording();
+        let named: Vec<Effect> = self.effects([&on_held[1], &on_held[2]]);
+        let verdict = match () {
+            () if !recording.is_empty() => "recording_error",
+            () if !named.is_empty() => "effects",
+            () if !open.is_empty() => "gap_open",
+            () => "nothing_found",
+        };
+        let ambiguous = found.taken.iter().any(|t| !t.set.is_empty());
+        let next = "slow triangles through zero, steps and a chirp over the whole range: what moves alike here may part there";
+        Verdict {
+            schema: 1,
+            verdict,
+            noise: problem.signals.iter().zip(&problem.noise_floor).map(|(s, n)| (s.name.clone(), *n)).collect(),
+            assumed: problem.tolerances.iter().filter(|t| t.assumed).map(|t| (t.name.clone(), t.sigma)).collect(),
+            recording,
+            places: self.places(),
+            effects: named,
+            drifts: self.drifts(),
+            gap: Gaps {
+                held: figures::side(problem, on_held.each_ref(), self.held),
+                train: figures::side(problem, on_train.each_ref(), &problem.train),
+            },
+            closed: share.map(|s| 1.0 - s),
+            closed_by_effects: ratio(effects, tolerated).map(|s| 1.0 - s),
+            unexplained: Unexplained { share, place: None, shape: None },
+            open,
+            next_experiment: (verdict == "effects" && ambiguous).then(|| next.to_string()),
+            seconds,
+        }
+    }
+
+    fn left(&self, candidate: &Candidate, x: &[f64]) -> Left {
+        Left::of(&errors(candidate, x, self.held, self.own))
+    }
+
+    fn hypothesis(&self, taken: &Taken) -> &Hypothesis {
+        &self.problem.hypotheses[taken.hypothesis]
+    }
+
+    /// The mistakes of the recordings: one of a column is in every file.
+    fn recording(&self) -> Vec<RecordingError> {
+        let mistakes = self.found.taken.iter().map(|t| self.hypothesis(t)).filter(|h| h.is_recording_error());
+        let of_file = |h: &Hypothesis, file: &String| {
+            let value = mistakes::factor(h);
+            let error = if value < 0.0 { "sign" } else { "factor" };
+            RecordingError { file: file.clone(), signal: h.attachments[0].place.place.clone(), error, value }
+        };
+        mistakes.flat_map(|h| self.problem.files.iter().map(move |f| of_file(h, f))).collect()
+    }
+
+    /// Effects, with what each closes of the gap within tolerances.
+    fn effects(&self, [tolerated, last]: [&Left; 2]) -> Vec<Effect> {
+        let total = |l: &Left| l.total(&self.problem.full_scale);
+        let (tolerated, full) = (total(tolerated), total(last));
+        let taken = &self.found.taken;
+        let effect = |(i, t): (usize, &Taken)| {
+            let h = self.hypothesis(t);
+            if h.is_recording_error() {
+                return None;
+            }
+            let (alone, without) = if taken.len() == 1 {
+                (full, tolerated)
+            } else {
+                let rest: Vec<usize> = (0..taken.len()).filter(|k| *k != i).collect();
+                rayon::join(|| self.gap_with(&[i]), || self.gap_with(&rest))
+            };
+            Some(Effect {
+                effect: h.effect.clone(),
+                family: h.family.clone(),
+                places: spots(h),
+                evidence: t.evidence,
+                t: t.t,
+                closes_alone: ratio(alone, tolerated).map(|g| 1.0 - g),
+                closes_last: without.zip(full).and_then(|(w, f)| ratio(Some(w - f), tolerated)),
+                parameters: self.estimates(i, h),
+                indistinguishable: t.set.iter().map(|(c, behind)| self.alternative(c, *behind)).collect(),
+            })
+        };
+        taken.iter().enumerate().collect::<Vec<_>>().into_par_iter().filter_map(effect).collect()
+    }
+
+    /// The held gap of the model with some of the effects, fitted anew.
+    fn gap_with(&self, kept: &[usize]) -> Maybe {
+        let all = screen::causes(&self.found.last.fit);
+        let causes: Vec<Chosen> = kept.iter().map(|&i| all[i].clone()).collect();
+        let base = &self.found.base.fit;
+        let theta = base.candidate.theta(&base.x);
+        let tolerances = &theta[base.candidate.model.free.clone()];
+        let candidate = screen::candidate(self.problem, &causes, Some(tolerances))?;
+        let x = candidate.present();
+        let Weighed { fit, .. } = weighed(self.problem, &screen::sensors(self.problem), &candidate, &x)?;
+        self.left(&fit.candidate, &fit.x).total(&self.problem.full_scale)
+    }
+
+    fn alternative(&self, chosen: &Chosen, behind: f64) -> Alternative {
+        let h = &self.problem.hypotheses[chosen.hypothesis];
+        Alternative { effect: h.effect.clone(), family: h.family.clone(), places: spots(h), behind }
+    }
+
+    fn estimates(&self, i: usize, h: &Hypothesis) -> BTreeMap<String, Estimate> {
+        let fit = &self.found.last.fit;
+        let theta = fit.candidate.theta(&fit.x);
+        let deviations = fit.deviations();
+        let names =
+            h.coefficients.iter().map(|c| (&c.name, &c.unit)).chain(h.shapes.iter().map(|s| (&s.name, &s.unit)));
+        let estimate = |(&place, (name, unit)): (&usize, (&String, &String))| {
+            let free = fit.candidate.coordinates.iter().position(|c| c.parameter == place);
+            let std = free.map_or(0.0, |k| deviations[k] * fit.candidate.coordinates[k].slope(fit.x[k]));
+            (name.clone(), Estimate { value: theta[place], std, unit: unit.clone() })
+        };
+        fit.candidate.model.attached[i].iter().zip(names).map(estimate).collect()
+    }
+
+    fn drifts(&self) -> Vec<Drift> {
+        let fit = &self.found.last.fit;
+        let (theta, deviations) = (fit.candidate.theta(&fit.x), fit.deviations());
+        let drift = |(i, t): (usize, &Tolerance)| Drift {
+            parameter: t.name.clone(),
+            nominal: t.nominal,
+            value: theta[i],
+            std: deviations[i] * t.sigma,
+            tolerances: (theta[i] - t.nominal) / t.sigma,
+        };
+        self.problem.tolerances.iter().enumerate().map(drift).collect()
+    }
+
+    /// Places of what was taken first, then those of the best explanations of the first step.
+    fn places(&self) -> Vec<Located> {
+        let mut all: Vec<Located> = Vec::new();
+        let mut add = |h: &Hypothesis, evidence: f64| {
+            let place = &h.attachments[0].place;
+            if evidence > 0.0 && !all.iter().any(|l| l.place == place.place) {
+                let (place, node, kind) = (place.place.clone(), place.node.clone(), place.kind.word());
+                all.push(Located { place, node, kind, evidence, share: 0.0 });
+            }
+        };
+        self.found.taken.iter().for_each(|t| add(self.hypothesis(t), t.evidence));
+        for t in self.found.trials.iter().filter(|t| t.step == 1) {
+            add(&self.problem.hypotheses[t.chosen.hypothesis], t.evidence);
+        }
+        let total: f64 = all.iter().map(|l| l.evidence).sum();
+        all.iter_mut().for_each(|l| l.share = l.evidence / total);
+        all
+    }
+}
+
+/// Where the tolerances are at their nominal values.
+fn nominal(problem: &Problem<'_>, candidate: &Candidate) -> Vec<f64> {
+    candidate.coordinates.iter().zip(&problem.tolerances).map(|(c, t)| c.of(t.nominal)).collect()
+}
+
+fn errors(candidate: &Candidate, x: &[f64], recordings: &[Recording], own: bool) -> Vec<Option<Errors>> {
+    recordings.par_iter().enumerate().map(|(i, r)| candidate.errors(x, r, own.then_some(i))).collect()
+}
+
+/// One gap over another, where both are known.
+fn ratio(a: Maybe, b: Maybe) -> Maybe {
+    let b = b.filter(|b| *b > 0.0)?;
+    a.map(|a| a / b)
+}
+
+fn spots(h: &Hypothesis) -> Vec<Spot> {
+    h.places().into_iter().map(|p: &Place| Spot { place: p.place.clone(), node: p.node.clone() }).collect()
+}
