@@ -39,6 +39,8 @@ pub const EFFECTS: usize = 4;
 pub const FITTED: usize = 14;
 /// And without.
 pub const FITTED_WITHOUT: usize = 2;
+/// Of these, the best are also fitted as if only the sensors' noise were left.
+pub const FRONT: usize = 4;
 /// Starts from which each of them is fitted.
 pub const STARTS: usize = 2;
 /// Combinations of grid values that are tried as starts, at most.
@@ -50,4 +52,4 @@ pub const ITERATIONS: usize = 12;
 /// Trials of a step, each more damped.
 pub const TRIALS: usize = 6;
 /// Part of the cost below which a gain ends a fit.
-pub const SETTLED: f64 = 2e-4;
+pub const SETTLED: f64 = 1e-3;

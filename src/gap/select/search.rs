@@ -5,7 +5,7 @@ use super::super::diagnose::Stage;
 use super::super::estimate::{Candidate, Fit, Weights};
 use super::super::hypotheses::Hypothesis;
 use super::super::policy::{
-    ACCURACY, ALPHA, DELTA, EFFECTS, FITTED, FITTED_WITHOUT, LEAST, NEAR, OPENS, OTHER_WEIGHTING, SURE,
+    ACCURACY, ALPHA, DELTA, EFFECTS, FITTED, FITTED_WITHOUT, FRONT, LEAST, NEAR, OPENS, OTHER_WEIGHTING, SURE,
 };
 use super::super::problem::{Chosen, Problem};
 use super::compare::{Sensors, chances, differences, evidence, gap, needed, signal_gap, t_statistic};
@@ -133,17 +133,31 @@ pub fn search(problem: &Problem<'_>, held: &[Recording], progress: &mut dyn FnMu
     Some(Found { base, last, taken, trials: search.trials })
 }
 
+impl Weighed {
+    fn new(problem: &Problem<'_>, fit: Fit) -> Self {
+        Weighed { left: left_out(&fit, &problem.train), fit }
+    }
+}
+
 /// Both weightings: errors as they are now (tolerances hold), and as if only the sensors' noise were left (the data hold).
 /// Left-out data and the prior decide.
 pub fn weighed(problem: &Problem<'_>, sensors: &Sensors, candidate: &Candidate, x: &[f64]) -> Option<Weighed> {
-    let (train, scale) = (&problem.train, &problem.full_scale);
-    let of = |fit: Fit| Weighed { left: left_out(&fit, train), fit };
-    let one = of(Fit::of(candidate.clone(), x.to_vec(), train, scale, None, 2)?);
-    let white = Weights::sensors(&sensors.noise, scale);
-    let begun = Fit::of(candidate.clone(), one.fit.x.clone(), train, scale, Some(white), 1);
-    let other = begun.and_then(|b| Fit::of(b.candidate, b.x, train, scale, None, 2)).map(of);
-    let better = |o: &Weighed| nats(&one, o, 0, sensors) + saved(&one, o) > OTHER_WEIGHTING;
-    Some(other.filter(better).unwrap_or(one))
+    let one = Weighed::new(problem, as_they_are(problem, candidate.clone(), x.to_vec())?);
+    Some(at_the_noise(problem, sensors, &one).unwrap_or(one))
+}
+
+/// A fit that weighs errors as large and as correlated as it leaves them.
+fn as_they_are(problem: &Problem<'_>, candidate: Candidate, x: Vec<f64>) -> Option<Fit> {
+    Fit::of(candidate, x, &problem.train, &problem.full_scale, None, 2)
+}
+
+/// The fit that begins where only the sensors' noise is left, where it is better.
+fn at_the_noise(problem: &Problem<'_>, sensors: &Sensors, one: &Weighed) -> Option<Weighed> {
+    let white = Weights::sensors(&sensors.noise, &problem.full_scale);
+    let (candidate, x) = (one.fit.candidate.clone(), one.fit.x.clone());
+    let begun = Fit::of(candidate, x, &problem.train, &problem.full_scale, Some(white), 1)?;
+    let other = Weighed::new(problem, as_they_are(problem, begun.candidate, begun.x)?);
+    (nats(one, &other, 0, sensors) + saved(one, &other) > OTHER_WEIGHTING).then_some(other)
 }
 
 /// Evidence of left-out data for the second model, nats.
@@ -236,13 +250,23 @@ impl Search<'_> {
         all
     }
 
+    /// Fits from all starts; the front by both weightings.
     fn fitted(&self, screened: Vec<(usize, Vec<Start>)>) -> Vec<Rival> {
+        let (problem, sensors) = (self.problem, &self.sensors);
         let one = |(hypothesis, starts): (usize, Vec<Start>)| {
-            let fits = starts.iter().filter_map(|s| weighed(self.problem, &self.sensors, &s.candidate, &s.x));
-            let model = fits.min_by(|a, b| a.fit.nats().total_cmp(&b.fit.nats()))?;
-            Some(Rival { hypothesis, model })
+            let fits = starts.into_iter().filter_map(|s| as_they_are(problem, s.candidate, s.x));
+            let fit = fits.min_by(|a, b| a.nats().total_cmp(&b.nats()))?;
+            Some(Rival { hypothesis, model: Weighed::new(problem, fit) })
         };
-        screened.into_par_iter().filter_map(one).collect()
+        let mut rivals: Vec<Rival> = screened.into_par_iter().filter_map(one).collect();
+        rivals.sort_by(|a, b| gap(&a.model.left[0], sensors).total_cmp(&gap(&b.model.left[0], sensors)));
+        let front = FRONT.min(rivals.len());
+        rivals[..front].par_iter_mut().for_each(|r| {
+            if let Some(better) = at_the_noise(problem, sensors, &r.model) {
+                r.model = better;
+            }
+        });
+        rivals
     }
 
     /// Whether left-out data are sure of each rival, and whether it is worth a name.
