@@ -44,6 +44,8 @@ pub struct NodeSet {
     pub ports: Vec<usize>,
     /// Its potential, or the rate of it, is given by parameters, time and inputs: a reservoir, a frame, a driven belt.
     pub fixed: bool,
+    /// It is given by an input: what acts on it changes the reaction, which a sensor may show.
+    pub driven: bool,
     /// The model already contains the time derivative of its potential.
     pub has_rate: bool,
     /// The model already contains the second time derivative of its potential.
@@ -311,6 +313,8 @@ struct Rates<'a> {
     /// Variables whose derivative parameters give.
     steady: BTreeSet<u32>,
     fixed: BTreeSet<u32>,
+    /// Those of the fixed and steady ones that inputs give.
+    driven: BTreeSet<u32>,
     /// Potentials that one equation binds to each other, in pairs.
     geared: Vec<BTreeSet<u32>>,
     index: BTreeMap<&'a str, u32>,
@@ -322,9 +326,9 @@ impl<'a> Rates<'a> {
         let index = (0u32..).zip(&flat.variables).map(|(i, v)| (v.name.as_str(), i)).collect();
         let root = (0..count).collect();
         let none = BTreeSet::new;
-        let (differentiated, accelerated, steady, fixed) = (none(), none(), none(), none());
+        let (differentiated, accelerated, steady, fixed, driven) = (none(), none(), none(), none(), none());
         let geared = Vec::new();
-        let mut rates = Rates { flat, root, differentiated, accelerated, steady, fixed, geared, index };
+        let mut rates = Rates { flat, root, differentiated, accelerated, steady, fixed, driven, geared, index };
         rates.unite();
         for e in &flat.equations {
             for side in [e.lhs, e.rhs] {
@@ -337,6 +341,9 @@ impl<'a> Rates<'a> {
                 if let (Some(v), true) = (rates.variable(one), rates.constant(other)) {
                     let root = rates.find(v);
                     rates.fixed.insert(root);
+                    if rates.by_input(other) {
+                        rates.driven.insert(root);
+                    }
                 }
             }
         }
@@ -377,6 +384,9 @@ impl<'a> Rates<'a> {
                 }
                 if rate.is_some_and(|r| self.fixed.contains(&r)) || self.constant(one) {
                     self.steady.insert(root);
+                    if rate.is_some_and(|r| self.driven.contains(&r)) || self.by_input(one) {
+                        self.driven.insert(root);
+                    }
                 }
             }
         }
@@ -398,6 +408,11 @@ impl<'a> Rates<'a> {
             v.input || v.variability <= Variability::Parameter
         };
         leaves.ders.is_empty() && leaves.pres.is_empty() && leaves.vars.iter().all(given)
+    }
+
+    /// Whether an input has a part in it.
+    fn by_input(&self, e: ExprId) -> bool {
+        self.flat.exprs.dependencies(&[e]).vars.iter().any(|v| self.flat.variables[v.index()].input)
     }
 
     fn find(&self, mut i: u32) -> u32 {
@@ -428,6 +443,7 @@ impl<'a> Rates<'a> {
             let Some(&i) = self.index.get(name.as_str()) else { continue };
             let root = self.find(i);
             node.fixed |= self.fixed.contains(&root) || self.steady.contains(&root);
+            node.driven |= self.driven.contains(&root);
             node.has_rate |= self.differentiated.contains(&root);
             node.has_acceleration |= self.accelerated.contains(&root);
         }

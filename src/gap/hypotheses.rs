@@ -303,8 +303,10 @@ fn at_component(circuit: &Circuit, effect: &Arc<Effect>, component: usize) -> Ve
     let fitting: Vec<usize> =
         circuit.components[component].ports.iter().copied().filter(|&p| fits(effect, &circuit.ports[p])).collect();
     let free = |p: &usize| !circuit.nodes[circuit.ports[*p].node].fixed;
+    let driven = |p: &usize| circuit.nodes[circuit.ports[*p].node].driven;
     let sites: Vec<(Site, Vec<usize>)> = match effect.interface.attach {
-        Attach::Shunt => fitting.iter().copied().filter(|p| free(p)).map(|p| (Site::Node(p), vec![p])).collect(),
+        // where a motion is imposed, what acts changes the reaction
+        Attach::Shunt => fitting.iter().copied().filter(|p| free(p) || driven(p)).map(|p| (Site::Node(p), vec![p])).collect(),
         Attach::Bridge => pairs(circuit, effect, &fitting),
         Attach::Drain => {
             let low: Vec<usize> = reservoirs(circuit, effect);
@@ -468,7 +470,11 @@ fn place_of(circuit: &Circuit, effect: &Effect, site: &Site) -> Place {
 type Identity = (Site, Vec<usize>, Vec<(String, String)>, Option<String>);
 
 fn identity(circuit: &Circuit, a: &Attachment) -> Identity {
-    let node = |p: &usize| circuit.rigid(*p);
+    // at an imposed motion, either side of a sensor is another place
+    let node = |p: &usize| match circuit.ports[*p].node {
+        own if circuit.nodes[own].driven => own,
+        _ => circuit.rigid(*p),
+    };
     let site = match &a.site {
         Site::Node(p) => Site::Node(node(p)),
         Site::Across(x, y) if directed(a) => Site::Across(node(x), node(y)),
