@@ -184,6 +184,11 @@ impl Plan {
         self.system.dae.variables[self.states[state].1.index()].unit.as_deref()
     }
 
+    /// Whether the model says that a state begins at its start value.
+    pub fn state_is_fixed(&self, state: usize) -> bool {
+        self.system.dae.variables[self.states[state].1.index()].fixed
+    }
+
     /// Pairs of states of which the first one's rate reads the second one directly.
     pub fn couplings(&self) -> impl Iterator<Item = (usize, usize)> {
         let pattern = &self.system.pattern;

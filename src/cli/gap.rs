@@ -46,8 +46,9 @@ pub(super) struct GapArgs {
     /// What was found as one HTML page, `-` for stdout
     #[arg(long, value_name = "FILE")]
     report: Option<String>,
-    /// Which judge names effects
-    #[arg(long, value_enum, default_value = "filter")]
+    /// Which judge names effects: the filter's likelihood, or simulation of left-out data (on trial: better on recordings of
+    /// real machines, slow on models with many states; without `--write-model` and `--report`)
+    #[arg(long, value_enum, default_value = "filter", conflicts_with_all = ["list", "plan", "write_model", "report"])]
     judge: Judge,
     /// List every effect at every place where it fits, and stop
     #[arg(long)]
@@ -60,7 +61,9 @@ pub(super) struct GapArgs {
 /// Which judge names effects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 enum Judge {
+    /// The filter's likelihood.
     Filter,
+    /// Simulation of left-out data.
     Simulation,
 }
 
@@ -146,16 +149,7 @@ fn by_simulation(
         .ok_or_else(|| trouble(&Trouble::Diverges(0.0, "the model has no values on the way".into())))?;
     let verdict = crate::gap::verdict::conclude(problem, &found, &held, begun.elapsed().as_secs_f64());
     stages.clear();
-    let all: usize = problem.train.iter().map(|r| r.len()).sum();
-    messages.remark(&format!("{:?} train runs", crate::gap::estimate::candidate::COUNT.each_ref().map(|c| c.load(std::sync::atomic::Ordering::Relaxed) / all)));
     messages.remark(words(&verdict).trim_end());
-    for t in &found.trials {
-        let h = &problem.hypotheses[t.chosen.hypothesis];
-        messages.remark(&format!(
-            "{} {:40} {:24} gap {:.4} t {:.1} p {:.3} E {:.1} {:?} {:?}",
-            t.step, h.effect, h.attachments[0].place.place, t.gap, t.t, t.chance, t.evidence, t.chosen.values, t.reason
-        ));
-    }
     let text = serde_json::to_string_pretty(&verdict).expect("numbers and texts always serialize");
     write_text(&args.output, &format!("{text}\n"))?;
     Ok(Ending::Fine)

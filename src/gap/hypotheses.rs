@@ -306,7 +306,9 @@ fn at_component(circuit: &Circuit, effect: &Arc<Effect>, component: usize) -> Ve
     let driven = |p: &usize| circuit.nodes[circuit.ports[*p].node].driven;
     let sites: Vec<(Site, Vec<usize>)> = match effect.interface.attach {
         // where a motion is imposed, what acts changes the reaction
-        Attach::Shunt => fitting.iter().copied().filter(|p| free(p) || driven(p)).map(|p| (Site::Node(p), vec![p])).collect(),
+        Attach::Shunt => {
+            fitting.iter().copied().filter(|p| free(p) || driven(p)).map(|p| (Site::Node(p), vec![p])).collect()
+        }
         Attach::Bridge => pairs(circuit, effect, &fitting),
         Attach::Drain => {
             let low: Vec<usize> = reservoirs(circuit, effect);

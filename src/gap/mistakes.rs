@@ -18,7 +18,7 @@ const COMMAND: &str = "Effects.CommandGain";
 const UNITS: &[(&str, &[f64])] = &[
     ("rad", &[std::f64::consts::PI / 180.0]),
     ("rad/s", &[std::f64::consts::PI / 30.0, std::f64::consts::PI / 180.0]),
-    ("Pa", &[1e3, 1e5, 1e6, 6894.757_293_168]),
+    ("Pa", &[1e3, 1e5, 1e6, 6_894.757_293_168]),
     ("m3/s", &[1.0 / 6e4, 1e-6]),
     ("m", &[1e-3]),
     ("m/s", &[1e-3]),

@@ -36,6 +36,9 @@ pub struct Verdict {
     pub closed: Maybe,
     /// Part that effects close beyond tolerances.
     pub closed_by_effects: Maybe,
+    /// Every hypothesis that was fitted, step by step, with the reason why it was not taken; of the judge by simulation.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub weighed: Vec<Weighed>,
     /// What is left.
     pub unexplained: Unexplained,
     /// Signals at which the last model leaves a gap wider than three times the noise and a quarter of a per cent of the
@@ -116,6 +119,29 @@ pub struct Estimate {
     pub std: f64,
     /// Unit.
     pub unit: String,
+}
+
+/// A hypothesis that was fitted.
+#[derive(Clone, Debug, Serialize)]
+pub struct Weighed {
+    /// The step: 1, 2, ...
+    pub step: usize,
+    /// Class of the effect.
+    pub effect: String,
+    /// Its family.
+    pub family: String,
+    /// Where.
+    pub places: Vec<Spot>,
+    /// Gap of left-out data that it leaves, in parts of full scale, noise taken out.
+    pub gap: f64,
+    /// t statistic over the blocks.
+    pub t: f64,
+    /// Chance that the best of all hypotheses does as well by accident.
+    pub chance: f64,
+    /// Evidence, nats.
+    pub evidence: f64,
+    /// Why it was not taken.
+    pub refused: Option<String>,
 }
 
 /// Another explanation that the data cannot exclude.

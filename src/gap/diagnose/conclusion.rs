@@ -78,6 +78,7 @@ impl Conclusion<'_> {
             },
             closed: share.map(|s| 1.0 - s),
             closed_by_effects: ratio(effects_total, tolerated).map(|s| 1.0 - s),
+            weighed: Vec::new(),
             unexplained: v::Unexplained {
                 share,
                 place: self.left_at(place),

@@ -8,9 +8,6 @@ use super::simulation::Course;
 use super::start::Valued;
 use nalgebra::{DMatrix, DVector};
 
-/// Debug.
-pub static COUNT: [std::sync::atomic::AtomicUsize; 2] = [const { std::sync::atomic::AtomicUsize::new(0) }; 2];
-
 /// Something that may be chosen: a parameter in its tolerance, a coefficient or shape of an effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coordinate {
@@ -72,6 +69,8 @@ pub struct Candidate {
     pub coordinates: Vec<Coordinate>,
     /// How many coordinates the hypotheses have of their own.
     pub own: usize,
+    /// Per signal its unit, as written.
+    pub units: Vec<String>,
     /// Per signal the deviation that counts as one where a recording begins.
     pub deviations: Vec<f64>,
 }
@@ -200,7 +199,6 @@ impl Candidate {
         slopes: Option<()>,
         mut at: impl FnMut(&[f64], Option<&DMatrix<f64>>),
     ) -> Option<()> {
-        COUNT[usize::from(slopes.is_some())].fetch_add(recording.len(), std::sync::atomic::Ordering::Relaxed);
         let theta = self.theta_of(x, number);
         let model = &self.model;
         let acts = |c: &Coordinate| !model.own.iter().any(|own| own.0 == c.parameter && Some(own.1) != number);
@@ -211,6 +209,7 @@ impl Candidate {
             theta: &theta,
             sizes: &model.sizes,
             travel: &model.travel,
+            units: &self.units,
             deviations: &self.deviations,
         };
         let mut begun = valued.begin(recording, slopes.map(|()| &moves[..]))?;

@@ -1,6 +1,7 @@
 //! Where a recording begins: the state that its first samples lead to, by least squares between what they show and the
 //! model's own start. A recording rarely begins where the model does, and no study says where.
 
+use super::super::circuit::same_kind;
 use super::super::data::{Inputs, Recording};
 use super::simulation::{Course, Slopes};
 use crate::analysis::local::{Local, Plan};
@@ -12,6 +13,8 @@ use std::sync::Arc;
 const UNMEASURED: f64 = 0.2;
 const TRAVEL: f64 = 0.5;
 const KELVIN: f64 = 10.0;
+/// And those that begin where the model says.
+const HELD: f64 = 1e-6;
 /// Gauss-Newton steps at most, halvings of one that leads nowhere, and the change of the state in its sizes that is none.
 const ROUNDS: usize = 6;
 const HALVINGS: usize = 3;
@@ -28,6 +31,8 @@ pub struct Valued<'a> {
     pub sizes: &'a [f64],
     /// How far each moves in the nominal model, SI; 0 where that is not known.
     pub travel: &'a [f64],
+    /// Per signal its unit, as written.
+    pub units: &'a [String],
     /// Per signal the deviation that counts as one.
     pub deviations: &'a [f64],
 }
@@ -75,11 +80,20 @@ impl Valued<'_> {
         Some(Begun { local, state: best.state, slopes })
     }
 
-    /// Deviations of the states from the model's own start, in their sizes.
+    /// Deviations of the states from the model's own start, in their sizes. What the model fixes and no sensor shows by
+    /// itself begins where the model says: a wrong law would find any other start for it.
     fn looseness(&self, local: &Local) -> DVector<f64> {
+        let c = &local.linear.c;
+        let shown = |i: usize| {
+            (0..c.nrows()).any(|y| {
+                let alone = (0..c.ncols()).all(|j| (c[(y, j)] != 0.0) == (j == i));
+                alone && self.units.get(y).is_some_and(|u| self.plan.state_unit(i).is_some_and(|own| same_kind(u, own)))
+            })
+        };
         DVector::from_fn(self.sizes.len(), |i, _| {
-            let measured = local.linear.c.column(i).iter().any(|c| *c != 0.0);
+            let measured = c.column(i).iter().any(|c| *c != 0.0);
             match self.plan.state_unit(i) {
+                _ if self.plan.state_is_fixed(i) && !shown(i) => HELD,
                 Some("K") => KELVIN / self.sizes[i],
                 _ if measured => 1.0,
                 _ => UNMEASURED.max(TRAVEL * self.travel[i] / self.sizes[i]),

@@ -3,7 +3,7 @@
 
 use super::super::effects::{Coefficient, Shape};
 use super::super::estimate::{Candidate, Coordinate, Fit};
-use super::super::hypotheses::Hypothesis;
+use super::super::hypotheses::{Hypothesis, Signal};
 use super::super::policy::{ACCURACY, DAMPINGS, GRID, STARTS};
 use super::super::problem::{Chosen, Problem};
 use super::compare::Sensors;
@@ -58,7 +58,9 @@ pub fn candidate(problem: &Problem<'_>, causes: &[Chosen], tolerances: Option<&[
     }
     let deviation = |(n, f): (&f64, &f64)| n.max(ACCURACY * f);
     let deviations = problem.noise_floor.iter().zip(&problem.full_scale).map(deviation).collect();
-    Some(Candidate { causes: causes.to_vec(), model, coordinates, own, deviations })
+    let unit = |s: &Signal| problem.circuit.units.get(&s.variable).cloned().unwrap_or_default();
+    let units = problem.signals.iter().map(unit).collect();
+    Some(Candidate { causes: causes.to_vec(), model, coordinates, own, units, deviations })
 }
 
 /// A share of a whole is not free: an effect is there or not.
@@ -66,12 +68,7 @@ fn coefficient(c: &Coefficient, parameter: usize) -> Option<Coordinate> {
     let bound = |b: Option<f64>, none: f64| b.unwrap_or(none);
     let free = c.whole().is_none();
     free.then(|| {
-        Coordinate::plain(
-            parameter,
-            c.nominal.abs(),
-            bound(c.min, f64::NEG_INFINITY),
-            bound(c.max, f64::INFINITY),
-        )
+        Coordinate::plain(parameter, c.nominal.abs(), bound(c.min, f64::NEG_INFINITY), bound(c.max, f64::INFINITY))
     })
 }
 

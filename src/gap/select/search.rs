@@ -32,24 +32,25 @@ pub struct Rival {
     pub model: Weighed,
 }
 
-/// Why a hypothesis was not taken.
-#[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs, reason = "the variants say what their numbers are")]
+/// Why a hypothesis was not taken; printed as it is.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[allow(missing_docs, reason = "the texts say what the numbers are")]
 pub enum Reason {
-    /// Left-out data are not sure that it is better: chance, evidence in nats, and what was needed.
+    #[error("left-out data are not sure: chance {chance:.3}, evidence {evidence:.1} of {needed:.1} nats")]
     NotSure { chance: f64, evidence: f64, needed: f64 },
-    /// It closes less than is worth a name.
+    #[error("closes less than is worth a name")]
     NotWorth,
-    /// The gap over all signals grows by this factor.
+    #[error("the gap over all signals grows to {factor:.2} times what it was")]
     Opens { factor: f64 },
-    /// Held recordings do not confirm it.
+    #[error(
+        "held recordings do not confirm it: evidence {:.1} nats, gap {:.4} to {:.4} of full scale",
+        .0.evidence, .0.before, .0.after
+    )]
     NotConfirmed(Asked),
-    /// Another one explains more.
+    #[error("surely worse: leaves {gap:.4} of full scale, the best {best:.4}")]
     Beaten { gap: f64, best: f64 },
-    /// It cannot be told from what was taken, which is simpler or more usual.
+    #[error("cannot be told from what was taken, which is simpler or more usual")]
     Alike,
-    /// The screen did not lead to a fit.
-    Screened,
 }
 
 /// A hypothesis that was weighed in a step.
@@ -219,7 +220,8 @@ impl Search<'_> {
         };
         let free = |i: usize| {
             let parameter = self.h(i).family == "parameter";
-            let known = |t: &super::super::problem::Tolerance| t.name == self.h(i).attachments[0].place.place && !t.free;
+            let known =
+                |t: &super::super::problem::Tolerance| t.name == self.h(i).attachments[0].place.place && !t.free;
             !parameter || self.problem.tolerances.iter().any(known)
         };
         let open = |&i: &usize| {
@@ -338,7 +340,8 @@ impl Search<'_> {
     fn choose(&mut self, step: usize, before: &Weighed, mut rivals: Vec<Rival>) -> Option<(Weighed, Taken)> {
         let least = |i: usize| {
             let all = rivals.iter().map(|r| &r.model).chain([before]).map(|w| w.left[0].mean(i));
-            self.sensors.noise[i].powi(2) + DELTA * DELTA * all.fold(f64::INFINITY, f64::min)
+            self.sensors.noise[i].powi(2)
+                + DELTA * DELTA * all.fold(f64::INFINITY, f64::min)
                 + (LEAST * self.sensors.full_scale[i]).powi(2)
         };
         let closed: Vec<f64> = (0..self.first.len()).map(least).collect();

@@ -8,14 +8,15 @@ use super::super::hypotheses::{Hypothesis, Place};
 use super::super::mistakes;
 use super::super::problem::{Chosen, Problem, Tolerance};
 use super::super::select::screen;
-use super::super::select::search::{Found, Taken, Weighed, weighed};
+use super::super::select::search::{Found, Taken, Trial, Weighed, weighed};
 use super::{Alternative, Drift, Effect, Estimate, Gaps, Located, Maybe, RecordingError, Spot, Unexplained, Verdict};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// The verdict; without held recordings the train ones stand in.
 pub fn conclude(problem: &Problem<'_>, found: &Found, held: &[Recording], seconds: f64) -> Verdict {
-    let conclusion = Conclusion { problem, found, held: if held.is_empty() { &problem.train } else { held }, own: held.is_empty() };
+    let conclusion =
+        Conclusion { problem, found, held: if held.is_empty() { &problem.train } else { held }, own: held.is_empty() };
     conclusion.verdict(seconds)
 }
 
@@ -48,7 +49,8 @@ impl Conclusion<'_> {
             () => "nothing_found",
         };
         let ambiguous = found.taken.iter().any(|t| !t.set.is_empty());
-        let next = "slow triangles through zero, steps and a chirp over the whole range: what moves alike here may part there";
+        let next =
+            "slow triangles through zero, steps and a chirp over the whole range: what moves alike here may part there";
         Verdict {
             schema: 1,
             verdict,
@@ -64,6 +66,7 @@ impl Conclusion<'_> {
             },
             closed: share.map(|s| 1.0 - s),
             closed_by_effects: ratio(effects, tolerated).map(|s| 1.0 - s),
+            weighed: found.trials.iter().map(|t| self.weighed(t)).collect(),
             unexplained: Unexplained { share, place: None, shape: None },
             open,
             next_experiment: (verdict == "effects" && ambiguous).then(|| next.to_string()),
@@ -164,6 +167,21 @@ impl Conclusion<'_> {
             tolerances: (theta[i] - t.nominal) / t.sigma,
         };
         self.problem.tolerances.iter().enumerate().map(drift).collect()
+    }
+
+    fn weighed(&self, trial: &Trial) -> super::Weighed {
+        let h = &self.problem.hypotheses[trial.chosen.hypothesis];
+        super::Weighed {
+            step: trial.step,
+            effect: h.effect.clone(),
+            family: h.family.clone(),
+            places: spots(h),
+            gap: trial.gap,
+            t: trial.t,
+            chance: trial.chance,
+            evidence: trial.evidence,
+            refused: trial.reason.as_ref().map(ToString::to_string),
+        }
     }
 
     /// Places of what was taken first, then those of the best explanations of the first step.
