@@ -14,7 +14,7 @@ import tempfile
 
 # Families that are right for a label of the bench.
 FAMILIES = {
-    "cyl_friction": ["dry_friction"],
+    "cyl_friction": ["dry_friction", "hysteresis"],
     "leak_12": ["internal_leak", "parameter"],
     "leak_case": ["external_leak", "parameter"],
     "pump_shear": ["speed_loss"],

@@ -27,15 +27,12 @@ fn verdict(bench: &str, class: &str, recordings: &str) -> Option<Value> {
     Some(serde_json::from_slice(&said.stdout).unwrap())
 }
 
-/// The first effect is of this family at this place, and closes this part of the held gap, sensors' noise included.
-fn finds(bench: &str, recordings: &str, family: &str, place: &str, closes: f64) {
+/// The first effect is of one of these families at this place, and closes this part of the held gap, sensors' noise included.
+fn finds(bench: &str, recordings: &str, families: &[&str], place: &str, closes: f64) {
     let Some(verdict) = verdict(bench, "Nominal", recordings) else { return };
     let first = &verdict["effects"][0];
-    assert_eq!(
-        (first["family"].as_str(), first["places"][0]["place"].as_str()),
-        (Some(family), Some(place)),
-        "{first:#}"
-    );
+    assert!(first["family"].as_str().is_some_and(|f| families.contains(&f)), "{first:#}");
+    assert_eq!(first["places"][0]["place"].as_str(), Some(place), "{first:#}");
     assert!(first["closes_alone"].as_f64().unwrap() > closes, "{first:#}");
 }
 
@@ -49,19 +46,20 @@ fn claims_nothing(bench: &str, recordings: &str) {
 
 #[test]
 fn coupled_drives() {
-    finds("CoupledDrives", "ced_coupled_drives", "sensor_rectification", "y", 0.65);
+    finds("CoupledDrives", "ced_coupled_drives", &["sensor_rectification"], "y", 0.65);
     claims_nothing("CoupledDrives", "ced_coupled_drives");
 }
 
 #[test]
 fn cascaded_tanks() {
     // the dead zone of the pump is missing too: without it the overflow alone closes little
-    finds("CascadedTanks", "cascaded_tanks", "overflow", "lower.port", 0.05);
+    finds("CascadedTanks", "cascaded_tanks", &["overflow"], "lower.port", 0.05);
     claims_nothing("CascadedTanks", "cascaded_tanks");
 }
 
 #[test]
 fn positioning_axis() {
-    finds("Emps", "emps", "dry_friction", "motor.flange", 0.5);
+    // dry friction, in Dahl's form where that is a family of its own
+    finds("Emps", "emps", &["dry_friction", "hysteresis"], "motor.flange", 0.5);
     claims_nothing("Emps", "emps");
 }
