@@ -213,6 +213,12 @@ impl System {
         x
     }
 
+    /// By how much the linear model's cost falls from one point to another.
+    pub fn gain(&self, from: &[f64], to: &[f64]) -> f64 {
+        let change = DVector::from_fn(from.len(), |i, _| to[i] - from[i]);
+        2.0 * self.towards.dot(&change) - change.dot(&(&self.information * &change))
+    }
+
     fn deviations(&self, fit: &Fit) -> Vec<f64> {
         let free = self.free(fit);
         let mut deviations = vec![0.0; fit.x.len()];

@@ -13,6 +13,8 @@ use std::ops::Range;
 const DEEPEST: u32 = 6;
 /// The curvature within a step that is let pass, in parts of the states' sizes.
 const CURVATURE: f64 = 1e-5;
+/// Part of it below which the next step is twice as long: the curvature grows with the square.
+const LENGTHENED: f64 = 0.1;
 
 /// How states and outputs depend on what may be chosen.
 #[derive(Clone, Debug)]
@@ -38,15 +40,18 @@ impl Slopes {
     }
 
     /// S over a step whose transition and integral are known.
-    fn advance(&mut self, local: &Local, exponential: &Exponential, scale: &DVector<f64>) {
-        let mut driven = DMatrix::zeros(scale.len(), self.moves.len());
+    fn advance(&mut self, local: &Local, exponential: &Exponential, sizes: &[f64]) {
+        let (n, choices) = (sizes.len(), self.moves.len());
+        let mut driven = DMatrix::zeros(n, choices);
         for (column, moved) in self.moves.iter().enumerate() {
             if let Some((parameter, factor)) = moved {
-                let drive = local.linear.b.column(*parameter).component_div(scale) * *factor;
-                driven.set_column(column, &drive);
+                (0..n).for_each(|i| driven[(i, column)] = local.linear.b[(i, *parameter)] * factor / sizes[i]);
             }
         }
-        self.states = &exponential.transition * &self.states + &exponential.integral * driven;
+        let mut next = DMatrix::zeros(n, choices);
+        step::multiply(&mut next, &exponential.transition, &self.states, 0.0);
+        step::multiply(&mut next, &exponential.integral, &driven, 1.0);
+        self.states = next;
     }
 }
 
@@ -73,16 +78,7 @@ impl Course<'_> {
         samples: Range<usize>,
         mut at: impl FnMut(usize, &Local, Option<&Slopes>),
     ) -> Option<()> {
-        let n = self.sizes.len();
-        let mut stepper = Stepper {
-            scale: DVector::from_column_slice(self.sizes),
-            exponential: Exponential::new(n, 0),
-            a: DMatrix::zeros(n, n),
-            length: 0.0,
-            since: 0.0,
-            inputs: Inputs::new(recording),
-            u: vec![0.0; recording.inputs.len()],
-        };
+        let mut stepper = Stepper::new(self.sizes.len(), recording);
         let last = samples.end - 1;
         for k in samples {
             recording.input(k, &mut stepper.u);
@@ -96,9 +92,8 @@ impl Course<'_> {
             if k == last {
                 break;
             }
-            stepper.since = t;
             stepper.inputs.enter(recording, k);
-            stepper.advance(self, t, recording.times[k + 1] - t, 0)?;
+            stepper.advance(self, t, recording.times[k + 1] - t)?;
             if self.state.iter().any(|v| !v.is_finite()) {
                 return None;
             }
@@ -108,73 +103,126 @@ impl Course<'_> {
 }
 
 struct Stepper {
-    scale: DVector<f64>,
-    exponential: Exponential,
-    /// Scaled matrix and step of the last linearisation; no step yet where it is 0.
+    /// One for each length of step, in halvings of the distance between two samples.
+    exponentials: Vec<Exponential>,
+    /// Scaled matrix of the last linearisation, and per length the step that it served last; 0 where it did not.
     a: DMatrix<f64>,
-    length: f64,
-    /// When the last sample was, and the inputs after it.
-    since: f64,
+    lengths: [f64; DEEPEST as usize + 1],
+    /// Halvings of the last step.
+    depth: u32,
+    /// x' in sizes where the step begins, its change over the step, and x' as the linear model expects it at the end.
+    rate: DVector<f64>,
+    change: DVector<f64>,
+    expected: DVector<f64>,
+    /// How fast the inputs change the rates.
+    ramp: DVector<f64>,
+    next: Vec<f64>,
     inputs: Inputs,
     u: Vec<f64>,
 }
 
 impl Stepper {
-    /// From `t`, where the model has been evaluated.
-    fn advance(&mut self, course: &mut Course<'_>, t: f64, h: f64, depth: u32) -> Option<()> {
-        let still = DVector::zeros(self.scale.len());
-        if step::as_long(h, self.length) && self.inputs.slope.iter().all(|v| *v == 0.0) {
-            self.exponential.ramped.fill(0.0);
-            let (next, bend) = self.step(course, t, h, &still);
-            if bend <= CURVATURE {
-                self.accept(course, next);
-                return Some(());
+    fn new(n: usize, recording: &Recording) -> Self {
+        let zeros = || DVector::zeros(n);
+        Stepper {
+            exponentials: (0..=DEEPEST).map(|_| Exponential::new(n, 0)).collect(),
+            a: DMatrix::zeros(n, n),
+            lengths: [0.0; DEEPEST as usize + 1],
+            depth: 0,
+            rate: zeros(),
+            change: zeros(),
+            expected: zeros(),
+            ramp: zeros(),
+            next: vec![0.0; n],
+            inputs: Inputs::new(recording),
+            u: vec![0.0; recording.inputs.len()],
+        }
+    }
+
+    /// From a sample at `t`, where the model has been evaluated (linearised, where there are slopes), to the next.
+    fn advance(&mut self, course: &mut Course<'_>, t: f64, h: f64) -> Option<()> {
+        const WHOLE: u32 = 1 << DEEPEST;
+        let held = self.inputs.slope.iter().all(|v| *v == 0.0);
+        let mut linear_here = course.slopes.is_some();
+        let mut gone = 0;
+        self.take_rates(course);
+        while gone < WHOLE {
+            let part = WHOLE >> self.depth;
+            let fraction = |ticks: u32| h * f64::from(ticks) / f64::from(WHOLE);
+            let (after, length) = (fraction(gone), fraction(part));
+            let serves = held && step::as_long(length, self.lengths[self.depth as usize]);
+            let mut bend = f64::INFINITY;
+            if serves {
+                self.exponentials[self.depth as usize].ramped.fill(0.0);
+                self.ramp.fill(0.0);
+                bend = self.step(course, t, after, length);
+            }
+            if bend > CURVATURE {
+                if !linear_here {
+                    self.inputs.at(after, &mut self.u);
+                    course.local.linearize(t + after, &course.state, course.theta, &self.u).ok()?;
+                    linear_here = true;
+                }
+                self.linear(course, length);
+                bend = self.step(course, t, after, length);
+            }
+            if bend > CURVATURE && self.depth < DEEPEST {
+                self.depth += 1;
+                continue;
+            }
+            if bend.is_infinite() {
+                return None;
+            }
+            if let Some(slopes) = &mut course.slopes {
+                slopes.advance(course.local, &self.exponentials[self.depth as usize], course.sizes);
+            }
+            course.state.copy_from_slice(&self.next);
+            // the model was evaluated there last
+            self.take_rates(course);
+            gone += part;
+            linear_here = false;
+            if bend < LENGTHENED * CURVATURE && self.depth > 0 && gone.is_multiple_of(2 * part) {
+                self.depth -= 1;
             }
         }
-        self.inputs.at(t - self.since, &mut self.u);
-        course.local.linearize(t, &course.state, course.theta, &self.u).ok()?;
-        let ramp = self.linear(course.local, h);
-        let (next, bend) = self.step(course, t, h, &ramp);
-        if depth < DEEPEST && bend > CURVATURE {
-            self.advance(course, t, 0.5 * h, depth + 1)?;
-            let middle = t + 0.5 * h;
-            self.inputs.at(middle - self.since, &mut self.u);
-            course.local.evaluate(middle, &course.state, course.theta, &self.u).ok()?;
-            return self.advance(course, middle, 0.5 * h, depth + 1);
-        }
-        self.accept(course, next);
         Some(())
     }
 
-    fn accept(&self, course: &mut Course<'_>, next: Vec<f64>) {
-        if let Some(slopes) = &mut course.slopes {
-            slopes.advance(course.local, &self.exponential, &self.scale);
-        }
-        course.state = next;
+    fn take_rates(&mut self, course: &Course<'_>) {
+        let scaled = course.local.rates.iter().zip(course.sizes).map(|(r, s)| r / s);
+        self.rate.iter_mut().zip(scaled).for_each(|(to, r)| *to = r);
     }
 
-    /// Takes over the linearisation; gives how fast the inputs change the rates.
-    fn linear(&mut self, local: &Local, h: f64) -> DVector<f64> {
-        let n = self.scale.len();
-        self.a = DMatrix::from_fn(n, n, |i, j| local.linear.a[(i, j)] * self.scale[j] / self.scale[i]);
-        self.length = h;
-        let ramp = step::ramp(&local.linear.b, &self.inputs.slope).component_div(&self.scale);
-        self.exponential.compute(&self.a, h, Some(&ramp));
-        ramp
+    /// Takes over the linearisation.
+    fn linear(&mut self, course: &Course<'_>, length: f64) {
+        let (linear, sizes) = (&course.local.linear, course.sizes);
+        let n = sizes.len();
+        (0..n).for_each(|j| (0..n).for_each(|i| self.a[(i, j)] = linear.a[(i, j)] * sizes[j] / sizes[i]));
+        self.ramp = step::ramp(&linear.b, &self.inputs.slope);
+        self.ramp.iter_mut().zip(sizes).for_each(|(r, s)| *r /= s);
+        // other lengths belong to another matrix
+        self.lengths = [0.0; DEEPEST as usize + 1];
+        self.lengths[self.depth as usize] = length;
+        self.exponentials[self.depth as usize].compute(&self.a, length, Some(&self.ramp));
     }
 
-    /// A step from where the model was evaluated last, and how far the model is from linear over it.
-    fn step(&mut self, course: &mut Course<'_>, t: f64, h: f64, ramp: &DVector<f64>) -> (Vec<f64>, f64) {
-        let (local, x) = (&mut *course.local, &course.state);
-        let rate = local.rate_vector().component_div(&self.scale);
-        let change = &self.exponential.integral * &rate + &self.exponential.ramped;
-        let next: Vec<f64> = (0..x.len()).map(|i| x[i] + change[i] * self.scale[i]).collect();
-        let expected = rate + &self.a * change + ramp * h;
-        self.inputs.at(t + h - self.since, &mut self.u);
-        if local.evaluate(t + h, &next, course.theta, &self.u).is_err() {
-            return (next, f64::INFINITY);
+    /// A step so long after the sample at `t`, and how far the model is from linear over it.
+    fn step(&mut self, course: &mut Course<'_>, t: f64, after: f64, length: f64) -> f64 {
+        let exponential = &self.exponentials[self.depth as usize];
+        self.change.copy_from(&exponential.ramped);
+        step::apply(&mut self.change, &exponential.integral, &self.rate, 1.0);
+        for (i, next) in self.next.iter_mut().enumerate() {
+            *next = course.state[i] + self.change[i] * course.sizes[i];
         }
-        let off = |i: usize| 0.5 * h * (local.rates[i] / self.scale[i] - expected[i]).abs();
-        (next, (0..x.len()).map(off).fold(0.0, f64::max))
+        self.expected.copy_from(&self.rate);
+        step::apply(&mut self.expected, &self.a, &self.change, 1.0);
+        self.expected.axpy(length, &self.ramp, 1.0);
+        self.inputs.at(after + length, &mut self.u);
+        if course.local.evaluate(t + after + length, &self.next, course.theta, &self.u).is_err() {
+            return f64::INFINITY;
+        }
+        let off = |i: usize| 0.5 * length * (course.local.rates[i] / course.sizes[i] - self.expected[i]).abs();
+        // what is not a number is as far from linear as can be
+        (0..self.next.len()).map(off).fold(0.0, |most, v| if v >= 0.0 { most.max(v) } else { f64::INFINITY })
     }
 }

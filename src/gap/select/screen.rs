@@ -110,10 +110,9 @@ pub fn beginnings(h: &Hypothesis) -> Vec<Vec<f64>> {
     all
 }
 
-/// The best starts of a hypothesis beside a model, best first.
-pub fn starts(problem: &Problem<'_>, before: &Fit, hypothesis: usize) -> Vec<Start> {
+/// The best starts of a hypothesis beside a model, best first; `None` where it does not get anywhere.
+pub fn starts(problem: &Problem<'_>, before: &Fit, hypothesis: usize) -> Option<Vec<Start>> {
     let h = &problem.hypotheses[hypothesis];
-    let mut found = Vec::new();
     let theta = before.candidate.theta(&before.x);
     let tolerances = &theta[before.candidate.model.free.clone()];
     let mut values = beginnings(h);
@@ -121,23 +120,49 @@ pub fn starts(problem: &Problem<'_>, before: &Fit, hypothesis: usize) -> Vec<Sta
         let place = problem.tolerances.iter().position(|t| t.name == h.attachments[0].place.place);
         values = place.map(|p| vec![tolerances[p]]).into_iter().collect();
     }
-    let Some(first) = values.first() else { return found };
+    let first = values.first()?;
     let mut causes = causes(before);
     causes.push(Chosen { hypothesis, values: first.clone() });
-    let Some(first) = candidate(problem, &causes, Some(tolerances)) else { return found };
-    for values in values {
+    let first = candidate(problem, &causes, Some(tolerances))?;
+    let with = |values: &Vec<f64>| {
         let mut candidate = first.clone();
         if let (Some(places), true) = (candidate.model.attached.last(), h.family != "parameter") {
-            places.iter().zip(&values).for_each(|(&p, v)| candidate.model.theta[p] = *v);
+            places.iter().zip(values).for_each(|(&p, v)| candidate.model.theta[p] = *v);
         }
         if let Some(cause) = candidate.causes.last_mut() {
-            cause.values = values;
+            cause.values.clone_from(values);
         }
-        found.extend(stepped(problem, before, candidate));
+        candidate
+    };
+    let mut begun: Vec<Candidate> = values.iter().map(with).collect();
+    let whole = h.coefficients.iter().all(|c| c.whole().is_some());
+    if whole && begun.len() > STARTS {
+        begun = nearest(problem, before, begun);
     }
+    let mut promised: Vec<(f64, Fit)> = begun.into_iter().filter_map(|c| promised(problem, before, c)).collect();
+    promised.sort_by(|a, b| a.0.total_cmp(&b.0));
+    promised.truncate(STARTS);
+    let mut found: Vec<Start> = promised.into_iter().filter_map(|(_, fit)| stepped(problem, &fit)).collect();
     found.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-    found.truncate(STARTS);
-    found
+    (!found.is_empty()).then_some(found)
+}
+
+/// Those that come nearest to the recordings as they stand.
+fn nearest(problem: &Problem<'_>, before: &Fit, all: Vec<Candidate>) -> Vec<Candidate> {
+    let cost = |c: &Candidate| Some(before.weights.cost(&c.all_errors(&c.present(), &problem.train)?));
+    let mut all: Vec<(f64, Candidate)> = all.into_iter().filter_map(|c| Some((cost(&c)?, c))).collect();
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    all.into_iter().take(STARTS).map(|(_, c)| c).collect()
+}
+
+/// A model where it stands, and the cost that its linear model promises.
+fn promised(problem: &Problem<'_>, before: &Fit, candidate: Candidate) -> Option<(f64, Fit)> {
+    let x = candidate.present();
+    let evaluated = candidate.evaluate(&x, &problem.train)?;
+    let fit = Fit { candidate, x, evaluated, weights: before.weights.clone() };
+    let system = fit.system(|_, _| true);
+    let promised = fit.cost() - system.gain(&fit.x, &system.step(&fit, 0.0));
+    promised.is_finite().then_some((promised, fit))
 }
 
 /// The causes of a fit with their fitted values.
@@ -150,15 +175,12 @@ pub fn causes(fit: &Fit) -> Vec<Chosen> {
     fit.candidate.causes.iter().zip(&fit.candidate.model.attached).map(with).collect()
 }
 
-/// A model after the best of some damped linear steps, with the weights of the model before.
-fn stepped(problem: &Problem<'_>, before: &Fit, candidate: Candidate) -> Option<Start> {
-    let x = candidate.present();
-    let evaluated = candidate.evaluate(&x, &problem.train)?;
-    let fit = Fit { candidate, x, evaluated, weights: before.weights.clone() };
+/// A model after the best of some damped linear steps.
+fn stepped(problem: &Problem<'_>, fit: &Fit) -> Option<Start> {
     let mut best = Start { candidate: fit.candidate.clone(), x: fit.x.clone(), cost: fit.cost() };
     let system = fit.system(|_, _| true);
     for damping in DAMPINGS {
-        let x = system.step(&fit, damping);
+        let x = system.step(fit, damping);
         let Some(errors) = fit.candidate.all_errors(&x, &problem.train) else { continue };
         let cost = fit.weights.cost(&errors) + fit.candidate.prior(&x);
         if cost < best.cost {

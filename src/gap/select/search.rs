@@ -239,8 +239,8 @@ impl Search<'_> {
     /// The starts of the hypotheses that are worth a fit.
     fn screened(&self, before: &Weighed) -> Vec<(usize, Vec<Start>)> {
         let open = self.open(&before.fit);
-        let one = |&i: &usize| (i, screen::starts(self.problem, &before.fit, i));
-        let mut all: Vec<(usize, Vec<Start>)> = open.par_iter().map(one).filter(|s| !s.1.is_empty()).collect();
+        let one = |&i: &usize| Some((i, screen::starts(self.problem, &before.fit, i)?));
+        let mut all: Vec<(usize, Vec<Start>)> = open.par_iter().filter_map(one).collect();
         all.sort_by(|a, b| a.1[0].cost.total_cmp(&b.1[0].cost));
         let (mut with, mut without) = (0, 0);
         all.retain(|(_, starts)| {
