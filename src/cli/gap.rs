@@ -7,12 +7,14 @@ use super::messages::Messages;
 use super::recorder::write_text;
 use super::{DiskWorld, Ending, Failure, files};
 use crate::diag::{Checked, Code, Diagnostic};
+use crate::gap::data::Recording;
 use crate::gap::diagnose::{Stage, Trouble, search};
 use crate::gap::fixed::corrected;
 use crate::gap::hypotheses::Hypothesis;
 use crate::gap::plan::plan;
 use crate::gap::report::report;
-use crate::gap::study::{Unusable, planned, proposed, question};
+use crate::gap::study::{Question, Unusable, planned, proposed, question};
+use crate::gap::verdict::{Verdict, conclude};
 use crate::gap::words::words;
 use crate::study::Study;
 
@@ -110,21 +112,16 @@ fn diagnose(args: &GapArgs, study: &Study, messages: &mut Messages) -> Result<En
     let data = args.data.as_deref();
     let question = question(&DiskWorld, study, data, &mut messages.sources).map_err(|why| unusable(why, messages))?;
     messages.say(&question.diagnostics);
-    let stages = Stages::new();
     if args.judge == Judge::Simulation {
         return by_simulation(args, question, begun, messages);
     }
+    let stages = Stages::new();
     let search = search(&question.problem, &mut |stage| stages.show(stage)).map_err(|t| trouble(&t))?;
     stages.show(Stage::Held);
     let held = question.held(data, &mut messages.sources).map_err(|diagnostics| Failure { diagnostics })?;
     let verdict = search.verdict(&question.problem, &held, begun.elapsed().as_secs_f64());
     stages.clear();
-    if held.is_empty() {
-        messages.remark("There are no held recordings: the gap is that on the recordings that were used.");
-    }
-    messages.remark(words(&verdict).trim_end());
-    let text = serde_json::to_string_pretty(&verdict).expect("numbers and texts always serialize");
-    write_text(&args.output, &format!("{text}\n"))?;
+    say(args, &verdict, &held, messages)?;
     if let Some(file) = &args.write_model {
         write_text(file, &messages.value(corrected(&question.problem, &search))?)?;
     }
@@ -134,9 +131,21 @@ fn diagnose(args: &GapArgs, study: &Study, messages: &mut Messages) -> Result<En
     Ok(Ending::Fine)
 }
 
+/// The verdict in words, and as JSON where it is wanted.
+fn say(args: &GapArgs, verdict: &Verdict, held: &[Recording], messages: &mut Messages) -> Result<(), Failure> {
+    if held.is_empty() {
+        messages.remark("There are no held recordings: the gap is that on the recordings that were used.");
+    }
+    messages.remark(words(verdict).trim_end());
+    let text = serde_json::to_string_pretty(verdict).expect("numbers and texts always serialize");
+    write_text(&args.output, &format!("{text}\n"))?;
+    Ok(())
+}
+
+/// The diagnosis by simulation of left-out data.
 fn by_simulation(
     args: &GapArgs,
-    mut question: crate::gap::study::Question<'_>,
+    mut question: Question<'_>,
     begun: std::time::Instant,
     messages: &mut Messages,
 ) -> Result<Ending, Failure> {
@@ -147,11 +156,9 @@ fn by_simulation(
     let stages = Stages::new();
     let found = crate::gap::select::search::search(problem, &held, &mut |stage| stages.show(stage))
         .ok_or_else(|| trouble(&Trouble::Diverges(0.0, "the model has no values on the way".into())))?;
-    let verdict = crate::gap::verdict::conclude(problem, &found, &held, begun.elapsed().as_secs_f64());
+    let verdict = conclude(problem, &found, &held, begun.elapsed().as_secs_f64());
     stages.clear();
-    messages.remark(words(&verdict).trim_end());
-    let text = serde_json::to_string_pretty(&verdict).expect("numbers and texts always serialize");
-    write_text(&args.output, &format!("{text}\n"))?;
+    say(args, &verdict, &held, messages)?;
     Ok(Ending::Fine)
 }
 

@@ -11,6 +11,7 @@ pub mod predict;
 
 use super::begin;
 use super::data::{Inputs, Recording};
+use super::estimate::start::{KELVIN, TRAVEL, UNMEASURED};
 use super::passive::{Passive, passive_states};
 use super::step::{Exponential, add_outer, apply};
 use crate::analysis::local::{Local, LocalError, Plan};
@@ -23,11 +24,6 @@ use std::sync::Arc;
 /// Stretches into which a recording is cut for statistics over blocks.
 pub const BLOCKS: usize = 16;
 
-/// How far states may be from the model's start when a recording begins: measured ones by their size, the others by these
-/// parts of it or of how far they usually move, absolute temperatures by so much.
-const START_UNMEASURED: f64 = 0.2;
-const START_TRAVEL: f64 = 0.5;
-const START_KELVIN: f64 = 10.0;
 /// Iterations of the first update at most, and the part of the states' sizes below which they have settled.
 const FIRST: usize = 10;
 const SETTLED: f64 = 1e-6;
@@ -317,9 +313,9 @@ impl<'a> Filter<'a> {
                 unseen.push(i);
             }
             let deviation = match local.plan().state_unit(x) {
-                Some("K") => START_KELVIN / scale[i],
+                Some("K") => KELVIN / scale[i],
                 _ if measured => 1.0,
-                _ => START_UNMEASURED.max(START_TRAVEL * setting.travel[x] / scale[i]),
+                _ => UNMEASURED.max(TRAVEL * setting.travel[x] / scale[i]),
             };
             p[(i, i)] = deviation * deviation;
         }

@@ -4,7 +4,8 @@
 //! every place where it fits, [`shapes`] fits their grids to the recordings, `capacity` their bounds to the nodes, and [`augment`] writes the nominal model with
 //! effects attached. [`problem`] makes of it what the [`filter`] runs over the recordings; [`fit`], [`screen`] and
 //! [`locate`] weigh parameters, effects and places by their [`evidence`]; [`diagnose`] puts all together into a
-//! [`verdict`]. [`fixed`] writes the corrected model into one file, [`report`] the page, with the [`whiteness`] of
+//! [`verdict`]. [`estimate`] and [`select`] are the judge by simulation of left-out data, with the constants of
+//! [`policy`] and the [`mistakes`] of recordings among its hypotheses. [`fixed`] writes the corrected model into one file, [`report`] the page, with the [`whiteness`] of
 //! what is left. [`plan`] says before measuring
 //! what an experiment would show.
 

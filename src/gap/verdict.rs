@@ -4,6 +4,7 @@ mod conclude;
 
 pub use conclude::conclude;
 
+use super::hypotheses::Hypothesis;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -252,4 +253,24 @@ pub struct Term {
     pub term: String,
     /// Part of the simulated gap's square on the train recordings that it closes.
     pub r2: f64,
+}
+
+/// What parts effects that move alike.
+pub(super) const PARTING: &str =
+    "slow triangles through zero, steps and a chirp over the whole range: what moves alike here may part there";
+
+/// One gap over another, where both are known.
+pub(super) fn ratio(a: Maybe, b: Maybe) -> Maybe {
+    let b = b.filter(|b| *b > 0.0)?;
+    a.map(|a| a / b)
+}
+
+/// The places of a hypothesis by name.
+pub(super) fn spots(h: &Hypothesis) -> Vec<Spot> {
+    h.places().into_iter().map(|p| Spot { place: p.place.clone(), node: p.node.clone() }).collect()
+}
+
+/// A hypothesis that is so many nats behind the one named.
+pub(super) fn alternative(h: &Hypothesis, behind: f64) -> Alternative {
+    Alternative { effect: h.effect.clone(), family: h.family.clone(), places: spots(h), behind }
 }

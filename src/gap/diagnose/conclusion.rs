@@ -4,12 +4,13 @@ use super::super::data::Recording;
 use super::super::figures::{self, Left};
 use super::super::filter::Setting;
 use super::super::held;
-use super::super::hypotheses::{Hypothesis, Place, Site};
+use super::super::hypotheses::{Hypothesis, Site};
 use super::super::locate::Located;
 use super::super::problem::{Chosen, Problem, Tolerance};
 use super::super::recording::Gross;
 use super::super::screen::Accepted;
 use super::super::verdict as v;
+use super::super::verdict::{alternative, ratio, spots};
 use super::refine::fitted;
 use super::{Search, Shaped, driven};
 use std::collections::BTreeMap;
@@ -118,9 +119,7 @@ impl Conclusion<'_> {
             "undecidable" => Some(
                 "more excitation: steps of the inputs over their whole range, then slow triangles through zero".into(),
             ),
-            "effects" if ambiguous => {
-                Some("slow triangles through zero, steps and a chirp over the whole range: what moves alike here may part there".into())
-            }
+            "effects" if ambiguous => Some(v::PARTING.into()),
             _ => None,
         }
     }
@@ -192,7 +191,7 @@ impl Conclusion<'_> {
                     indistinguishable: found
                         .alternatives
                         .iter()
-                        .map(|(c, behind)| self.alternative(c, *behind))
+                        .map(|(c, behind)| alternative(self.hypothesis(c), *behind))
                         .collect(),
                 }
             })
@@ -201,11 +200,6 @@ impl Conclusion<'_> {
 
     fn hypothesis(&self, chosen: &Chosen) -> &Hypothesis {
         &self.problem.hypotheses[chosen.hypothesis]
-    }
-
-    fn alternative(&self, chosen: &Chosen, behind: f64) -> v::Alternative {
-        let h = self.hypothesis(chosen);
-        v::Alternative { effect: h.effect.clone(), family: h.family.clone(), places: spots(h), behind }
     }
 
     /// What an effect closes alone, and what opens again without it, of the gap within tolerances. `gaps` keeps those of sets
@@ -264,14 +258,4 @@ impl Conclusion<'_> {
         };
         self.problem.tolerances.iter().enumerate().map(drift).collect()
     }
-}
-
-/// One gap over another, where both are known.
-fn ratio(a: v::Maybe, b: v::Maybe) -> v::Maybe {
-    let b = b.filter(|b| *b > 0.0)?;
-    a.map(|a| a / b)
-}
-
-fn spots(h: &Hypothesis) -> Vec<v::Spot> {
-    h.places().into_iter().map(|p: &Place| v::Spot { place: p.place.clone(), node: p.node.clone() }).collect()
 }

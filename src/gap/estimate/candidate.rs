@@ -153,7 +153,7 @@ impl Candidate {
     /// not reach the end.
     pub fn errors(&self, x: &[f64], recording: &Recording, number: Option<usize>) -> Option<Errors> {
         let mut errors = vec![Vec::with_capacity(recording.len()); self.deviations.len()];
-        self.run(x, recording, number, None, |errors_of, _| {
+        self.run(x, recording, number, false, |errors_of, _| {
             errors.iter_mut().zip(errors_of).for_each(|(all, e)| all.push(*e));
         })?;
         Some(errors)
@@ -174,7 +174,7 @@ impl Candidate {
             let mut sums = vec![vec![Products::none(width); signals]; PIECES];
             let mut sample = 0;
             let mut row = vec![0.0; width];
-            self.run(x, recording, Some(number), Some(()), |errors_of, slopes| {
+            self.run(x, recording, Some(number), true, |errors_of, slopes| {
                 let into = &mut sums[piece(sample, samples)];
                 sample += 1;
                 for (i, e) in errors_of.iter().enumerate() {
@@ -196,7 +196,7 @@ impl Candidate {
         x: &[f64],
         recording: &Recording,
         number: Option<usize>,
-        slopes: Option<()>,
+        slopes: bool,
         mut at: impl FnMut(&[f64], Option<&DMatrix<f64>>),
     ) -> Option<()> {
         let theta = self.theta_of(x, number);
@@ -212,7 +212,7 @@ impl Candidate {
             units: &self.units,
             deviations: &self.deviations,
         };
-        let mut begun = valued.begin(recording, slopes.map(|()| &moves[..]))?;
+        let mut begun = valued.begin(recording, slopes.then_some(&moves[..]))?;
         let from = recording.settled();
         let mut errors = vec![0.0; self.deviations.len()];
         let mut course = Course {

@@ -31,7 +31,7 @@ impl Weights {
         let one = |(i, scale): (usize, &f64)| {
             let count = |e: &Errors| e[i].iter().filter(|v| v.is_finite()).count() as f64;
             let all: f64 = errors.iter().map(count).sum::<f64>().max(1.0);
-            let sum: f64 = errors.iter().flat_map(|e| &e[i]).filter(|v| v.is_finite()).map(|v| v * v).sum();
+            let sum: f64 = squares(errors, i);
             let tau: f64 = errors.iter().map(|e| count(e) * correlation::time(&e[i])).sum::<f64>() / all;
             let least = (0.01 * LEAST * scale).powi(2);
             ((sum / all).max(least), tau.max(1.0))
@@ -53,12 +53,13 @@ impl Weights {
 
     /// Sum of weighed squares.
     pub fn cost(&self, errors: &[Errors]) -> f64 {
-        let one = |i: usize| {
-            let squares = errors.iter().flat_map(|e| &e[i]).filter(|v| v.is_finite()).map(|v| v * v);
-            self.weight(i) * squares.sum::<f64>()
-        };
-        (0..self.square.len()).map(one).sum()
+        (0..self.square.len()).map(|i| self.weight(i) * squares(errors, i)).sum()
     }
+}
+
+/// Sum of a signal's squared errors over all recordings.
+fn squares(errors: &[Errors], signal: usize) -> f64 {
+    errors.iter().flat_map(|e| &e[signal]).filter(|v| v.is_finite()).map(|v| v * v).sum()
 }
 
 /// A model at its optimum.
@@ -158,8 +159,7 @@ impl Fit {
     /// Minus the log posterior with each signal's variance at its optimum, nats: what orders fits of one model.
     pub fn nats(&self) -> f64 {
         let one = |i: usize| {
-            let squares = self.evaluated.errors.iter().flat_map(|e| &e[i]).filter(|v| v.is_finite()).map(|v| v * v);
-            let mean = squares.sum::<f64>() / self.samples(i).max(1.0);
+            let mean = squares(&self.evaluated.errors, i) / self.samples(i).max(1.0);
             0.5 * self.samples(i) / self.weights.tau[i] * mean.max(f64::MIN_POSITIVE).ln()
         };
         (0..self.weights.tau.len()).map(one).sum::<f64>() + self.prior()
@@ -168,6 +168,11 @@ impl Fit {
     /// Nats that the distance of parameters from their data sheet costs.
     pub fn prior(&self) -> f64 {
         0.5 * self.candidate.prior(&self.x)
+    }
+
+    /// Values of the parameters that may be off within their tolerances, SI.
+    pub fn tolerances(&self) -> Vec<f64> {
+        self.candidate.theta(&self.x)[self.candidate.model.free.clone()].to_vec()
     }
 
     /// Standard deviation of each coordinate, in its units; what a bound holds has none.
@@ -193,16 +198,21 @@ impl System {
         (0..fit.x.len()).filter(|&i| !held(i) && self.information[(i, i)] > 0.0).collect()
     }
 
-    /// Where a damped Gauss-Newton step leads, within the bounds.
-    pub fn step(&self, fit: &Fit, damping: f64) -> Vec<f64> {
-        let free = self.free(fit);
-        let mut x = fit.x.clone();
-        // in units in which the diagonal is 1
+    /// The damped information of some coordinates in units in which its diagonal is 1, and these units.
+    fn scaled(&self, free: &[usize], damping: f64) -> (Vec<f64>, DMatrix<f64>) {
         let unit: Vec<f64> = free.iter().map(|&i| self.information[(i, i)].sqrt()).collect();
         let matrix = DMatrix::from_fn(free.len(), free.len(), |a, b| {
             let scaled = self.information[(free[a], free[b])] / (unit[a] * unit[b]);
             if a == b { scaled + damping + RIDGE } else { scaled }
         });
+        (unit, matrix)
+    }
+
+    /// Where a damped Gauss-Newton step leads, within the bounds.
+    pub fn step(&self, fit: &Fit, damping: f64) -> Vec<f64> {
+        let free = self.free(fit);
+        let mut x = fit.x.clone();
+        let (unit, matrix) = self.scaled(&free, damping);
         let right = DVector::from_fn(free.len(), |a, _| self.towards[free[a]] / unit[a]);
         let Some(factor) = matrix.cholesky() else { return x };
         let change = factor.solve(&right);
@@ -222,11 +232,7 @@ impl System {
     fn deviations(&self, fit: &Fit) -> Vec<f64> {
         let free = self.free(fit);
         let mut deviations = vec![0.0; fit.x.len()];
-        let unit: Vec<f64> = free.iter().map(|&i| self.information[(i, i)].sqrt()).collect();
-        let matrix = DMatrix::from_fn(free.len(), free.len(), |a, b| {
-            let scaled = self.information[(free[a], free[b])] / (unit[a] * unit[b]);
-            if a == b { scaled + RIDGE } else { scaled }
-        });
+        let (unit, matrix) = self.scaled(&free, 0.0);
         if let Some(inverse) = matrix.try_inverse() {
             for (a, &i) in free.iter().enumerate() {
                 deviations[i] = inverse[(a, a)].max(0.0).sqrt() / unit[a];

@@ -8,11 +8,13 @@ use crate::analysis::local::{Local, Plan};
 use nalgebra::{Cholesky, DMatrix, DVector};
 use std::sync::Arc;
 
-/// How far states may be from the model's start when a recording begins: measured ones by their size, the others by these
-/// parts of it or of how far they usually move, absolute temperatures by so much.
-const UNMEASURED: f64 = 0.2;
-const TRAVEL: f64 = 0.5;
-const KELVIN: f64 = 10.0;
+/// How far states that nothing measures may be from the model's start when a recording begins, as part of their size;
+/// measured ones by all of it.
+pub const UNMEASURED: f64 = 0.2;
+/// Or as part of how far they usually move.
+pub const TRAVEL: f64 = 0.5;
+/// Absolute temperatures, K.
+pub const KELVIN: f64 = 10.0;
 /// And those that begin where the model says.
 const HELD: f64 = 1e-6;
 /// Gauss-Newton steps at most, halvings of one that leads nowhere, and the change of the state in its sizes that is none.

@@ -20,7 +20,7 @@ pub fn differences(a: &LeftOut, b: &LeftOut, sensors: &Sensors) -> Vec<f64> {
     let blocks = a.squares.len();
     let mut all = vec![0.0; blocks];
     for i in 0..signals {
-        let closed = sensors.noise[i].powi(2) + DELTA * DELTA * a.mean(i).min(b.mean(i)) + least(sensors, i);
+        let closed = closed(sensors, i, a.mean(i).min(b.mean(i)));
         let samples: f64 = a.samples.iter().map(|s| s[i]).sum();
         if samples <= 0.0 {
             continue;
@@ -33,8 +33,13 @@ pub fn differences(a: &LeftOut, b: &LeftOut, sensors: &Sensors) -> Vec<f64> {
     all
 }
 
-/// Where a simulation does not get, the error is as large as numbers are.
-fn loss(square: f64, closed: f64) -> f64 {
+/// The mean square of a signal below which its gap is closed, where the best model leaves `best`.
+pub fn closed(sensors: &Sensors, signal: usize, best: f64) -> f64 {
+    sensors.noise[signal].powi(2) + DELTA * DELTA * best + least(sensors, signal)
+}
+
+/// Loss of a block. Where a simulation does not get, the error is as large as numbers are.
+pub fn loss(square: f64, closed: f64) -> f64 {
     (square.min(f64::MAX.sqrt()) + closed).ln()
 }
 

@@ -1,9 +1,8 @@
 //! Held recordings: they take no part in fitting and ranking, and are asked about one hypothesis at a time.
 
 use super::super::data::Recording;
-use super::super::estimate::Fit;
 use super::super::estimate::candidate::Errors;
-use super::super::estimate::correlation;
+use super::super::estimate::{Fit, Weights};
 use super::super::policy::{ACCURACY, ALPHA, DELTA};
 use super::compare::{Sensors, evidence, gap, needed};
 use super::folds::LeftOut;
@@ -38,16 +37,9 @@ pub fn ask(before: &Fit, after: &Fit, held: &[Recording], sensors: &Sensors) -> 
         return None;
     }
     let (a, b) = (errors(before), errors(after));
-    let independent: Vec<f64> = (0..sensors.noise.len())
-        .map(|i| {
-            let samples = |e: &Errors| e[i].iter().filter(|v| !v.is_nan()).count() as f64;
-            let tau = |all: &[Errors]| {
-                let sum: f64 = all.iter().map(|e| samples(e) * correlation::time(&e[i])).sum();
-                sum / all.iter().map(samples).sum::<f64>().max(1.0)
-            };
-            a.iter().map(samples).sum::<f64>() / tau(&a).max(tau(&b)).max(1.0)
-        })
-        .collect();
+    let (tau_a, tau_b) = (Weights::of(&a, &sensors.full_scale).tau, Weights::of(&b, &sensors.full_scale).tau);
+    let samples = |i: usize| a.iter().flat_map(|e| &e[i]).filter(|v| !v.is_nan()).count() as f64;
+    let independent: Vec<f64> = (0..sensors.noise.len()).map(|i| samples(i) / tau_a[i].max(tau_b[i])).collect();
     let (a, b) = (LeftOut::of(&a), LeftOut::of(&b));
     Some(Asked { evidence: evidence(&a, &b, &independent, sensors), before: gap(&a, sensors), after: gap(&b, sensors) })
 }

@@ -113,8 +113,7 @@ pub fn beginnings(h: &Hypothesis) -> Vec<Vec<f64>> {
 /// The best starts of a hypothesis beside a model, best first; `None` where it does not get anywhere.
 pub fn starts(problem: &Problem<'_>, before: &Fit, hypothesis: usize) -> Option<Vec<Start>> {
     let h = &problem.hypotheses[hypothesis];
-    let theta = before.candidate.theta(&before.x);
-    let tolerances = &theta[before.candidate.model.free.clone()];
+    let tolerances = before.tolerances();
     let mut values = beginnings(h);
     if h.family == "parameter" {
         let place = problem.tolerances.iter().position(|t| t.name == h.attachments[0].place.place);
@@ -123,7 +122,7 @@ pub fn starts(problem: &Problem<'_>, before: &Fit, hypothesis: usize) -> Option<
     let first = values.first()?;
     let mut causes = causes(before);
     causes.push(Chosen { hypothesis, values: first.clone() });
-    let first = candidate(problem, &causes, Some(tolerances))?;
+    let first = candidate(problem, &causes, Some(&tolerances))?;
     let with = |values: &Vec<f64>| {
         let mut candidate = first.clone();
         if let (Some(places), true) = (candidate.model.attached.last(), h.family != "parameter") {

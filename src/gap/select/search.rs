@@ -8,7 +8,7 @@ use super::super::policy::{
     ACCURACY, ALPHA, DELTA, EFFECTS, FITTED, FITTED_WITHOUT, FRONT, LEAST, NEAR, OPENS, OTHER_WEIGHTING, SURE,
 };
 use super::super::problem::{Chosen, Problem};
-use super::compare::{Sensors, chances, differences, evidence, gap, needed, signal_gap, t_statistic};
+use super::compare::{Sensors, chances, closed, differences, evidence, gap, loss, needed, signal_gap, t_statistic};
 use super::confirm::{Asked, ask};
 use super::folds::{LeftOut, left_out};
 use super::screen::{self, Start};
@@ -32,23 +32,28 @@ pub struct Rival {
     pub model: Weighed,
 }
 
-/// Why a hypothesis was not taken; printed as it is.
+/// Why a hypothesis was not taken; printed as it is. Gaps are parts of full scale, evidence is in nats.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(missing_docs, reason = "the texts say what the numbers are")]
 pub enum Reason {
-    #[error("left-out data are not sure: chance {chance:.3}, evidence {evidence:.1} of {needed:.1} nats")]
-    NotSure { chance: f64, evidence: f64, needed: f64 },
+    /// Left-out data do not show that it is better: chance, evidence, and the evidence needed.
+    #[error("left-out data are not sure: chance {0:.3}, evidence {1:.1} of {2:.1} nats")]
+    NotSure(f64, f64, f64),
+    /// It closes too little.
     #[error("closes less than is worth a name")]
     NotWorth,
-    #[error("the gap over all signals grows to {factor:.2} times what it was")]
-    Opens { factor: f64 },
+    /// The gap over all signals grows, by this factor.
+    #[error("the gap over all signals grows to {0:.2} times what it was")]
+    Opens(f64),
+    /// The held recordings do not show the same.
     #[error(
         "held recordings do not confirm it: evidence {:.1} nats, gap {:.4} to {:.4} of full scale",
         .0.evidence, .0.before, .0.after
     )]
     NotConfirmed(Asked),
-    #[error("surely worse: leaves {gap:.4} of full scale, the best {best:.4}")]
-    Beaten { gap: f64, best: f64 },
+    /// Surely worse than the best: the gap that it leaves, and the best one's.
+    #[error("surely worse: leaves {0:.4} of full scale, the best {1:.4}")]
+    Beaten(f64, f64),
+    /// In the set of what was taken.
     #[error("cannot be told from what was taken, which is simpler or more usual")]
     Alike,
 }
@@ -199,9 +204,9 @@ impl Judged {
 
     fn refused(&self, needed: f64) -> Reason {
         match () {
-            () if !self.sure => Reason::NotSure { chance: self.chance, evidence: self.evidence, needed },
+            () if !self.sure => Reason::NotSure(self.chance, self.evidence, needed),
             () if !self.worth => Reason::NotWorth,
-            () => Reason::Opens { factor: self.opens },
+            () => Reason::Opens(self.opens),
         }
     }
 }
@@ -330,7 +335,7 @@ impl Search<'_> {
         let mut sum = 0.0;
         for (squares, samples) in left.squares.iter().zip(&left.samples) {
             for i in 0..closed.len() {
-                sum += samples[i] * (squares[i].min(f64::MAX.sqrt()) + closed[i]).ln();
+                sum += samples[i] * loss(squares[i], closed[i]);
             }
         }
         sum
@@ -340,9 +345,7 @@ impl Search<'_> {
     fn choose(&mut self, step: usize, before: &Weighed, mut rivals: Vec<Rival>) -> Option<(Weighed, Taken)> {
         let least = |i: usize| {
             let all = rivals.iter().map(|r| &r.model).chain([before]).map(|w| w.left[0].mean(i));
-            self.sensors.noise[i].powi(2)
-                + DELTA * DELTA * all.fold(f64::INFINITY, f64::min)
-                + (LEAST * self.sensors.full_scale[i]).powi(2)
+            closed(&self.sensors, i, all.fold(f64::INFINITY, f64::min))
         };
         let closed: Vec<f64> = (0..self.first.len()).map(least).collect();
         rivals.sort_by(|a, b| self.score(&a.model, &closed).total_cmp(&self.score(&b.model, &closed)));
@@ -418,7 +421,7 @@ impl Search<'_> {
         let mut set = Vec::new();
         for &i in accepted {
             if i != best && self.worse(&rivals[best].model, &rivals[i].model) {
-                reasons[i] = Some(Reason::Beaten { gap: of(i), best: of(best) });
+                reasons[i] = Some(Reason::Beaten(of(i), of(best)));
             } else {
                 set.push(i);
             }
@@ -436,9 +439,7 @@ impl Search<'_> {
         while i + 1 < taken.len() {
             let mut causes = screen::causes(&last.fit);
             causes.remove(i);
-            let theta = last.fit.candidate.theta(&last.fit.x);
-            let tolerances = &theta[last.fit.candidate.model.free.clone()];
-            let without = screen::candidate(self.problem, &causes, Some(tolerances));
+            let without = screen::candidate(self.problem, &causes, Some(&last.fit.tolerances()));
             let fitted = without.and_then(|c| weighed(self.problem, &self.sensors, &c, &c.present()));
             match fitted.filter(|f| !self.worse(last, f)) {
                 Some(fitted) => {

@@ -4,12 +4,13 @@ use super::super::data::Recording;
 use super::super::estimate::Candidate;
 use super::super::estimate::candidate::Errors;
 use super::super::figures::{self, Left};
-use super::super::hypotheses::{Hypothesis, Place};
+use super::super::hypotheses::Hypothesis;
 use super::super::mistakes;
 use super::super::problem::{Chosen, Problem, Tolerance};
 use super::super::select::screen;
 use super::super::select::search::{Found, Taken, Trial, Weighed, weighed};
-use super::{Alternative, Drift, Effect, Estimate, Gaps, Located, Maybe, RecordingError, Spot, Unexplained, Verdict};
+use super::{Drift, Effect, Estimate, Gaps, Located, Maybe, PARTING, RecordingError, Unexplained, Verdict};
+use super::{alternative, ratio, spots};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -49,8 +50,6 @@ impl Conclusion<'_> {
             () => "nothing_found",
         };
         let ambiguous = found.taken.iter().any(|t| !t.set.is_empty());
-        let next =
-            "slow triangles through zero, steps and a chirp over the whole range: what moves alike here may part there";
         Verdict {
             schema: 1,
             verdict,
@@ -69,13 +68,17 @@ impl Conclusion<'_> {
             weighed: found.trials.iter().map(|t| self.weighed(t)).collect(),
             unexplained: Unexplained { share, place: None, shape: None },
             open,
-            next_experiment: (verdict == "effects" && ambiguous).then(|| next.to_string()),
+            next_experiment: (verdict == "effects" && ambiguous).then(|| PARTING.to_string()),
             seconds,
         }
     }
 
     fn left(&self, candidate: &Candidate, x: &[f64]) -> Left {
         Left::of(&errors(candidate, x, self.held, self.own))
+    }
+
+    fn of(&self, chosen: &Chosen) -> &Hypothesis {
+        &self.problem.hypotheses[chosen.hypothesis]
     }
 
     fn hypothesis(&self, taken: &Taken) -> &Hypothesis {
@@ -118,7 +121,7 @@ impl Conclusion<'_> {
                 closes_alone: ratio(alone, tolerated).map(|g| 1.0 - g),
                 closes_last: without.zip(full).and_then(|(w, f)| ratio(Some(w - f), tolerated)),
                 parameters: self.estimates(i, h),
-                indistinguishable: t.set.iter().map(|(c, behind)| self.alternative(c, *behind)).collect(),
+                indistinguishable: t.set.iter().map(|(c, behind)| alternative(self.of(c), *behind)).collect(),
             })
         };
         taken.iter().enumerate().collect::<Vec<_>>().into_par_iter().filter_map(effect).collect()
@@ -128,18 +131,10 @@ impl Conclusion<'_> {
     fn gap_with(&self, kept: &[usize]) -> Maybe {
         let all = screen::causes(&self.found.last.fit);
         let causes: Vec<Chosen> = kept.iter().map(|&i| all[i].clone()).collect();
-        let base = &self.found.base.fit;
-        let theta = base.candidate.theta(&base.x);
-        let tolerances = &theta[base.candidate.model.free.clone()];
-        let candidate = screen::candidate(self.problem, &causes, Some(tolerances))?;
+        let candidate = screen::candidate(self.problem, &causes, Some(&self.found.base.fit.tolerances()))?;
         let x = candidate.present();
         let Weighed { fit, .. } = weighed(self.problem, &screen::sensors(self.problem), &candidate, &x)?;
         self.left(&fit.candidate, &fit.x).total(&self.problem.full_scale)
-    }
-
-    fn alternative(&self, chosen: &Chosen, behind: f64) -> Alternative {
-        let h = &self.problem.hypotheses[chosen.hypothesis];
-        Alternative { effect: h.effect.clone(), family: h.family.clone(), places: spots(h), behind }
     }
 
     fn estimates(&self, i: usize, h: &Hypothesis) -> BTreeMap<String, Estimate> {
@@ -170,7 +165,7 @@ impl Conclusion<'_> {
     }
 
     fn weighed(&self, trial: &Trial) -> super::Weighed {
-        let h = &self.problem.hypotheses[trial.chosen.hypothesis];
+        let h = self.of(&trial.chosen);
         super::Weighed {
             step: trial.step,
             effect: h.effect.clone(),
@@ -196,7 +191,7 @@ impl Conclusion<'_> {
         };
         self.found.taken.iter().for_each(|t| add(self.hypothesis(t), t.evidence));
         for t in self.found.trials.iter().filter(|t| t.step == 1) {
-            add(&self.problem.hypotheses[t.chosen.hypothesis], t.evidence);
+            add(self.of(&t.chosen), t.evidence);
         }
         let total: f64 = all.iter().map(|l| l.evidence).sum();
         all.iter_mut().for_each(|l| l.share = l.evidence / total);
@@ -211,14 +206,4 @@ fn nominal(problem: &Problem<'_>, candidate: &Candidate) -> Vec<f64> {
 
 fn errors(candidate: &Candidate, x: &[f64], recordings: &[Recording], own: bool) -> Vec<Option<Errors>> {
     recordings.par_iter().enumerate().map(|(i, r)| candidate.errors(x, r, own.then_some(i))).collect()
-}
-
-/// One gap over another, where both are known.
-fn ratio(a: Maybe, b: Maybe) -> Maybe {
-    let b = b.filter(|b| *b > 0.0)?;
-    a.map(|a| a / b)
-}
-
-fn spots(h: &Hypothesis) -> Vec<Spot> {
-    h.places().into_iter().map(|p: &Place| Spot { place: p.place.clone(), node: p.node.clone() }).collect()
 }
