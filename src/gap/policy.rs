@@ -41,7 +41,9 @@ pub const FITTED: usize = 14;
 pub const FITTED_WITHOUT: usize = 2;
 /// Of these, the best are also fitted as if only the sensors' noise were left.
 pub const FRONT: usize = 4;
-/// Starts from which each of them is fitted.
+/// Part of the least gain that is worth a name which a linear step must promise for a fit: left-out data may see more of it.
+pub const PROMISED: f64 = 0.5;
+/// Starts of each hypothesis that are kept: all are fitted from the best one, the front from the others too.
 pub const STARTS: usize = 2;
 /// Combinations of grid values that are tried as starts, at most.
 pub const GRID: usize = 12;

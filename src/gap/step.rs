@@ -189,6 +189,8 @@ pub struct Exponential {
     pub integral: DMatrix<f64>,
     /// What a rate that grows steadily adds over the step, of the coupled states.
     pub ramped: DVector<f64>,
+    /// The integral of the integral, where it was asked for: times how fast a rate grows, what that adds over the step.
+    pub twice: Option<DMatrix<f64>>,
 }
 
 impl Exponential {
@@ -210,7 +212,13 @@ impl Exponential {
             ramped: DVector::zeros(coupled),
             transition: whole(),
             integral: whole(),
+            twice: None,
         }
+    }
+
+    /// For states that all may be coupled, under rates that grow now in one way and now in another.
+    pub fn with_ramps(states: usize) -> Self {
+        Exponential { twice: Some(DMatrix::zeros(states, states)), ..Exponential::new(states, 0) }
     }
 
     /// Computes transition and integral from A, and what a rate that grows by `ramp` in a second adds. A source counts
@@ -273,7 +281,7 @@ impl Exponential {
     /// Scaling and squaring (Higham, Functions of Matrices, 2008, ch. 10): the integral is h phi(h A) with
     /// phi(z) = (e^z - 1)/z, and phi(2 z) = (e^z + 1) phi(z)/2.
     fn coupled(&mut self, a: &DMatrix<f64>, h: f64, ramp: Option<&DVector<f64>>) {
-        let Exponential { small, next, high, power, area, moved, ramped, balance: units, .. } = self;
+        let Exponential { small, next, high, power, area, moved, ramped, balance: units, twice, .. } = self;
         let n = small.nrows();
         (0..n).for_each(|j| (0..n).for_each(|i| small[(i, j)] = a[(i, j)] * (units[j] / units[i])));
         let norm = h * small.column_iter().map(|c| c.iter().map(|v| v.abs()).sum::<f64>()).fold(0.0, f64::max);
@@ -296,6 +304,19 @@ impl Exponential {
             area[(i, i)] += c(0);
         }
         multiply(area, power, high, 1.0);
+        if let Some(twice) = twice {
+            // likewise: phi_2 = (c1 + c2 X + c3 X^2) + X^3 (c4 + c5 X + c6 X^2)
+            high.copy_from(x);
+            high.zip_apply(square, |h, s| *h = c(5) * *h + c(6) * s);
+            twice.copy_from(x);
+            twice.zip_apply(square, |h, s| *h = c(2) * *h + c(3) * s);
+            for i in 0..n {
+                high[(i, i)] += c(4);
+                twice[(i, i)] += c(1);
+            }
+            multiply(twice, power, high, 1.0);
+            *twice *= scale * scale;
+        }
         power.fill_with_identity();
         multiply(power, small, area, 1.0);
         *area *= scale;
@@ -317,8 +338,14 @@ impl Exponential {
                 moved.gemv(1.0, power, ramped, 1.0);
                 moved.gemv(length, area, ramp, 1.0);
                 std::mem::swap(moved, ramped);
-                length *= 2.0;
             }
+            if let Some(twice) = twice {
+                next.copy_from(twice);
+                multiply(next, power, twice, 1.0);
+                next.zip_apply(area, |n, a| *n += length * a);
+                std::mem::swap(twice, next);
+            }
+            length *= 2.0;
             // integral over 2 s = (exp(s A) + 1) integral over s
             next.copy_from(area);
             multiply(next, power, area, 1.0);
@@ -331,6 +358,9 @@ impl Exponential {
                 let unit = units[i] / units[j];
                 power[(i, j)] *= unit;
                 area[(i, j)] *= unit;
+                if let Some(twice) = twice {
+                    twice[(i, j)] *= unit;
+                }
             }
             ramped[j] *= units[j];
         }
@@ -389,6 +419,10 @@ mod tests {
             e.compute(&DMatrix::from_element(1, 1, -1.0 / lag), h, Some(&DVector::from_element(1, 2.0)));
             let exact = 2.0 * lag * (h + lag * (-h / lag).exp_m1());
             assert!((e.ramped[0] - exact).abs() < 1e-6 * exact, "{lag}: {} {exact}", e.ramped[0]);
+            let mut any = Exponential::with_ramps(1);
+            any.compute(&DMatrix::from_element(1, 1, -1.0 / lag), h, None);
+            let ramped = 2.0 * any.twice.unwrap()[(0, 0)];
+            assert!((ramped - exact).abs() < 1e-6 * exact, "{lag}: {ramped} {exact}");
         }
     }
 

@@ -122,7 +122,7 @@ pub struct Estimate {
     pub unit: String,
 }
 
-/// A hypothesis that was fitted.
+/// A hypothesis that was weighed; what left-out data say of it where it was fitted.
 #[derive(Clone, Debug, Serialize)]
 pub struct Weighed {
     /// The step: 1, 2, ...
@@ -134,13 +134,13 @@ pub struct Weighed {
     /// Where.
     pub places: Vec<Spot>,
     /// Gap of left-out data that it leaves, in parts of full scale, noise taken out.
-    pub gap: f64,
+    pub gap: Maybe,
     /// t statistic over the blocks.
-    pub t: f64,
+    pub t: Maybe,
     /// Chance that the best of all hypotheses does as well by accident.
-    pub chance: f64,
+    pub chance: Maybe,
     /// Evidence, nats.
-    pub evidence: f64,
+    pub evidence: Maybe,
     /// Why it was not taken.
     pub refused: Option<String>,
 }

@@ -4,9 +4,12 @@
 use super::super::data::Recording;
 use super::super::policy::PIECES;
 use super::super::problem::{Assembled, Chosen};
+use super::super::step;
+use super::map::Weights;
 use super::simulation::Course;
 use super::start::Valued;
 use nalgebra::{DMatrix, DVector};
+use std::ops::Range;
 
 /// Something that may be chosen: a parameter in its tolerance, a coefficient or shape of an effect.
 #[derive(Clone, Debug, PartialEq)]
@@ -95,12 +98,13 @@ impl Products {
     }
 
     fn add(&mut self, row: &[f64], error: f64) {
-        for (b, y) in row.iter().enumerate() {
-            if *y != 0.0 {
-                self.slopes.column_mut(b).iter_mut().zip(row).for_each(|(sum, x)| *sum += x * y);
-                self.errors[b] += y * error;
-            }
-        }
+        step::add_outer(&mut self.slopes, 1.0, row, row);
+        self.errors.iter_mut().zip(row).for_each(|(sum, y)| *sum += y * error);
+    }
+
+    /// The same with coordinates behind them that nothing depends on.
+    pub fn with_idle(self, width: usize) -> Self {
+        Products { slopes: self.slopes.resize(width, width, 0.0), errors: self.errors.resize_vertically(width, 0.0) }
     }
 
     /// Adds others, weighed.
@@ -173,15 +177,13 @@ impl Candidate {
             let mut own = vec![Vec::with_capacity(samples); signals];
             let mut sums = vec![vec![Products::none(width); signals]; PIECES];
             let mut sample = 0;
-            let mut row = vec![0.0; width];
             self.run(x, recording, Some(number), true, |errors_of, slopes| {
                 let into = &mut sums[piece(sample, samples)];
                 sample += 1;
                 for (i, e) in errors_of.iter().enumerate() {
                     own[i].push(*e);
                     if let (true, Some(slopes)) = (e.is_finite(), slopes) {
-                        row.iter_mut().zip(slopes.row(i).iter()).for_each(|(to, s)| *to = *s);
-                        into[i].add(&row, *e);
+                        into[i].add(slopes.column(i).as_slice(), *e);
                     }
                 }
             })?;
@@ -189,6 +191,47 @@ impl Candidate {
             products.push(sums);
         }
         Some(Evaluated { errors, products })
+    }
+
+    /// Groups of coordinates that are tried one at a time beside those in front of them all: of each the weighed sums with
+    /// these. `None` where the model does not reach the end of a recording.
+    pub fn groups(
+        &self,
+        x: &[f64],
+        train: &[Recording],
+        weights: &Weights,
+        groups: &[Range<usize>],
+    ) -> Option<Vec<Products>> {
+        let (common, width) = (groups.first().map_or(0, |g| g.start), x.len());
+        let mut across = DMatrix::zeros(common, width);
+        let mut errors = DVector::zeros(width);
+        let mut own: Vec<Products> = groups.iter().map(|g| Products::none(g.len())).collect();
+        for (number, recording) in train.iter().enumerate() {
+            self.run(x, recording, Some(number), true, |errors_of, slopes| {
+                let Some(slopes) = slopes else { return };
+                for (i, e) in errors_of.iter().enumerate().filter(|(_, e)| e.is_finite()) {
+                    let (row, weight) = (slopes.column(i), weights.weight(i));
+                    step::add_outer(&mut across, weight, &row.as_slice()[..common], row.as_slice());
+                    errors.axpy(weight * e, &row, 1.0);
+                    for (own, group) in own.iter_mut().zip(groups) {
+                        let row = &row.as_slice()[group.clone()];
+                        step::add_outer(&mut own.slopes, weight, row, row);
+                    }
+                }
+            })?;
+        }
+        let joined = |(own, group): (&Products, &Range<usize>)| {
+            let mut all = Products::none(common + group.len());
+            let beside = across.columns(group.start, group.len());
+            all.slopes.view_mut((0, 0), (common, common)).copy_from(&across.columns(0, common));
+            all.slopes.view_mut((0, common), beside.shape()).copy_from(&beside);
+            all.slopes.view_mut((common, 0), (group.len(), common)).copy_from(&beside.transpose());
+            all.slopes.view_mut((common, common), own.slopes.shape()).copy_from(&own.slopes);
+            all.errors.rows_mut(0, common).copy_from(&errors.rows(0, common));
+            all.errors.rows_mut(common, group.len()).copy_from(&errors.rows(group.start, group.len()));
+            all
+        };
+        Some(own.iter().zip(groups).map(joined).collect())
     }
 
     fn run(
@@ -229,7 +272,7 @@ impl Candidate {
             }
             let signals = recording.signals.iter().zip(&local.outputs);
             errors.iter_mut().zip(signals).for_each(|(e, (y, simulated))| *e = y[k] - simulated);
-            at(&errors, slopes.map(|s| s.outputs(local, &model.sizes)).as_ref());
+            at(&errors, slopes);
         })
     }
 }

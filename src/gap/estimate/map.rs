@@ -4,7 +4,7 @@
 
 use super::super::data::Recording;
 use super::super::policy::{ITERATIONS, LEAST, SETTLED, TRIALS};
-use super::candidate::{Candidate, Errors, Evaluated, Products};
+use super::candidate::{Candidate, Coordinate, Errors, Evaluated, Products};
 use super::correlation;
 use nalgebra::{DMatrix, DVector};
 
@@ -107,7 +107,7 @@ impl Fit {
             let system = self.system(|_, _| true);
             let mut taken = false;
             for _ in 0..TRIALS {
-                let x = system.step(self, damping);
+                let x = system.step(&self.candidate.coordinates, &self.x, damping);
                 if x == self.x {
                     break;
                 }
@@ -135,19 +135,18 @@ impl Fit {
 
     /// The normal equations of the pieces wanted, by recording and piece.
     pub fn system(&self, wanted: impl Fn(usize, usize) -> bool) -> System {
+        System::of(self.sums(wanted), &self.candidate.coordinates, &self.x)
+    }
+
+    /// Their weighed sums, without what is known of the coordinates beforehand.
+    pub fn sums(&self, wanted: impl Fn(usize, usize) -> bool) -> Products {
         let mut sum = Products::none(self.x.len());
         for (number, pieces) in self.evaluated.products.iter().enumerate() {
             for (_, signals) in pieces.iter().enumerate().filter(|(piece, _)| wanted(number, *piece)) {
                 signals.iter().enumerate().for_each(|(i, p)| sum.add_weighed(p, self.weights.weight(i)));
             }
         }
-        for (i, (c, x)) in self.candidate.coordinates.iter().zip(&self.x).enumerate() {
-            if let Some((mean, sigma)) = c.prior {
-                sum.slopes[(i, i)] += sigma.powi(-2);
-                sum.errors[i] -= (x - mean) / (sigma * sigma);
-            }
-        }
-        System { information: sum.slopes, towards: sum.errors }
+        sum
     }
 
     /// Samples of a signal with a value.
@@ -177,11 +176,12 @@ impl Fit {
 
     /// Standard deviation of each coordinate, in its units; what a bound holds has none.
     pub fn deviations(&self) -> Vec<f64> {
-        self.system(|_, _| true).deviations(self)
+        self.system(|_, _| true).deviations(&self.candidate.coordinates, &self.x)
     }
 }
 
 /// Normal equations at a point.
+#[derive(Clone, Debug)]
 pub struct System {
     information: DMatrix<f64>,
     /// Minus half the gradient.
@@ -189,13 +189,24 @@ pub struct System {
 }
 
 impl System {
+    /// Those of weighed sums over samples at `x`, with what is known of the coordinates beforehand.
+    pub fn of(mut sum: Products, coordinates: &[Coordinate], x: &[f64]) -> System {
+        for (i, (c, x)) in coordinates.iter().zip(x).enumerate() {
+            if let Some((mean, sigma)) = c.prior {
+                sum.slopes[(i, i)] += sigma.powi(-2);
+                sum.errors[i] -= (x - mean) / (sigma * sigma);
+            }
+        }
+        System { information: sum.slopes, towards: sum.errors }
+    }
+
     /// Coordinates that are free to go where the gradient leads, and seen at all.
-    fn free(&self, fit: &Fit) -> Vec<usize> {
+    fn free(&self, coordinates: &[Coordinate], x: &[f64]) -> Vec<usize> {
         let held = |i: usize| {
-            let c = &fit.candidate.coordinates[i];
-            fit.x[i] <= c.low && self.towards[i] < 0.0 || fit.x[i] >= c.high && self.towards[i] > 0.0
+            let c = &coordinates[i];
+            x[i] <= c.low && self.towards[i] < 0.0 || x[i] >= c.high && self.towards[i] > 0.0
         };
-        (0..fit.x.len()).filter(|&i| !held(i) && self.information[(i, i)] > 0.0).collect()
+        (0..x.len()).filter(|&i| !held(i) && self.information[(i, i)] > 0.0).collect()
     }
 
     /// The damped information of some coordinates in units in which its diagonal is 1, and these units.
@@ -208,16 +219,16 @@ impl System {
         (unit, matrix)
     }
 
-    /// Where a damped Gauss-Newton step leads, within the bounds.
-    pub fn step(&self, fit: &Fit, damping: f64) -> Vec<f64> {
-        let free = self.free(fit);
-        let mut x = fit.x.clone();
+    /// Where a damped Gauss-Newton step from `x` leads, within the bounds.
+    pub fn step(&self, coordinates: &[Coordinate], x: &[f64], damping: f64) -> Vec<f64> {
+        let free = self.free(coordinates, x);
+        let mut x = x.to_vec();
         let (unit, matrix) = self.scaled(&free, damping);
         let right = DVector::from_fn(free.len(), |a, _| self.towards[free[a]] / unit[a]);
         let Some(factor) = matrix.cholesky() else { return x };
         let change = factor.solve(&right);
         for (a, &i) in free.iter().enumerate() {
-            let c = &fit.candidate.coordinates[i];
+            let c = &coordinates[i];
             x[i] = (x[i] + change[a] / unit[a]).clamp(c.low, c.high);
         }
         x
@@ -229,9 +240,9 @@ impl System {
         2.0 * self.towards.dot(&change) - change.dot(&(&self.information * &change))
     }
 
-    fn deviations(&self, fit: &Fit) -> Vec<f64> {
-        let free = self.free(fit);
-        let mut deviations = vec![0.0; fit.x.len()];
+    fn deviations(&self, coordinates: &[Coordinate], x: &[f64]) -> Vec<f64> {
+        let free = self.free(coordinates, x);
+        let mut deviations = vec![0.0; x.len()];
         let (unit, matrix) = self.scaled(&free, 0.0);
         if let Some(inverse) = matrix.try_inverse() {
             for (a, &i) in free.iter().enumerate() {

@@ -8,4 +8,4 @@ pub mod simulation;
 pub mod start;
 
 pub use candidate::{Candidate, Coordinate};
-pub use map::{Fit, Weights};
+pub use map::{Fit, System, Weights};

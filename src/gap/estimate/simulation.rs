@@ -21,37 +21,58 @@ const LENGTHENED: f64 = 0.1;
 pub struct Slopes {
     /// States by choices, in the states' sizes.
     pub states: DMatrix<f64>,
+    /// Choices by signals: d y / d choices at the last linearisation.
+    pub outputs: DMatrix<f64>,
     /// Per choice the parameter that it moves, and by how much; nothing for a choice of the first state.
-    pub moves: Vec<Option<(usize, f64)>>,
+    moves: Vec<Option<(usize, f64)>>,
+    /// Work space: the next states, what drives them, and d y / d x in the states' sizes, states by signals.
+    next: DMatrix<f64>,
+    driven: DMatrix<f64>,
+    seen: DMatrix<f64>,
 }
 
 impl Slopes {
-    /// d y / d choices at the last linearisation, signals by choices.
-    pub fn outputs(&self, local: &Local, sizes: &[f64]) -> DMatrix<f64> {
+    /// Where the states depend on the choices like this.
+    pub fn new(states: DMatrix<f64>, moves: Vec<Option<(usize, f64)>>, signals: usize) -> Self {
+        let (n, choices) = states.shape();
+        let zeros = || DMatrix::zeros(n, choices);
+        let (next, driven) = (zeros(), zeros());
+        Slopes {
+            states,
+            outputs: DMatrix::zeros(choices, signals),
+            moves,
+            next,
+            driven,
+            seen: DMatrix::zeros(n, signals),
+        }
+    }
+
+    /// Takes over how the signals depend on states and parameters.
+    fn look(&mut self, local: &Local, sizes: &[f64]) {
         let linear = &local.linear;
-        let c = DMatrix::from_fn(linear.c.nrows(), sizes.len(), |i, j| linear.c[(i, j)] * sizes[j]);
-        let mut slopes = c * &self.states;
-        for (column, moved) in self.moves.iter().enumerate() {
-            if let Some((parameter, factor)) = moved {
-                slopes.column_mut(column).axpy(*factor, &linear.d.column(*parameter), 1.0);
+        let signals = linear.c.nrows();
+        for (i, size) in sizes.iter().enumerate() {
+            (0..signals).for_each(|y| self.seen[(i, y)] = linear.c[(y, i)] * size);
+        }
+        for (y, mut out) in self.outputs.column_iter_mut().enumerate() {
+            let seen = self.seen.column(y);
+            for ((out, states), moved) in out.iter_mut().zip(self.states.column_iter()).zip(&self.moves) {
+                *out = states.dot(&seen) + moved.map_or(0.0, |(parameter, factor)| linear.d[(y, parameter)] * factor);
             }
         }
-        slopes
     }
 
     /// S over a step whose transition and integral are known.
     fn advance(&mut self, local: &Local, exponential: &Exponential, sizes: &[f64]) {
-        let (n, choices) = (sizes.len(), self.moves.len());
-        let mut driven = DMatrix::zeros(n, choices);
-        for (column, moved) in self.moves.iter().enumerate() {
+        for (mut column, moved) in self.driven.column_iter_mut().zip(&self.moves) {
             if let Some((parameter, factor)) = moved {
-                (0..n).for_each(|i| driven[(i, column)] = local.linear.b[(i, *parameter)] * factor / sizes[i]);
+                let b = local.linear.b.column(*parameter);
+                column.iter_mut().zip(b.iter()).zip(sizes).for_each(|((to, b), size)| *to = b * factor / size);
             }
         }
-        let mut next = DMatrix::zeros(n, choices);
-        step::multiply(&mut next, &exponential.transition, &self.states, 0.0);
-        step::multiply(&mut next, &exponential.integral, &driven, 1.0);
-        self.states = next;
+        step::multiply(&mut self.next, &exponential.transition, &self.states, 0.0);
+        step::multiply(&mut self.next, &exponential.integral, &self.driven, 1.0);
+        std::mem::swap(&mut self.states, &mut self.next);
     }
 }
 
@@ -70,13 +91,13 @@ pub struct Course<'a> {
 }
 
 impl Course<'_> {
-    /// Goes through samples of a recording; `at` sees the model at each of them, with slopes linearised there. It ends at
-    /// the last one. `None` where the model has no value on the way.
+    /// Goes through samples of a recording; `at` sees the model at each of them, and how its signals depend on the choices
+    /// (choices by signals). It ends at the last one. `None` where the model has no value on the way.
     pub fn run(
         &mut self,
         recording: &Recording,
         samples: Range<usize>,
-        mut at: impl FnMut(usize, &Local, Option<&Slopes>),
+        mut at: impl FnMut(usize, &Local, Option<&DMatrix<f64>>),
     ) -> Option<()> {
         let mut stepper = Stepper::new(self.sizes.len(), recording);
         let last = samples.end - 1;
@@ -88,7 +109,10 @@ impl Course<'_> {
                 None => self.local.evaluate(t, &self.state, self.theta, &stepper.u),
             }
             .ok()?;
-            at(k, self.local, self.slopes.as_ref());
+            if let Some(slopes) = &mut self.slopes {
+                slopes.look(self.local, self.sizes);
+            }
+            at(k, self.local, self.slopes.as_ref().map(|s| &s.outputs));
             if k == last {
                 break;
             }
@@ -105,8 +129,10 @@ impl Course<'_> {
 struct Stepper {
     /// One for each length of step, in halvings of the distance between two samples.
     exponentials: Vec<Exponential>,
-    /// Scaled matrix of the last linearisation, and per length the step that it served last; 0 where it did not.
+    /// Scaled matrices of the last linearisation: states by states, states by inputs.
     a: DMatrix<f64>,
+    b: DMatrix<f64>,
+    /// Per length the step that the linearisation served last; 0 where it did not.
     lengths: [f64; DEEPEST as usize + 1],
     /// Halvings of the last step.
     depth: u32,
@@ -125,8 +151,9 @@ impl Stepper {
     fn new(n: usize, recording: &Recording) -> Self {
         let zeros = || DVector::zeros(n);
         Stepper {
-            exponentials: (0..=DEEPEST).map(|_| Exponential::new(n, 0)).collect(),
+            exponentials: (0..=DEEPEST).map(|_| Exponential::with_ramps(n)).collect(),
             a: DMatrix::zeros(n, n),
+            b: DMatrix::zeros(n, recording.inputs.len()),
             lengths: [0.0; DEEPEST as usize + 1],
             depth: 0,
             rate: zeros(),
@@ -142,7 +169,6 @@ impl Stepper {
     /// From a sample at `t`, where the model has been evaluated (linearised, where there are slopes), to the next.
     fn advance(&mut self, course: &mut Course<'_>, t: f64, h: f64) -> Option<()> {
         const WHOLE: u32 = 1 << DEEPEST;
-        let held = self.inputs.slope.iter().all(|v| *v == 0.0);
         let mut linear_here = course.slopes.is_some();
         let mut gone = 0;
         self.take_rates(course);
@@ -150,11 +176,10 @@ impl Stepper {
             let part = WHOLE >> self.depth;
             let fraction = |ticks: u32| h * f64::from(ticks) / f64::from(WHOLE);
             let (after, length) = (fraction(gone), fraction(part));
-            let serves = held && step::as_long(length, self.lengths[self.depth as usize]);
+            let serves = step::as_long(length, self.lengths[self.depth as usize]);
             let mut bend = f64::INFINITY;
             if serves {
-                self.exponentials[self.depth as usize].ramped.fill(0.0);
-                self.ramp.fill(0.0);
+                self.grow();
                 bend = self.step(course, t, after, length);
             }
             if bend > CURVATURE {
@@ -198,19 +223,31 @@ impl Stepper {
         let (linear, sizes) = (&course.local.linear, course.sizes);
         let n = sizes.len();
         (0..n).for_each(|j| (0..n).for_each(|i| self.a[(i, j)] = linear.a[(i, j)] * sizes[j] / sizes[i]));
-        self.ramp = step::ramp(&linear.b, &self.inputs.slope);
-        self.ramp.iter_mut().zip(sizes).for_each(|(r, s)| *r /= s);
+        let first = linear.b.ncols() - self.b.ncols();
+        for (j, mut column) in self.b.column_iter_mut().enumerate() {
+            (0..n).for_each(|i| column[i] = linear.b[(i, first + j)] / sizes[i]);
+        }
+        self.grow();
         // other lengths belong to another matrix
         self.lengths = [0.0; DEEPEST as usize + 1];
         self.lengths[self.depth as usize] = length;
-        self.exponentials[self.depth as usize].compute(&self.a, length, Some(&self.ramp));
+        self.exponentials[self.depth as usize].compute(&self.a, length, None);
+    }
+
+    /// How fast the rates grow with the inputs of this interval.
+    fn grow(&mut self) {
+        self.ramp.fill(0.0);
+        let columns = self.b.column_iter().zip(&self.inputs.slope).filter(|(_, slope)| **slope != 0.0);
+        columns.for_each(|(column, slope)| self.ramp.axpy(*slope, &column, 1.0));
     }
 
     /// A step so long after the sample at `t`, and how far the model is from linear over it.
     fn step(&mut self, course: &mut Course<'_>, t: f64, after: f64, length: f64) -> f64 {
         let exponential = &self.exponentials[self.depth as usize];
-        self.change.copy_from(&exponential.ramped);
-        step::apply(&mut self.change, &exponential.integral, &self.rate, 1.0);
+        step::apply(&mut self.change, &exponential.integral, &self.rate, 0.0);
+        if let (Some(twice), true) = (&exponential.twice, self.ramp.iter().any(|v| *v != 0.0)) {
+            step::apply(&mut self.change, twice, &self.ramp, 1.0);
+        }
         for (i, next) in self.next.iter_mut().enumerate() {
             *next = course.state[i] + self.change[i] * course.sizes[i];
         }

@@ -3,6 +3,7 @@
 
 use super::super::circuit::same_kind;
 use super::super::data::{Inputs, Recording};
+use super::super::step;
 use super::simulation::{Course, Slopes};
 use crate::analysis::local::{Local, Plan};
 use nalgebra::{Cholesky, DMatrix, DVector};
@@ -59,12 +60,12 @@ impl Valued<'_> {
         local.linearize(recording.times[0], &own, self.theta, &u).ok()?;
         let loose = self.looseness(&local);
         let mut x = DVector::zeros(own.len());
-        let mut best = self.through(recording, &mut local, &own, &loose, &x, moves)?;
+        let mut best = self.through(recording, &mut local, &own, &loose, &x, &[])?;
         for _ in 0..ROUNDS {
             let Some(mut step) = best.step(&x, &loose) else { break };
             let mut found = None;
             for _ in 0..HALVINGS {
-                let tried = self.through(recording, &mut local, &own, &loose, &(&x + &step), moves);
+                let tried = self.through(recording, &mut local, &own, &loose, &(&x + &step), &[]);
                 found = tried.filter(|t| t.cost <= best.cost);
                 if found.is_some() {
                     break;
@@ -78,8 +79,9 @@ impl Valued<'_> {
                 break;
             }
         }
-        let slopes = moves.map(|moves| best.slopes_of_choices(&loose, moves));
-        Some(Begun { local, state: best.state, slopes })
+        let Some(moves) = moves else { return Some(Begun { local, state: best.state, slopes: None }) };
+        let last = self.through(recording, &mut local, &own, &loose, &x, moves)?;
+        Some(Begun { local, slopes: Some(last.slopes_of_choices(&loose, moves, self.units.len())), state: last.state })
     }
 
     /// Deviations of the states from the model's own start, in their sizes. What the model fixes and no sensor shows by
@@ -111,33 +113,30 @@ impl Valued<'_> {
         own: &[f64],
         loose: &DVector<f64>,
         x: &DVector<f64>,
-        moves: Option<&[(usize, f64)]>,
+        moves: &[(usize, f64)],
     ) -> Option<Beginning> {
         let n = own.len();
         let state: Vec<f64> = (0..n).map(|i| own[i] + x[i] * self.sizes[i]).collect();
-        let moves = moves.unwrap_or(&[]);
         let width = n + moves.len();
         let mut slopes = DMatrix::zeros(n, width);
         slopes.view_mut((0, 0), (n, n)).fill_with_identity();
         let choices = (0..n).map(|_| None).chain(moves.iter().map(|m| Some(*m))).collect();
-        let slopes = Some(Slopes { states: slopes, moves: choices });
+        let slopes = Some(Slopes::new(slopes, choices, self.deviations.len()));
         let mut gram = DMatrix::zeros(n, width + 1);
+        let mut row = vec![0.0; width + 1];
         let mut cost = x.component_div(loose).norm_squared();
         let mut course = Course { local, theta: self.theta, sizes: self.sizes, state, slopes };
         course.run(recording, 0..recording.settled() + 1, |k, local, slopes| {
             let Some(slopes) = slopes else { return };
-            let rows = slopes.outputs(local, self.sizes);
             for (i, deviation) in self.deviations.iter().enumerate() {
                 let error = (recording.signals[i][k] - local.outputs[i]) / deviation;
                 if !error.is_finite() {
                     continue;
                 }
                 cost += error * error;
-                let row = rows.row(i) / *deviation;
-                for a in 0..n {
-                    (0..width).for_each(|b| gram[(a, b)] += row[a] * row[b]);
-                    gram[(a, width)] += row[a] * error;
-                }
+                row.iter_mut().zip(slopes.column(i).iter()).for_each(|(to, s)| *to = s / deviation);
+                row[width] = error;
+                step::add_outer(&mut gram, 1.0, &row[..n], &row);
             }
         })?;
         let (state, slopes) = (course.state, course.slopes?.states);
@@ -172,7 +171,7 @@ impl Beginning {
     }
 
     /// How the state depends on the parameters, the first state found anew for each: by the implicit function theorem.
-    fn slopes_of_choices(&self, loose: &DVector<f64>, moves: &[(usize, f64)]) -> Slopes {
+    fn slopes_of_choices(&self, loose: &DVector<f64>, moves: &[(usize, f64)], signals: usize) -> Slopes {
         let (n, m) = (loose.len(), moves.len());
         let direct = self.slopes.columns(n, m);
         let states = match self.information(loose) {
@@ -182,6 +181,6 @@ impl Beginning {
             }
             None => direct.into_owned(),
         };
-        Slopes { states, moves: moves.iter().map(|m| Some(*m)).collect() }
+        Slopes::new(states, moves.iter().map(|m| Some(*m)).collect(), signals)
     }
 }

@@ -72,7 +72,8 @@ fn errors(fit: &Fit, train: &[Recording], scheme: usize) -> Vec<Errors> {
     let mut all = fit.evaluated.errors.clone();
     let folds = if scheme == 0 { PIECES } else { train.len() };
     for k in 0..folds {
-        let x = fit.system(|recording, piece| fold(scheme, recording, piece) != k).step(fit, 0.0);
+        let system = fit.system(|recording, piece| fold(scheme, recording, piece) != k);
+        let x = system.step(&fit.candidate.coordinates, &fit.x, 0.0);
         for (number, (own, recording)) in all.iter_mut().zip(train).enumerate() {
             if scheme == 1 && number != k {
                 continue;

@@ -3,5 +3,6 @@
 pub mod compare;
 pub mod confirm;
 pub mod folds;
+pub mod models;
 pub mod screen;
 pub mod search;

@@ -1,17 +1,20 @@
 //! All hypotheses beside a model, each from all its starts by one damped linear step: which of them are worth a fit, and
-//! from where.
+//! from where. What vanishes at its off value leaves the model as it is there: one run with the slopes of all of them
+//! serves them all.
 
-use super::super::effects::{Coefficient, Shape};
-use super::super::estimate::{Candidate, Coordinate, Fit};
-use super::super::hypotheses::{Hypothesis, Signal};
-use super::super::policy::{ACCURACY, DAMPINGS, GRID, STARTS};
+use super::super::estimate::candidate::Products;
+use super::super::estimate::{Candidate, Fit, System};
+use super::super::hypotheses::Hypothesis;
+use super::super::policy::{DAMPINGS, STARTS};
 use super::super::problem::{Chosen, Problem};
-use super::compare::Sensors;
+use super::models::{beginnings, candidate, causes, shaped};
+use rayon::prelude::*;
+use std::ops::Range;
 
-/// Sizes, in usual ones, at which effects begin that make no linear model where they vanish.
-const SIZES: [f64; 3] = [0.1, 1.0, 10.0];
-/// A shape may lie so many times beyond its grid.
-const BEYOND: f64 = 3.0;
+/// Hypotheses in one joint run at most: its costs grow with the states by hypotheses, that of a run of its own does not.
+const TOGETHER: usize = 64;
+/// Hypotheses that are stepped before those that promise less are looked at again.
+const ROUND: usize = 8;
 
 /// A start of a model with one hypothesis more.
 pub struct Start {
@@ -21,111 +24,72 @@ pub struct Start {
     pub x: Vec<f64>,
     /// Weighed squares there, prior included.
     pub cost: f64,
+    /// What the linear model at the first values of the hypothesis promises instead.
+    pub promised: f64,
 }
 
-/// The sensors of a problem.
-pub fn sensors(problem: &Problem<'_>) -> Sensors {
-    Sensors { noise: problem.noise_floor.clone(), full_scale: problem.full_scale.clone() }
+/// A hypothesis with its starts, best first.
+pub type Screened = (usize, Vec<Start>);
+
+/// A model where its hypothesis begins.
+struct Begun {
+    candidate: Candidate,
+    x: Vec<f64>,
+    cost: f64,
+    /// The linear model there, and the cost that it promises.
+    system: System,
+    promised: f64,
 }
 
-/// A model with these causes; tolerances, where they are given, at these values.
-pub fn candidate(problem: &Problem<'_>, causes: &[Chosen], tolerances: Option<&[f64]>) -> Option<Candidate> {
-    let mut model = problem.assemble(causes, &[]).ok()?;
-    if let Some(values) = tolerances {
-        model.theta[model.free.clone()].copy_from_slice(values);
+impl Begun {
+    /// `None` where the linear model has no sense.
+    fn new(candidate: Candidate, cost: f64, sums: Products) -> Option<Self> {
+        let x = candidate.present();
+        let system = System::of(sums, &candidate.coordinates, &x);
+        let promised = cost - system.gain(&x, &system.step(&candidate.coordinates, &x, 0.0));
+        promised.is_finite().then_some(Begun { candidate, x, cost, system, promised })
     }
-    let hypothesis = |c: &Chosen| &problem.hypotheses[c.hypothesis];
-    let mut coordinates: Vec<Coordinate> = Vec::new();
-    for (i, t) in problem.tolerances.iter().enumerate() {
-        let mut c = Coordinate::plain(i, t.sigma, t.min, t.max);
-        c.prior = (!t.free).then_some((t.nominal / t.sigma, 1.0));
-        coordinates.push(c);
-    }
-    let mut own = 0;
-    for (cause, places) in causes.iter().zip(&model.attached) {
-        let h = hypothesis(cause);
-        if h.family == "parameter" {
-            coordinates[places[0]].prior = None;
-            own += 1;
-            continue;
-        }
-        let (linear, shaped) = places.split_at(h.coefficients.len());
-        let coefficients = h.coefficients.iter().zip(linear).filter_map(|(c, &p)| coefficient(c, p));
-        let shapes = h.shapes.iter().zip(shaped).filter_map(|(s, &p)| shape(s, p));
-        let of_cause: Vec<Coordinate> = coefficients.chain(shapes).collect();
-        own += of_cause.len();
-        coordinates.extend(of_cause);
-    }
-    let deviation = |(n, f): (&f64, &f64)| n.max(ACCURACY * f);
-    let deviations = problem.noise_floor.iter().zip(&problem.full_scale).map(deviation).collect();
-    let unit = |s: &Signal| problem.circuit.units.get(&s.variable).cloned().unwrap_or_default();
-    let units = problem.signals.iter().map(unit).collect();
-    Some(Candidate { causes: causes.to_vec(), model, coordinates, own, units, deviations })
 }
 
-/// A share of a whole is not free: an effect is there or not.
-fn coefficient(c: &Coefficient, parameter: usize) -> Option<Coordinate> {
-    let bound = |b: Option<f64>, none: f64| b.unwrap_or(none);
-    let free = c.whole().is_none();
-    free.then(|| {
-        Coordinate::plain(parameter, c.nominal.abs(), bound(c.min, f64::NEG_INFINITY), bound(c.max, f64::INFINITY))
-    })
+/// The best `with` hypotheses that have something to fit, and the best `without`.
+pub fn screened(problem: &Problem<'_>, before: &Fit, open: &[usize], [with, without]: [usize; 2]) -> Vec<Screened> {
+    let attached = |&i: &usize| Some((i, attached(problem, before, i)?));
+    let all: Vec<(usize, Vec<Candidate>)> = open.par_iter().filter_map(attached).collect();
+    let (vanishing, others): (Vec<_>, Vec<_>) =
+        all.into_iter().partition(|(i, models)| vanishes(&problem.hypotheses[*i], &models[0], before));
+    let mut begun = together(problem, before, vanishing);
+    begun.par_extend(
+        others.into_par_iter().map(|(i, models)| (i, alone(problem, before, &problem.hypotheses[i], models))),
+    );
+    for (_, models) in &mut begun {
+        models.sort_by(|a, b| a.promised.total_cmp(&b.promised));
+        models.truncate(STARTS);
+    }
+    begun.retain(|(_, models)| !models.is_empty());
+    begun.sort_by(|a, b| a.1[0].promised.total_cmp(&b.1[0].promised));
+    let has_own = |b: &(usize, Vec<Begun>)| b.1[0].candidate.own > before.candidate.own;
+    let (own, nothing): (Vec<_>, Vec<_>) = begun.into_iter().partition(has_own);
+    let mut found = best(problem, before, own, with);
+    found.extend(best(problem, before, nothing, without));
+    found
 }
 
-/// A shape with one value is a width.
-fn shape(s: &Shape, parameter: usize) -> Option<Coordinate> {
-    let (least, most) = s.grid.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, m), x| (l.min(*x), m.max(*x)));
-    if s.grid.len() < 2 {
-        return None;
-    }
-    let (min, max) = (s.min.unwrap_or(f64::NEG_INFINITY), s.max.unwrap_or(f64::INFINITY));
-    Some(if least > 0.0 {
-        Coordinate::by_logarithm(parameter, min.max(least / BEYOND), max.min(most * BEYOND))
-    } else {
-        let width = most - least;
-        Coordinate::plain(parameter, width, min.max(least - width), max.min(most + width))
-    })
-}
-
-/// Values of a hypothesis where it may begin: linear coefficients where they vanish, shares as the whole, shapes on their
-/// grids.
-pub fn beginnings(h: &Hypothesis) -> Vec<Vec<f64>> {
-    let sizes: &[f64] = if h.changes_order { &SIZES } else { &[0.0] };
-    let value = |c: &Coefficient, size: f64| match c.whole() {
-        Some(whole) => whole,
-        None => (c.off + size * c.nominal).clamp(c.min.unwrap_or(f64::MIN), c.max.unwrap_or(f64::MAX)),
-    };
-    let mut all = Vec::new();
-    for variant in h.variants() {
-        for &size in sizes {
-            let mut values: Vec<f64> = h.coefficients.iter().map(|c| value(c, size)).collect();
-            values.extend(variant.iter().map(|v| v.1));
-            all.push(values);
-        }
-    }
-    let count = all.len();
-    if count > GRID {
-        all = (0..GRID).map(|i| all[i * (count - 1) / (GRID - 1)].clone()).collect();
-    }
-    all
-}
-
-/// The best starts of a hypothesis beside a model, best first; `None` where it does not get anywhere.
-pub fn starts(problem: &Problem<'_>, before: &Fit, hypothesis: usize) -> Option<Vec<Start>> {
+/// The model with a hypothesis, at each of its beginnings.
+fn attached(problem: &Problem<'_>, before: &Fit, hypothesis: usize) -> Option<Vec<Candidate>> {
     let h = &problem.hypotheses[hypothesis];
     let tolerances = before.tolerances();
     let mut values = beginnings(h);
-    if h.family == "parameter" {
+    let is_parameter = h.family == "parameter";
+    if is_parameter {
         let place = problem.tolerances.iter().position(|t| t.name == h.attachments[0].place.place);
         values = place.map(|p| vec![tolerances[p]]).into_iter().collect();
     }
-    let first = values.first()?;
     let mut causes = causes(before);
-    causes.push(Chosen { hypothesis, values: first.clone() });
+    causes.push(Chosen { hypothesis, values: values.first()?.clone() });
     let first = candidate(problem, &causes, Some(&tolerances))?;
     let with = |values: &Vec<f64>| {
         let mut candidate = first.clone();
-        if let (Some(places), true) = (candidate.model.attached.last(), h.family != "parameter") {
+        if let (Some(places), false) = (candidate.model.attached.last(), is_parameter) {
             places.iter().zip(values).for_each(|(&p, v)| candidate.model.theta[p] = *v);
         }
         if let Some(cause) = candidate.causes.last_mut() {
@@ -133,17 +97,87 @@ pub fn starts(problem: &Problem<'_>, before: &Fit, hypothesis: usize) -> Option<
         }
         candidate
     };
-    let mut begun: Vec<Candidate> = values.iter().map(with).collect();
-    let whole = h.coefficients.iter().all(|c| c.whole().is_some());
-    if whole && begun.len() > STARTS {
-        begun = nearest(problem, before, begun);
+    Some(values.iter().map(with).collect())
+}
+
+/// Whether the model with a hypothesis is at its first values the model without it.
+fn vanishes(h: &Hypothesis, model: &Candidate, before: &Fit) -> bool {
+    let off = |c: &super::super::effects::Coefficient| {
+        c.whole().is_none() && c.min.is_none_or(|m| m <= c.off) && c.max.is_none_or(|m| m >= c.off)
+    };
+    let states = model.model.plan.states() == before.candidate.model.plan.states();
+    h.family == "parameter" || !h.changes_order && states && h.coefficients.iter().all(off)
+}
+
+/// Hypotheses that vanish where they begin.
+fn together(problem: &Problem<'_>, before: &Fit, all: Vec<(usize, Vec<Candidate>)>) -> Vec<(usize, Vec<Begun>)> {
+    let is_parameter = |i: usize| problem.hypotheses[i].family == "parameter";
+    let entries: Vec<(usize, Vec<f64>)> = all
+        .iter()
+        .filter(|(i, _)| !is_parameter(*i))
+        .flat_map(|(i, models)| models.iter().filter_map(|m| Some((*i, m.causes.last()?.values.clone()))))
+        .collect();
+    let rounds = entries.len().div_ceil(TOGETHER).max(rayon::current_num_threads());
+    let long = entries.len().div_ceil(rounds).max(1);
+    let joint = |some: &[(usize, Vec<f64>)]| jointly(problem, before, some);
+    let sums: Vec<Option<Products>> = entries.par_chunks(long).flat_map_iter(joint).collect();
+    let mut sums = sums.into_iter();
+    let cost = before.cost();
+    let mut begun = |i: usize, model: Candidate| {
+        if is_parameter(i) {
+            let prior = before.candidate.prior(&before.x) - model.prior(&model.present());
+            return Begun::new(model, cost - prior, before.sums(|_, _| true));
+        }
+        match sums.next()? {
+            Some(sums) => {
+                let width = model.coordinates.len();
+                Begun::new(model, cost, sums.with_idle(width))
+            }
+            None => on_its_own(problem, before, model),
+        }
+    };
+    all.into_iter().map(|(i, models)| (i, models.into_iter().filter_map(|m| begun(i, m)).collect())).collect()
+}
+
+/// Weighed sums of hypotheses that share one model; where they cannot, halves do, and one that cannot has none.
+fn jointly(problem: &Problem<'_>, before: &Fit, some: &[(usize, Vec<f64>)]) -> Vec<Option<Products>> {
+    if let Some(all) = joint(problem, before, some) {
+        return all.into_iter().map(Some).collect();
     }
-    let mut promised: Vec<(f64, Fit)> = begun.into_iter().filter_map(|c| promised(problem, before, c)).collect();
-    promised.sort_by(|a, b| a.0.total_cmp(&b.0));
-    promised.truncate(STARTS);
-    let mut found: Vec<Start> = promised.into_iter().filter_map(|(_, fit)| stepped(problem, &fit)).collect();
-    found.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-    (!found.is_empty()).then_some(found)
+    if some.len() < 2 {
+        return vec![None; some.len()];
+    }
+    let (left, right) = some.split_at(some.len() / 2);
+    let mut all = jointly(problem, before, left);
+    all.extend(jointly(problem, before, right));
+    all
+}
+
+fn joint(problem: &Problem<'_>, before: &Fit, some: &[(usize, Vec<f64>)]) -> Option<Vec<Products>> {
+    let mut causes = causes(before);
+    let shapes = causes.len();
+    causes.extend(some.iter().map(|(i, values)| Chosen { hypothesis: *i, values: values.clone() }));
+    let model = shaped(problem, &causes, Some(&before.tolerances()), shapes)?;
+    let mut first = before.x.len();
+    let group = |(i, _): &(usize, Vec<f64>)| {
+        let from = first;
+        first += problem.hypotheses[*i].coefficients.len();
+        from..first
+    };
+    let groups: Vec<Range<usize>> = some.iter().map(group).collect();
+    if first != model.coordinates.len() {
+        return None;
+    }
+    model.groups(&model.present(), &problem.train, &before.weights, &groups)
+}
+
+/// A hypothesis that does not vanish where it begins.
+fn alone(problem: &Problem<'_>, before: &Fit, h: &Hypothesis, mut models: Vec<Candidate>) -> Vec<Begun> {
+    let is_whole = h.coefficients.iter().all(|c| c.whole().is_some());
+    if is_whole && models.len() > STARTS {
+        models = nearest(problem, before, models);
+    }
+    models.into_iter().filter_map(|m| on_its_own(problem, before, m)).collect()
 }
 
 /// Those that come nearest to the recordings as they stand.
@@ -154,34 +188,41 @@ fn nearest(problem: &Problem<'_>, before: &Fit, all: Vec<Candidate>) -> Vec<Cand
     all.into_iter().take(STARTS).map(|(_, c)| c).collect()
 }
 
-/// A model where it stands, and the cost that its linear model promises.
-fn promised(problem: &Problem<'_>, before: &Fit, candidate: Candidate) -> Option<(f64, Fit)> {
+/// A model by a run of its own.
+fn on_its_own(problem: &Problem<'_>, before: &Fit, candidate: Candidate) -> Option<Begun> {
     let x = candidate.present();
     let evaluated = candidate.evaluate(&x, &problem.train)?;
     let fit = Fit { candidate, x, evaluated, weights: before.weights.clone() };
-    let system = fit.system(|_, _| true);
-    let promised = fit.cost() - system.gain(&fit.x, &system.step(&fit, 0.0));
-    promised.is_finite().then_some((promised, fit))
+    Begun::new(fit.candidate.clone(), fit.cost(), fit.sums(|_, _| true))
 }
 
-/// The causes of a fit with their fitted values.
-pub fn causes(fit: &Fit) -> Vec<Chosen> {
-    let theta = fit.candidate.theta(&fit.x);
-    let with = |(c, places): (&Chosen, &Vec<usize>)| Chosen {
-        hypothesis: c.hypothesis,
-        values: places.iter().map(|&p| theta[p]).collect(),
-    };
-    fit.candidate.causes.iter().zip(&fit.candidate.model.attached).map(with).collect()
+/// Steps the most promising hypotheses first, until none promises what `wanted` of them have come to.
+fn best(problem: &Problem<'_>, before: &Fit, all: Vec<(usize, Vec<Begun>)>, wanted: usize) -> Vec<Screened> {
+    let mut found: Vec<Screened> = Vec::new();
+    for round in all.chunks(ROUND) {
+        if found.get(wanted - 1).is_some_and(|last| round[0].1[0].promised >= last.1[0].cost) {
+            break;
+        }
+        let one = |(i, models): &(usize, Vec<Begun>)| {
+            let mut starts: Vec<Start> = models.iter().filter_map(|m| stepped(problem, before, m)).collect();
+            starts.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+            (!starts.is_empty()).then_some((*i, starts))
+        };
+        found.par_extend(round.par_iter().filter_map(one));
+        found.sort_by(|a, b| a.1[0].cost.total_cmp(&b.1[0].cost));
+        found.truncate(wanted);
+    }
+    found
 }
 
 /// A model after the best of some damped linear steps.
-fn stepped(problem: &Problem<'_>, fit: &Fit) -> Option<Start> {
-    let mut best = Start { candidate: fit.candidate.clone(), x: fit.x.clone(), cost: fit.cost() };
-    let system = fit.system(|_, _| true);
+fn stepped(problem: &Problem<'_>, before: &Fit, begun: &Begun) -> Option<Start> {
+    let Begun { candidate, x, cost, system, promised } = begun;
+    let mut best = Start { candidate: candidate.clone(), x: x.clone(), cost: *cost, promised: *promised };
     for damping in DAMPINGS {
-        let x = system.step(fit, damping);
-        let Some(errors) = fit.candidate.all_errors(&x, &problem.train) else { continue };
-        let cost = fit.weights.cost(&errors) + fit.candidate.prior(&x);
+        let x = system.step(&candidate.coordinates, x, damping);
+        let Some(errors) = candidate.all_errors(&x, &problem.train) else { continue };
+        let cost = before.weights.cost(&errors) + candidate.prior(&x);
         if cost < best.cost {
             (best.x, best.cost) = (x, cost);
         }

@@ -5,13 +5,14 @@ use super::super::diagnose::Stage;
 use super::super::estimate::{Candidate, Fit, Weights};
 use super::super::hypotheses::Hypothesis;
 use super::super::policy::{
-    ACCURACY, ALPHA, DELTA, EFFECTS, FITTED, FITTED_WITHOUT, FRONT, LEAST, NEAR, OPENS, OTHER_WEIGHTING, SURE,
+    ACCURACY, ALPHA, DELTA, EFFECTS, FITTED, FITTED_WITHOUT, FRONT, LEAST, NEAR, OPENS, OTHER_WEIGHTING, PROMISED, SURE,
 };
 use super::super::problem::{Chosen, Problem};
 use super::compare::{Sensors, chances, closed, differences, evidence, gap, loss, needed, signal_gap, t_statistic};
 use super::confirm::{Asked, ask};
 use super::folds::{LeftOut, left_out};
-use super::screen::{self, Start};
+use super::models;
+use super::screen::{Screened, Start, screened};
 use rayon::prelude::*;
 
 /// A fit with what it leaves of left-out data.
@@ -35,6 +36,14 @@ pub struct Rival {
 /// Why a hypothesis was not taken; printed as it is. Gaps are parts of full scale, evidence is in nats.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Reason {
+    /// It was not fitted: others promised more.
+    #[error("not fitted: a linear step of others promises more")]
+    Behind,
+    /// It was not fitted: weighed squares before, and what it promises to leave of them.
+    #[error(
+        "not fitted: a linear step leaves {1:.4} of weighed squares where {0:.4} are left without it, which is not worth a name"
+    )]
+    TooLittle(f64, f64),
     /// Left-out data do not show that it is better: chance, evidence, and the evidence needed.
     #[error("left-out data are not sure: chance {0:.3}, evidence {1:.1} of {2:.1} nats")]
     NotSure(f64, f64, f64),
@@ -65,14 +74,8 @@ pub struct Trial {
     pub step: usize,
     /// What, with fitted values.
     pub chosen: Chosen,
-    /// Gap that it leaves of left-out data, in parts of full scale.
-    pub gap: f64,
-    /// t statistic over the blocks.
-    pub t: f64,
-    /// Chance that the best of all hypotheses does as well by accident.
-    pub chance: f64,
-    /// Evidence of left-out data and prior, nats.
-    pub evidence: f64,
+    /// What left-out data say of it, where it was fitted.
+    pub found: Option<Judged>,
     /// Nothing for the one that was taken.
     pub reason: Option<Reason>,
 }
@@ -110,22 +113,24 @@ struct Search<'a> {
     /// Noise-free gap of each signal before anything was taken.
     first: Vec<f64>,
     trials: Vec<Trial>,
+    /// What the screen left aside in this step.
+    passed: Vec<Trial>,
 }
 
 /// Searches; held recordings only confirm. `None` where the model within its tolerances does not reach the end of the
 /// recordings.
 pub fn search(problem: &Problem<'_>, held: &[Recording], progress: &mut dyn FnMut(Stage)) -> Option<Found> {
     progress(Stage::Anchor);
-    let sensors = screen::sensors(problem);
-    let nominal = screen::candidate(problem, &[], None)?;
+    let sensors = models::sensors(problem);
+    let nominal = models::candidate(problem, &[], None)?;
     let x = nominal.present();
     let base = weighed(problem, &sensors, &nominal, &x)?;
     let first = (0..sensors.noise.len()).map(|i| left_by(&base.left[0], i, &sensors)).collect();
-    let mut search = Search { problem, held, sensors, first, trials: Vec::new() };
+    let mut search = Search { problem, held, sensors, first, trials: Vec::new(), passed: Vec::new() };
     let (mut last, mut taken) = (base.clone(), Vec::new());
     for step in 1..=EFFECTS {
         progress(Stage::Screen(step));
-        let screened = search.screened(&last);
+        let screened = search.screened(step, &last);
         progress(Stage::Refine(step));
         let rivals = search.fitted(screened);
         let Some((chosen, effect)) = search.choose(step, &last, rivals) else { break };
@@ -182,12 +187,17 @@ fn left_by(left: &LeftOut, signal: usize, sensors: &Sensors) -> f64 {
     signal_gap(left, signal, sensors).max(0.1 * LEAST * sensors.full_scale[signal])
 }
 
-/// What was found out about a rival.
-struct Judged {
-    t: f64,
-    chance: f64,
-    evidence: f64,
-    gap: f64,
+/// What left-out data say of a model with a hypothesis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Judged {
+    /// t statistic over the blocks.
+    pub t: f64,
+    /// Chance that the best of all hypotheses does as well by accident.
+    pub chance: f64,
+    /// Evidence of left-out data and prior, nats.
+    pub evidence: f64,
+    /// Gap that it leaves, in parts of full scale.
+    pub gap: f64,
     sure: bool,
     worth: bool,
     opens: f64,
@@ -242,38 +252,68 @@ impl Search<'_> {
     }
 
     /// The starts of the hypotheses that are worth a fit.
-    fn screened(&self, before: &Weighed) -> Vec<(usize, Vec<Start>)> {
+    fn screened(&mut self, step: usize, before: &Weighed) -> Vec<Screened> {
         let open = self.open(&before.fit);
-        let one = |&i: &usize| Some((i, screen::starts(self.problem, &before.fit, i)?));
-        let mut all: Vec<(usize, Vec<Start>)> = open.par_iter().filter_map(one).collect();
-        all.sort_by(|a, b| a.1[0].cost.total_cmp(&b.1[0].cost));
-        let (mut with, mut without) = (0, 0);
-        all.retain(|(_, starts)| {
-            let free = starts[0].candidate.own > before.fit.candidate.own;
-            let count = if free { &mut with } else { &mut without };
-            *count += 1;
-            *count <= if free { FITTED } else { FITTED_WITHOUT }
-        });
+        let mut all = screened(self.problem, &before.fit, &open, [FITTED, FITTED_WITHOUT]);
+        let (cost, least) = (before.fit.cost(), self.least_gain(before));
+        let leaves = |s: &Screened| s.1.iter().map(|s| s.cost.min(s.promised)).fold(f64::INFINITY, f64::min);
+        let reason = |i: usize| match all.iter().find(|s| s.0 == i) {
+            Some(s) if cost - leaves(s) < least => Some(Reason::TooLittle(cost, leaves(s))),
+            Some(_) => None,
+            None => Some(Reason::Behind),
+        };
+        let not_fitted: Vec<(usize, Reason)> = open.into_iter().filter_map(|i| Some((i, reason(i)?))).collect();
+        all.retain(|s| !not_fitted.iter().any(|(i, _)| *i == s.0));
+        let trial = |(hypothesis, reason)| {
+            let chosen = Chosen { hypothesis, values: Vec::new() };
+            Trial { step, chosen, found: None, reason: Some(reason) }
+        };
+        self.passed = not_fitted.into_iter().map(trial).collect();
         all
     }
 
-    /// Fits from all starts; the front by both weightings.
-    fn fitted(&self, screened: Vec<(usize, Vec<Start>)>) -> Vec<Rival> {
-        let (problem, sensors) = (self.problem, &self.sensors);
-        let one = |(hypothesis, starts): (usize, Vec<Start>)| {
-            let fits = starts.into_iter().filter_map(|s| as_they_are(problem, s.candidate, s.x));
-            let fit = fits.min_by(|a, b| a.nats().total_cmp(&b.nats()))?;
-            Some(Rival { hypothesis, model: Weighed::new(problem, fit) })
+    /// By how much weighed squares must fall at least where an effect is worth a name.
+    fn least_gain(&self, before: &Weighed) -> f64 {
+        let of_signal = |i: usize| {
+            let (now, least) = (left_by(&before.left[0], i, &self.sensors), self.least(before, i));
+            let falls = if least > now { f64::INFINITY } else { now * now - (now - least).powi(2) };
+            before.fit.weights.weight(i) * before.fit.samples(i) * falls
         };
-        let mut rivals: Vec<Rival> = screened.into_par_iter().filter_map(one).collect();
-        rivals.sort_by(|a, b| gap(&a.model.left[0], sensors).total_cmp(&gap(&b.model.left[0], sensors)));
+        let needed = needed(self.count());
+        let of_prior = if before.fit.prior() > needed { 2.0 * needed } else { f64::INFINITY };
+        PROMISED * (0..self.first.len()).map(of_signal).fold(of_prior, f64::min)
+    }
+
+    /// By how much the gap of a signal must shrink to be worth a name: by a part of what it is and was at first, and by the
+    /// sensors' accuracy.
+    fn least(&self, before: &Weighed, signal: usize) -> f64 {
+        let now = left_by(&before.left[0], signal, &self.sensors);
+        (DELTA * now).max(0.5 * DELTA * self.first[signal]).max(ACCURACY * self.sensors.full_scale[signal])
+    }
+
+    /// Fits from the best start; the front from its others too, and by both weightings.
+    fn fitted(&self, screened: Vec<Screened>) -> Vec<Rival> {
+        let (problem, sensors) = (self.problem, &self.sensors);
+        let one = |(hypothesis, starts): Screened| {
+            let mut starts = starts.into_iter();
+            let first = starts.next()?;
+            let model = Weighed::new(problem, as_they_are(problem, first.candidate, first.x)?);
+            Some((Rival { hypothesis, model }, starts.collect::<Vec<Start>>()))
+        };
+        let mut rivals: Vec<(Rival, Vec<Start>)> = screened.into_par_iter().filter_map(one).collect();
+        rivals.sort_by(|a, b| gap(&a.0.model.left[0], sensors).total_cmp(&gap(&b.0.model.left[0], sensors)));
         let front = FRONT.min(rivals.len());
-        rivals[..front].par_iter_mut().for_each(|r| {
-            if let Some(better) = at_the_noise(problem, sensors, &r.model) {
-                r.model = better;
+        rivals[..front].par_iter_mut().for_each(|(rival, others)| {
+            let others = others.drain(..).filter_map(|s| as_they_are(problem, s.candidate, s.x));
+            let best = others.min_by(|a, b| a.nats().total_cmp(&b.nats()));
+            if let Some(better) = best.filter(|b| b.nats() < rival.model.fit.nats()) {
+                rival.model = Weighed::new(problem, better);
+            }
+            if let Some(better) = at_the_noise(problem, sensors, &rival.model) {
+                rival.model = better;
             }
         });
-        rivals
+        rivals.into_iter().map(|r| r.0).collect()
     }
 
     /// Whether left-out data are sure of each rival, and whether it is worth a name.
@@ -299,13 +339,11 @@ impl Search<'_> {
         all
     }
 
-    /// The gap of a signal must shrink by a part of what it is and was at first, and by the sensors' accuracy; or the
-    /// parameters return to their data sheet.
+    /// The gap of a signal must shrink, or the parameters return to their data sheet.
     fn worth(&self, before: &Weighed, model: &Weighed) -> Judged {
         let closes = |i: usize| {
-            let (a, b) = (left_by(&before.left[0], i, &self.sensors), left_by(&model.left[0], i, &self.sensors));
-            let least = (DELTA * a).max(0.5 * DELTA * self.first[i]).max(ACCURACY * self.sensors.full_scale[i]);
-            a - b >= least
+            let left = |w: &Weighed| left_by(&w.left[0], i, &self.sensors);
+            left(before) - left(model) >= self.least(before, i)
         };
         let gap = |w: &Weighed| gap(&w.left[0], &self.sensors);
         let worth = (0..self.first.len()).any(closes) || saved(before, model) > needed(self.count());
@@ -371,13 +409,11 @@ impl Search<'_> {
         let trial = |i: usize| Trial {
             step,
             chosen: last_cause(&rivals[i].model.fit),
-            gap: judged[i].gap,
-            t: judged[i].t,
-            chance: judged[i].chance,
-            evidence: judged[i].evidence,
+            found: Some(judged[i]),
             reason: reasons[i].clone(),
         };
         self.trials.extend((0..rivals.len()).map(trial));
+        self.trials.append(&mut self.passed);
         let first = taken?;
         let best = &rivals[first].model;
         let set = order.iter().filter(|i| **i != first).map(|&i| {
@@ -437,9 +473,9 @@ impl Search<'_> {
     fn drop_needless(&self, last: &mut Weighed, taken: &mut Vec<Taken>) {
         let mut i = 0;
         while i + 1 < taken.len() {
-            let mut causes = screen::causes(&last.fit);
+            let mut causes = models::causes(&last.fit);
             causes.remove(i);
-            let without = screen::candidate(self.problem, &causes, Some(&last.fit.tolerances()));
+            let without = models::candidate(self.problem, &causes, Some(&last.fit.tolerances()));
             let fitted = without.and_then(|c| weighed(self.problem, &self.sensors, &c, &c.present()));
             match fitted.filter(|f| !self.worse(last, f)) {
                 Some(fitted) => {
@@ -458,5 +494,5 @@ impl Search<'_> {
 
 /// The cause that a model has beyond the one before.
 fn last_cause(fit: &Fit) -> Chosen {
-    screen::causes(fit).pop().unwrap_or(Chosen { hypothesis: 0, values: Vec::new() })
+    models::causes(fit).pop().unwrap_or(Chosen { hypothesis: 0, values: Vec::new() })
 }

@@ -7,7 +7,7 @@ use super::super::figures::{self, Left};
 use super::super::hypotheses::Hypothesis;
 use super::super::mistakes;
 use super::super::problem::{Chosen, Problem, Tolerance};
-use super::super::select::screen;
+use super::super::select::models;
 use super::super::select::search::{Found, Taken, Trial, Weighed, weighed};
 use super::{Drift, Effect, Estimate, Gaps, Located, Maybe, PARTING, RecordingError, Unexplained, Verdict};
 use super::{alternative, ratio, spots};
@@ -129,11 +129,11 @@ impl Conclusion<'_> {
 
     /// The held gap of the model with some of the effects, fitted anew.
     fn gap_with(&self, kept: &[usize]) -> Maybe {
-        let all = screen::causes(&self.found.last.fit);
+        let all = models::causes(&self.found.last.fit);
         let causes: Vec<Chosen> = kept.iter().map(|&i| all[i].clone()).collect();
-        let candidate = screen::candidate(self.problem, &causes, Some(&self.found.base.fit.tolerances()))?;
+        let candidate = models::candidate(self.problem, &causes, Some(&self.found.base.fit.tolerances()))?;
         let x = candidate.present();
-        let Weighed { fit, .. } = weighed(self.problem, &screen::sensors(self.problem), &candidate, &x)?;
+        let Weighed { fit, .. } = weighed(self.problem, &models::sensors(self.problem), &candidate, &x)?;
         self.left(&fit.candidate, &fit.x).total(&self.problem.full_scale)
     }
 
@@ -171,10 +171,10 @@ impl Conclusion<'_> {
             effect: h.effect.clone(),
             family: h.family.clone(),
             places: spots(h),
-            gap: trial.gap,
-            t: trial.t,
-            chance: trial.chance,
-            evidence: trial.evidence,
+            gap: trial.found.map(|f| f.gap),
+            t: trial.found.map(|f| f.t),
+            chance: trial.found.map(|f| f.chance),
+            evidence: trial.found.map(|f| f.evidence),
             refused: trial.reason.as_ref().map(ToString::to_string),
         }
     }
@@ -191,7 +191,7 @@ impl Conclusion<'_> {
         };
         self.found.taken.iter().for_each(|t| add(self.hypothesis(t), t.evidence));
         for t in self.found.trials.iter().filter(|t| t.step == 1) {
-            add(self.of(&t.chosen), t.evidence);
+            add(self.of(&t.chosen), t.found.map_or(0.0, |f| f.evidence));
         }
         let total: f64 = all.iter().map(|l| l.evidence).sum();
         all.iter_mut().for_each(|l| l.share = l.evidence / total);

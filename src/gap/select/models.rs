@@ -1,0 +1,120 @@
+//! Models with hypotheses attached: what is free in them, and where they begin.
+
+use super::super::effects::{Coefficient, Shape};
+use super::super::estimate::{Candidate, Coordinate, Fit};
+use super::super::hypotheses::{Hypothesis, Signal};
+use super::super::policy::{ACCURACY, GRID};
+use super::super::problem::{Chosen, Problem};
+use super::compare::Sensors;
+
+/// Sizes, in usual ones, at which effects begin that make no linear model where they vanish.
+const SIZES: [f64; 3] = [0.1, 1.0, 10.0];
+/// A shape may lie so many times beyond its grid.
+const BEYOND: f64 = 3.0;
+
+/// The sensors of a problem.
+pub fn sensors(problem: &Problem<'_>) -> Sensors {
+    Sensors { noise: problem.noise_floor.clone(), full_scale: problem.full_scale.clone() }
+}
+
+/// A model with these causes; tolerances, where they are given, at these values.
+pub fn candidate(problem: &Problem<'_>, causes: &[Chosen], tolerances: Option<&[f64]>) -> Option<Candidate> {
+    shaped(problem, causes, tolerances, causes.len())
+}
+
+/// The same where only the first so many hypotheses have free shapes.
+pub fn shaped(
+    problem: &Problem<'_>,
+    causes: &[Chosen],
+    tolerances: Option<&[f64]>,
+    shapes: usize,
+) -> Option<Candidate> {
+    let mut model = problem.assembled(causes, &[], shapes).ok()?;
+    if let Some(values) = tolerances {
+        model.theta[model.free.clone()].copy_from_slice(values);
+    }
+    let hypothesis = |c: &Chosen| &problem.hypotheses[c.hypothesis];
+    let mut coordinates: Vec<Coordinate> = Vec::new();
+    for (i, t) in problem.tolerances.iter().enumerate() {
+        let mut c = Coordinate::plain(i, t.sigma, t.min, t.max);
+        c.prior = (!t.free).then_some((t.nominal / t.sigma, 1.0));
+        coordinates.push(c);
+    }
+    let mut own = 0;
+    for (cause, places) in causes.iter().zip(&model.attached) {
+        let h = hypothesis(cause);
+        if h.family == "parameter" {
+            coordinates[places[0]].prior = None;
+            own += 1;
+            continue;
+        }
+        let (linear, shaped) = places.split_at(h.coefficients.len());
+        let coefficients = h.coefficients.iter().zip(linear).filter_map(|(c, &p)| coefficient(c, p));
+        let shapes = h.shapes.iter().zip(shaped).filter_map(|(s, &p)| shape(s, p));
+        let of_cause: Vec<Coordinate> = coefficients.chain(shapes).collect();
+        own += of_cause.len();
+        coordinates.extend(of_cause);
+    }
+    let deviation = |(n, f): (&f64, &f64)| n.max(ACCURACY * f);
+    let deviations = problem.noise_floor.iter().zip(&problem.full_scale).map(deviation).collect();
+    let unit = |s: &Signal| problem.circuit.units.get(&s.variable).cloned().unwrap_or_default();
+    let units = problem.signals.iter().map(unit).collect();
+    Some(Candidate { causes: causes.to_vec(), model, coordinates, own, units, deviations })
+}
+
+/// A share of a whole is not free: an effect is there or not.
+fn coefficient(c: &Coefficient, parameter: usize) -> Option<Coordinate> {
+    let bound = |b: Option<f64>, none: f64| b.unwrap_or(none);
+    let free = c.whole().is_none();
+    free.then(|| {
+        Coordinate::plain(parameter, c.nominal.abs(), bound(c.min, f64::NEG_INFINITY), bound(c.max, f64::INFINITY))
+    })
+}
+
+/// A shape with one value is a width.
+fn shape(s: &Shape, parameter: usize) -> Option<Coordinate> {
+    let (least, most) = s.grid.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, m), x| (l.min(*x), m.max(*x)));
+    if s.grid.len() < 2 {
+        return None;
+    }
+    let (min, max) = (s.min.unwrap_or(f64::NEG_INFINITY), s.max.unwrap_or(f64::INFINITY));
+    Some(if least > 0.0 {
+        Coordinate::by_logarithm(parameter, min.max(least / BEYOND), max.min(most * BEYOND))
+    } else {
+        let width = most - least;
+        Coordinate::plain(parameter, width, min.max(least - width), max.min(most + width))
+    })
+}
+
+/// Values of a hypothesis where it may begin: linear coefficients where they vanish, shares as the whole, shapes on their
+/// grids.
+pub fn beginnings(h: &Hypothesis) -> Vec<Vec<f64>> {
+    let sizes: &[f64] = if h.changes_order { &SIZES } else { &[0.0] };
+    let value = |c: &Coefficient, size: f64| match c.whole() {
+        Some(whole) => whole,
+        None => (c.off + size * c.nominal).clamp(c.min.unwrap_or(f64::MIN), c.max.unwrap_or(f64::MAX)),
+    };
+    let mut all = Vec::new();
+    for variant in h.variants() {
+        for &size in sizes {
+            let mut values: Vec<f64> = h.coefficients.iter().map(|c| value(c, size)).collect();
+            values.extend(variant.iter().map(|v| v.1));
+            all.push(values);
+        }
+    }
+    let count = all.len();
+    if count > GRID {
+        all = (0..GRID).map(|i| all[i * (count - 1) / (GRID - 1)].clone()).collect();
+    }
+    all
+}
+
+/// The causes of a fit with their fitted values.
+pub fn causes(fit: &Fit) -> Vec<Chosen> {
+    let theta = fit.candidate.theta(&fit.x);
+    let with = |(c, places): (&Chosen, &Vec<usize>)| Chosen {
+        hypothesis: c.hypothesis,
+        values: places.iter().map(|&p| theta[p]).collect(),
+    };
+    fit.candidate.causes.iter().zip(&fit.candidate.model.attached).map(with).collect()
+}
