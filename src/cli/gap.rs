@@ -7,22 +7,21 @@ use super::messages::Messages;
 use super::recorder::write_text;
 use super::{DiskWorld, Ending, Failure, files};
 use crate::diag::{Checked, Code, Diagnostic};
-use crate::gap::data::Recording;
-use crate::gap::diagnose::{Stage, Trouble, search};
 use crate::gap::fixed::corrected;
 use crate::gap::hypotheses::Hypothesis;
 use crate::gap::plan::plan;
 use crate::gap::report::report;
-use crate::gap::study::{Question, Unusable, planned, proposed, question};
-use crate::gap::verdict::{Verdict, conclude};
+use crate::gap::select::search::{Stage, Trouble, search};
+use crate::gap::study::{Unusable, planned, proposed, question};
+use crate::gap::verdict::conclude;
 use crate::gap::words::words;
 use crate::study::Study;
 
 /// Find where model and bench part, and which missing effect explains it
 #[derive(Args, Debug)]
 #[command(after_help = "\
-The verdict goes to stdout as JSON (or into the file given), the words to stderr. Recordings of role `held` are read
-last, when everything has been decided, and say how far the gap shrinks.
+The verdict goes to stdout as JSON (or into the file given), the words to stderr. Recordings of role `held` take no part
+in fitting and ranking: they confirm what was found, and say how far the gap shrinks.
 
 Examples:
   bramah gap study.toml --data bench/                       the diagnosis
@@ -48,25 +47,12 @@ pub(super) struct GapArgs {
     /// What was found as one HTML page, `-` for stdout
     #[arg(long, value_name = "FILE")]
     report: Option<String>,
-    /// Which judge names effects: the filter's likelihood, or simulation of left-out data (on trial: better on recordings of
-    /// real machines, slow on models with many states; without `--write-model` and `--report`)
-    #[arg(long, value_enum, default_value = "filter", conflicts_with_all = ["list", "plan", "write_model", "report"])]
-    judge: Judge,
     /// List every effect at every place where it fits, and stop
     #[arg(long)]
     list: bool,
     /// Say what the planned experiment would show: train recordings need time and inputs only
     #[arg(long, conflicts_with_all = ["list", "write_model", "report"])]
     plan: bool,
-}
-
-/// Which judge names effects.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-enum Judge {
-    /// The filter's likelihood.
-    Filter,
-    /// Simulation of left-out data.
-    Simulation,
 }
 
 pub(super) fn run(args: &GapArgs, messages: &mut Messages) -> Result<Ending, Failure> {
@@ -112,62 +98,34 @@ fn diagnose(args: &GapArgs, study: &Study, messages: &mut Messages) -> Result<En
     let data = args.data.as_deref();
     let question = question(&DiskWorld, study, data, &mut messages.sources).map_err(|why| unusable(why, messages))?;
     messages.say(&question.diagnostics);
-    if args.judge == Judge::Simulation {
-        return by_simulation(args, question, begun, messages);
-    }
-    let stages = Stages::new();
-    let search = search(&question.problem, &mut |stage| stages.show(stage)).map_err(|t| trouble(&t))?;
-    stages.show(Stage::Held);
     let held = question.held(data, &mut messages.sources).map_err(|diagnostics| Failure { diagnostics })?;
-    let verdict = search.verdict(&question.problem, &held, begun.elapsed().as_secs_f64());
-    stages.clear();
-    say(args, &verdict, &held, messages)?;
-    if let Some(file) = &args.write_model {
-        write_text(file, &messages.value(corrected(&question.problem, &search))?)?;
-    }
-    if let Some(file) = &args.report {
-        write_text(file, &report(&question.problem, &search, &verdict, &held))?;
-    }
-    Ok(Ending::Fine)
-}
-
-/// The verdict in words, and as JSON where it is wanted.
-fn say(args: &GapArgs, verdict: &Verdict, held: &[Recording], messages: &mut Messages) -> Result<(), Failure> {
-    if held.is_empty() {
-        messages.remark("There are no held recordings: the gap is that on the recordings that were used.");
-    }
-    messages.remark(words(verdict).trim_end());
-    let text = serde_json::to_string_pretty(verdict).expect("numbers and texts always serialize");
-    write_text(&args.output, &format!("{text}\n"))?;
-    Ok(())
-}
-
-/// The diagnosis by simulation of left-out data.
-fn by_simulation(
-    args: &GapArgs,
-    mut question: Question<'_>,
-    begun: std::time::Instant,
-    messages: &mut Messages,
-) -> Result<Ending, Failure> {
-    let data = args.data.as_deref();
-    let held = question.held(data, &mut messages.sources).map_err(|diagnostics| Failure { diagnostics })?;
-    question.problem.with_mistakes();
     let problem = &question.problem;
     let stages = Stages::new();
-    let found = crate::gap::select::search::search(problem, &held, &mut |stage| stages.show(stage))
-        .ok_or_else(|| trouble(&Trouble::Diverges(0.0, "the model has no values on the way".into())))?;
-    let verdict = conclude(problem, &found, &held, begun.elapsed().as_secs_f64());
+    let found = search(problem, &held.recordings, &mut |stage| stages.show(stage)).map_err(trouble)?;
+    stages.show(Stage::Figures);
+    let verdict = conclude(problem, &found, &held.recordings, begun.elapsed().as_secs_f64());
     stages.clear();
-    say(args, &verdict, &held, messages)?;
+    if held.recordings.is_empty() {
+        messages.remark("There are no held recordings: the gap is that on the recordings that were used.");
+    }
+    messages.remark(words(&verdict).trim_end());
+    let text = serde_json::to_string_pretty(&verdict).expect("numbers and texts always serialize");
+    write_text(&args.output, &format!("{text}\n"))?;
+    if let Some(file) = &args.write_model {
+        write_text(file, &messages.value(corrected(problem, &found.last.fit))?)?;
+    }
+    if let Some(file) = &args.report {
+        write_text(file, &report(problem, &found, &verdict, &held))?;
+    }
     Ok(Ending::Fine)
 }
 
 /// What stops a diagnosis: the nominal model does not compile, or cannot follow the recordings.
-fn trouble(trouble: &Trouble) -> Failure {
+fn trouble(trouble: Trouble) -> Failure {
     match trouble {
-        Trouble::Model(diagnostics) => Failure { diagnostics: diagnostics.clone() },
-        Trouble::Diverges(time, why) => {
-            let text = format!("the nominal model cannot follow the recordings: at {time} s {why}");
+        Trouble::Model(diagnostics) => Failure { diagnostics },
+        Trouble::Stops(file, time) => {
+            let text = format!("the nominal model cannot follow `{file}`: its simulation stops at {time} s");
             Diagnostic::new(Code::BadData, text)
                 .help("check the units and signs of the inputs in the study, and the model's start values")
                 .into()
@@ -192,11 +150,11 @@ impl Stages {
 
     fn show(&self, stage: Stage) {
         self.say(&match stage {
-            Stage::Anchor => "noise, tolerances and disturbances".to_string(),
-            Stage::Locate => "places".to_string(),
+            Stage::Tolerances => "parameters within their tolerances".to_string(),
             Stage::Screen(n) => format!("all hypotheses for effect {n}"),
-            Stage::Refine(n) => format!("the best of them for effect {n}"),
-            Stage::Held => "held recordings".to_string(),
+            Stage::Fit(n) => format!("the best of them for effect {n}"),
+            Stage::Shapes => "shapes of what is left".to_string(),
+            Stage::Figures => "figures".to_string(),
         });
     }
 

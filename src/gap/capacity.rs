@@ -2,7 +2,8 @@
 //! gives way at once. What a node has is read off the nominal model: how fast its potential answers to a flow.
 
 use super::circuit::same_kind;
-use super::filter;
+use super::data::Inputs;
+use super::estimate::start::Valued;
 use super::hypotheses::{Hypothesis, Site};
 use super::problem::Problem;
 use std::collections::BTreeMap;
@@ -37,8 +38,20 @@ fn capacities(problem: &Problem<'_>) -> Option<BTreeMap<Site, f64>> {
     let sources = problem.node_sources();
     let model = problem.assemble(&[], &sources).ok()?;
     let first = problem.train.first()?;
-    let setting = model.setting(&[], &problem.noise_floor, Vec::new());
-    let (local, _) = filter::at_first(&setting, first, None).ok()?;
+    let units: Vec<String> = problem.signals.iter().map(|s| problem.unit(s)).collect();
+    let valued = Valued {
+        plan: &model.plan,
+        theta: &model.theta,
+        sizes: &model.sizes,
+        travel: &model.travel,
+        units: &units,
+        deviations: &problem.full_scale,
+    };
+    let begun = valued.begin(first, None)?;
+    let (mut local, k) = (begun.local, first.settled());
+    let mut u = Inputs::new(first).from;
+    first.input(k, &mut u);
+    local.linearize(first.times[k], &begun.state, &model.theta, &u).ok()?;
     let mut found = BTreeMap::new();
     for (&source, parameter) in sources.iter().zip(model.sources.clone()) {
         let site = &problem.disturbances[source].attachments[0].site;

@@ -2,7 +2,6 @@
 
 use super::data::Recording;
 use super::estimate::candidate::Errors;
-use super::held::Residuals;
 use super::hypotheses::Signal;
 use super::problem::Problem;
 use super::verdict::{Columns, Maybe, OpenGap, Side, SignalGap};
@@ -21,19 +20,6 @@ pub struct Left {
 }
 
 impl Left {
-    /// From the runs of a model, a recording each.
-    pub fn new(runs: &[Option<Residuals>], recordings: &[Recording]) -> Self {
-        let of_signal = |run: &Residuals, r: &Recording, i: usize| {
-            let errors = (1..run.simulated[i].len()).map(|k| run.error(r, i, k)).filter(|e| !e.is_nan());
-            errors.fold((0.0, 0.0), |(sum, n), e| (sum + e * e, n + 1.0))
-        };
-        let of_run = |(run, r): (&Option<Residuals>, &Recording)| {
-            let run = run.as_ref()?;
-            Some((0..r.signals.len()).map(|i| of_signal(run, r, i)).collect())
-        };
-        Left { recordings: runs.iter().zip(recordings).map(of_run).collect() }
-    }
-
     /// From the errors of a model behind the beginning, a recording each.
     pub fn of(errors: &[Option<Errors>]) -> Self {
         let signal = |e: &Vec<f64>| {
@@ -127,23 +113,16 @@ pub fn side(problem: &Problem<'_>, models: [&Left; 3], recordings: &[Recording])
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::sync::Arc;
-
-    fn recording(values: &[f64]) -> Recording {
-        let times: Arc<[f64]> = (0..values.len()).map(|k| k as f64).collect();
-        Recording { times, inputs: Vec::new(), linear: Vec::new(), signals: vec![Arc::from(values)] }
-    }
 
     #[test]
     fn nothing_is_subtracted_and_what_stops_early_has_no_figure() {
-        let recordings = [recording(&[0.0, 3.0, f64::NAN, 3.0]), recording(&[0.0, 1.0, 1.0, 1.0])];
-        let run = |level: f64| Some(Residuals { from: 0, simulated: vec![vec![level; 4]] });
-        let left = Left::new(&[run(0.0), run(1.0)], &recordings);
-        // two errors of 3 and three of 0; the first sample of a run is where it begins
+        let run = |errors: &[f64]| Some(vec![errors.to_vec()]);
+        let left = Left::of(&[run(&[3.0, f64::NAN, 3.0]), run(&[0.0, 0.0, 0.0])]);
+        // two errors of 3 and three of 0
         assert!((left.signal(0).unwrap() - (18.0_f64 / 5.0).sqrt()).abs() < 1e-15);
         assert!((left.total(&[2.0]).unwrap() - (18.0_f64 / 5.0).sqrt() / 2.0).abs() < 1e-15);
         assert_eq!(left.wider(0, 1.0), 1);
-        let stopped = Left::new(&[run(0.0), None], &recordings);
+        let stopped = Left::of(&[run(&[0.0]), None]);
         assert_eq!((stopped.signal(0), stopped.total(&[1.0]), stopped.wider(0, 1.0)), (None, None, 2));
     }
 }

@@ -5,9 +5,9 @@
 
 use super::augment::{Attached, Form, SOURCE, broken, cut, request, written};
 use super::circuit::Circuit;
-use super::diagnose::Search;
+use super::estimate::Fit;
 use super::hypotheses::{Signal, Site};
-use super::problem::{Chosen, Problem};
+use super::problem::Problem;
 use crate::compile::{Request, flatten};
 use crate::diag::{Checked, Code, Diagnostic, FileId, Sources};
 use crate::flat::Experiment;
@@ -37,26 +37,22 @@ pub fn fixed(
     write(world, nominal, folder, circuit, attached, signals, &drifts(attached))
 }
 
-/// Writes the model at which a search ended: the accepted effects and the parameters within their tolerances, both
-/// with their fitted values. It starts as the nominal model does.
+/// Writes a model as it was fitted: its effects and the parameters within their tolerances, both with their fitted
+/// values. It starts as the nominal model does.
 ///
 /// A parameter inside an array of components cannot be set by name in Modelica and keeps its nominal value; a comment at
 /// the head of the file names it.
 ///
 /// # Errors
 /// As [`fixed`].
-pub fn corrected(problem: &Problem<'_>, search: &Search) -> Checked<String> {
-    let (fit, model) = search.last();
-    let theta = &fit.setting.theta;
-    let mut attached = Vec::new();
-    for (i, (accepted, places)) in search.accepted().iter().zip(&model.attached).enumerate() {
-        let values = places.iter().map(|&p| theta[p]).collect();
-        attached.push((format!("e{i}"), Chosen { hypothesis: accepted.chosen.hypothesis, values }));
-    }
-    let attached: Vec<Attached<'_>> = attached.iter().map(|(name, c)| problem.attached(c, name)).collect();
+pub fn corrected(problem: &Problem<'_>, fit: &Fit) -> Checked<String> {
+    let theta = fit.candidate.theta(&fit.x);
+    let causes = fit.causes();
+    let attached: Vec<Attached<'_>> =
+        causes.iter().enumerate().map(|(i, c)| problem.attached(c, &format!("e{i}"))).collect();
     let mut values = drifts(&attached);
     let mut left = String::new();
-    for (t, value) in problem.tolerances.iter().zip(theta).filter(|(t, value)| **value != t.nominal) {
+    for (t, value) in problem.tolerances.iter().zip(&theta).filter(|(t, value)| **value != t.nominal) {
         if t.name.contains('[') {
             left.push_str(&format!("// not set, inside an array: {} = {value:e}\n", t.name));
         } else if !values.iter().any(|(n, _)| *n == t.name) {

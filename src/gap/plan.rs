@@ -1,15 +1,15 @@
 //! Before measuring: which effects a planned experiment would show at their usual size, which it could not tell apart, and
-//! which further sensor or other excitation would. The nominal model is driven by the planned inputs, and the columns of
-//! all hypotheses are whitened by the filter as in the screen; how much of one effect's course another one's could take
-//! over follows from their products.
+//! which further sensor or other excitation would. The nominal model is driven by the planned inputs, and the slopes of its
+//! signals with all hypotheses are weighed by the sensors' noise and accuracy; how much of one effect's course another one's
+//! could take over follows from their products.
 
 use super::data::Recording;
-use super::diagnose::{NEAR, SEEN};
-use super::filter::{self, Tape};
-use super::fit;
+use super::estimate::candidate::Products as Sums;
+use super::estimate::{Candidate, Fit, Weights};
 use super::hypotheses::{Hypothesis, Place, Signal};
+use super::policy::{ACCURACY, ALPHA, SEEN};
 use super::problem::{Chosen, Problem};
-use super::screen;
+use super::select::models::{beginnings, shaped};
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 use std::collections::BTreeSet;
@@ -18,10 +18,14 @@ use std::sync::Arc;
 
 /// Usual sizes that an effect may have in the place of another.
 const LARGEST: f64 = 30.0;
+/// Samples at which a model shows whether it has values.
+const FEWEST: usize = 8;
 /// Samples looked at in all; more are counted, not run.
 const SAMPLES: usize = 4000;
 /// Further sensors that are weighed, at most.
 const SENSORS: usize = 8;
+/// A parameter that is out of tolerance is so many tolerances off.
+const OUT: f64 = 3.0;
 /// Noise of a further sensor as part of its range.
 const NOISE: f64 = 3e-3;
 /// Levels of a staircase and of a sequence of steps.
@@ -87,7 +91,7 @@ pub fn plan(problem: &mut Problem<'_>, progress: &mut dyn FnMut(&str)) -> Option
     let change = |what: String, products: &Products| Change {
         what,
         seen: (0..hypotheses.len()).filter(|&h| products.nats(h) > SEEN).count(),
-        separates: confused.iter().filter(|p| products.behind(p.there, p.instead) > NEAR).count(),
+        separates: confused.iter().filter(|p| products.behind(p.there, p.instead) > certain()).count(),
     };
     let measured = problem.train.clone();
     let mut excitations = Vec::new();
@@ -125,34 +129,27 @@ impl Products {
         let attachable = |h: &Hypothesis| h.family != "parameter" && !h.changes_order && !h.is_shape();
         let chosen: Vec<Chosen> = (0..problem.hypotheses.len())
             .filter(|&i| attachable(&problem.hypotheses[i]))
-            .flat_map(|i| screen::variants(&problem.hypotheses[i], i))
+            .flat_map(|hypothesis| {
+                let all = beginnings(&problem.hypotheses[hypothesis]).into_iter();
+                all.map(move |values| Chosen { hypothesis, values })
+            })
             .collect();
-        let (chosen, assembled) = screen::attachable(problem, &[], chosen)?;
+        let model = joined(problem, chosen)?;
         let tolerances = problem.tolerances.len();
-        let mut columns: Vec<usize> = assembled.free.clone().collect();
         let mut variants = vec![Vec::new(); problem.hypotheses.len()];
-        for (places, c) in assembled.attached.iter().zip(&chosen) {
-            let h = &problem.hypotheses[c.hypothesis];
-            let first = columns.len();
-            columns.extend(places.iter().take(h.coefficients.len()));
-            let sizes = h.coefficients.iter().map(|c| c.nominal.abs().max(1e-300)).collect();
-            variants[c.hypothesis].push((first..columns.len(), sizes));
+        let mut first = tolerances;
+        for (c, places) in model.causes.iter().zip(&model.model.attached) {
+            let of_cause = |k: &usize| places.contains(&model.coordinates[*k].parameter);
+            let count = (first..model.coordinates.len()).take_while(of_cause).count();
+            variants[c.hypothesis].push((first..first + count, vec![1.0; count]));
+            first += count;
         }
-        for (i, h) in problem.hypotheses.iter().enumerate() {
-            if let Some(t) = screen::drifting(problem, h) {
-                variants[i].push((t..t + 1, vec![screen::wrong_sheet(&problem.tolerances[t])]));
-            }
+        for (i, h) in problem.hypotheses.iter().enumerate().filter(|(_, h)| h.family == "parameter") {
+            let name = &h.attachments[0].place.place;
+            let place = problem.tolerances.iter().position(|t| t.name == *name);
+            variants[i].extend(place.map(|t| (t..t + 1, vec![OUT])));
         }
-        let sources = fit::first_sources(&assembled, &problem.noise_floor, &problem.train)?;
-        let setting = assembled.setting(&sources, &problem.noise_floor, columns);
-        let all: usize = problem.train.iter().map(Recording::len).sum();
-        let each = (SAMPLES / problem.train.len().max(1)).max(2);
-        let used: usize = problem.train.iter().map(|r| r.len().min(each)).sum();
-        let passes = fit::passes(&setting, &problem.train, each, Tape::Nothing)?;
-        let width = setting.columns.len();
-        let gram = passes.iter().fold(DMatrix::zeros(width + 1, width + 1), |sum, p: &filter::Pass| sum + &p.gram);
-        let gram = gram.view((0, 0), (width, width)) * (all as f64 / used.max(1) as f64);
-        let gram = without_tolerances(&gram, tolerances, problem)?;
+        let gram = without_tolerances(&gram(problem, model)?, tolerances)?;
         Some(Products { gram, variants })
     }
 
@@ -197,7 +194,7 @@ impl Products {
         for there in (0..count).filter(|&h| self.nats(h) > SEEN) {
             for instead in (0..count).filter(|&h| h != there) {
                 let behind = self.behind(there, instead);
-                if behind < NEAR {
+                if behind < certain() {
                     found.push(Pair { there, instead, behind });
                 }
             }
@@ -207,14 +204,66 @@ impl Products {
     }
 }
 
-/// Takes out of all columns what the tolerances, each within its own, explain: G - C (T + 1/s^2)^-1 C'.
-fn without_tolerances(gram: &DMatrix<f64>, count: usize, problem: &Problem<'_>) -> Option<DMatrix<f64>> {
+/// A model with all hypotheses that can be attached together: where all cannot, halves of halves are tried.
+fn joined(problem: &Problem<'_>, chosen: Vec<Chosen>) -> Option<Candidate> {
+    let model = |chosen: &[Chosen]| {
+        let model = shaped(problem, chosen, None, 0).ok()?;
+        // what is compiled may have no values where it begins
+        let first = beginning(problem.train.first()?, FEWEST);
+        model.errors(&model.present(), &first, Some(0)).map(|_| model)
+    };
+    fn fitting(joins: &dyn Fn(&[Chosen]) -> bool, mut chosen: Vec<Chosen>) -> Vec<Chosen> {
+        if joins(&chosen) || chosen.is_empty() {
+            return chosen;
+        }
+        if chosen.len() == 1 {
+            return Vec::new();
+        }
+        let right = chosen.split_off(chosen.len() / 2);
+        let mut fine = fitting(joins, chosen);
+        fine.extend(fitting(joins, right));
+        fine
+    }
+    model(&fitting(&|chosen| model(chosen).is_some(), chosen))
+}
+
+/// Products of the slopes of all coordinates over the train recordings.
+fn gram(problem: &Problem<'_>, model: Candidate) -> Option<DMatrix<f64>> {
+    let all: usize = problem.train.iter().map(Recording::len).sum();
+    let each = (SAMPLES / problem.train.len().max(1)).max(FEWEST);
+    let used: Vec<Recording> = problem.train.iter().map(|r| beginning(r, each)).collect();
+    let square = |(n, f): (&f64, &f64)| n * n + (ACCURACY * f).powi(2);
+    let square = problem.noise_floor.iter().zip(&problem.full_scale).map(square).collect();
+    let weights = Weights { square, tau: vec![1.0; problem.signals.len()] };
+    let x = model.present();
+    let evaluated = model.evaluate(&x, &used)?;
+    let Sums { slopes, .. } = Fit { candidate: model, x, evaluated, weights }.sums(|_, _| true);
+    let seen: usize = used.iter().map(Recording::len).sum();
+    Some(slopes * (all as f64 / seen.max(1) as f64))
+}
+
+/// The first samples of a recording.
+fn beginning(r: &Recording, samples: usize) -> Recording {
+    let first = |values: &Arc<[f64]>| -> Arc<[f64]> { values[..samples.min(values.len())].into() };
+    Recording {
+        times: first(&r.times),
+        inputs: r.inputs.iter().map(first).collect(),
+        linear: r.linear.clone(),
+        signals: r.signals.iter().map(first).collect(),
+    }
+}
+
+/// Nats from which one effect is told from another.
+fn certain() -> f64 {
+    (1.0 / ALPHA).ln()
+}
+
+/// Takes out of all columns what the tolerances, each within its own, explain: G - C (T + 1)^-1 C', in units of them.
+fn without_tolerances(gram: &DMatrix<f64>, count: usize) -> Option<DMatrix<f64>> {
     let mut own = gram.view((0, 0), (count, count)).clone_owned();
-    problem.tolerances.iter().enumerate().for_each(|(i, t)| own[(i, i)] += t.sigma.powi(-2));
-    let scale = DVector::from_fn(count, |i, _| own[(i, i)].sqrt().recip());
-    let scaled = DMatrix::from_fn(count, count, |i, j| scale[i] * own[(i, j)] * scale[j]);
-    let cross = DMatrix::from_fn(count, gram.ncols(), |i, j| scale[i] * gram[(i, j)]);
-    let solved = scaled.cholesky()?.solve(&cross);
+    (0..count).for_each(|i| own[(i, i)] += 1.0);
+    let cross = gram.rows(0, count).clone_owned();
+    let solved = own.cholesky()?.solve(&cross);
     Some(gram - cross.tr_mul(&solved))
 }
 

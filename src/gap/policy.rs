@@ -30,28 +30,41 @@ pub const OTHER_WEIGHTING: f64 = 3.0;
 pub const OPENS: f64 = 0.02;
 /// Least mean square of a signal that counts, as part of full scale, squared: what is below is rounding.
 pub const LEAST: f64 = 1e-4;
+/// What an effect of usual size must gain for the recordings to count as able to show it, nats: as much as a search over
+/// some dozens of hypotheses asks for.
+pub const SEEN: f64 = 8.0;
+/// Share of the hypotheses that recordings must be able to show for a closed gap to mean that nothing is missing.
+pub const VISIBLE: f64 = 0.2;
 /// Effects that are looked for one after another, at most.
 pub const EFFECTS: usize = 4;
 
 // The constants below change the time that a search takes, not its verdicts.
 
-/// Hypotheses with parameters that are fitted after the screen.
+/// Hypotheses with parameters that are fitted after the screen, half of them by each of its criteria.
 pub const FITTED: usize = 14;
 /// And without.
 pub const FITTED_WITHOUT: usize = 2;
+/// Times as many are stepped a second time before.
+pub const STEPPED: usize = 2;
 /// Of these, the best are also fitted as if only the sensors' noise were left.
 pub const FRONT: usize = 4;
 /// Part of the least gain that is worth a name which a linear step must promise for a fit: left-out data may see more of it.
 pub const PROMISED: f64 = 0.5;
-/// Starts of each hypothesis that are kept: all are fitted from the best one, the front from the others too.
+/// Starts from which each of them is fitted.
 pub const STARTS: usize = 2;
 /// Combinations of grid values that are tried as starts, at most.
 pub const GRID: usize = 12;
 /// Dampings of the screen's linear step, in parts of the diagonal: undamped it overshoots where an effect is large.
 pub const DAMPINGS: [f64; 3] = [0.0, 0.3, 3.0];
+/// Times that a model is fitted again with the weights that it left, at most.
+pub const SETTLING: usize = 3;
 /// Iterations of a fit at most.
 pub const ITERATIONS: usize = 12;
 /// Trials of a step, each more damped.
 pub const TRIALS: usize = 6;
-/// Part of the cost below which a gain ends a fit.
-pub const SETTLED: f64 = 1e-3;
+/// Gain, in squared deviations, below which a fit ends: no test asks for as little.
+pub const SETTLED: f64 = 0.5;
+/// Or part of the cost.
+pub const SETTLED_PART: f64 = 1e-4;
+/// Times that a step which gained is doubled at most: where a sensitivity falls as an effect grows, linear steps are short.
+pub const DOUBLINGS: usize = 4;

@@ -4,8 +4,7 @@
 use super::augment::{self, Attached, Augmented, PLANT};
 use super::circuit::Circuit;
 use super::data::{Inputs, Recording};
-use super::filter::{Setting, Source};
-use super::held;
+use super::estimate::simulation::from_start;
 use super::hypotheses::{Hypothesis, Signal, Site};
 use crate::analysis::lift;
 use crate::analysis::local::{Local, Plan};
@@ -19,17 +18,8 @@ use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Correlation time of disturbances, s: what a bench's torques, flows and forces do beside their laws; where samples are
-/// far apart, so many of their distances.
-const TAU: f64 = 0.025;
-const TAU_STEPS: f64 = 3.0;
 /// A state that moves over so many of its nominal sizes has one that nobody chose.
 const DEFAULT: f64 = 10.0;
-/// Sources that locate a gap are so many times slower.
-pub const SLOWER: f64 = 4.0;
-/// Noise may be so much above what sixth differences show.
-const MOST_NOISE: f64 = 1.1;
-
 /// The unit in which a signal is spoken of: that of the study's column.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shown {
@@ -79,8 +69,6 @@ pub struct Problem<'a> {
     pub circuit: Circuit,
     /// All explanations.
     pub hypotheses: Vec<Hypothesis>,
-    /// What the study may have got wrong about the recordings.
-    pub mistakes: Vec<Hypothesis>,
     /// One source per node, command and sensor.
     pub disturbances: Vec<Hypothesis>,
     /// Measured signals.
@@ -120,12 +108,6 @@ pub struct Assembled {
     pub sizes: Vec<f64>,
     /// How far each state moves in the nominal model, SI; 0 where that is not known.
     pub travel: Vec<f64>,
-    /// Per train recording the state it begins at, as far as it is known from another model.
-    pub starts: Vec<Vec<f64>>,
-    /// Per signal the largest noise that its samples allow.
-    pub most_noise: Vec<f64>,
-    /// Correlation time of sources, s.
-    pub tau: f64,
     /// The Modelica text.
     pub augmented: Augmented,
 }
@@ -140,21 +122,15 @@ pub struct Chosen {
 }
 
 impl Problem<'_> {
-    /// Counts mistakes of the recordings among the hypotheses.
-    pub fn with_mistakes(&mut self) {
-        let mistakes = std::mem::take(&mut self.mistakes);
-        self.hypotheses.extend(mistakes);
+    /// The unit of a signal's variable, as written.
+    pub fn unit(&self, signal: &Signal) -> String {
+        self.circuit.units.get(&signal.variable).cloned().unwrap_or_default()
     }
 
     /// Physical sources: those at nodes.
     pub fn node_sources(&self) -> Vec<usize> {
         let at_node = |d: &Hypothesis| matches!(d.attachments[0].site, Site::Node(_));
         (0..self.disturbances.len()).filter(|&i| at_node(&self.disturbances[i])).collect()
-    }
-
-    /// Number of blocks into which the train recordings are cut.
-    pub fn blocks(&self) -> f64 {
-        (self.train.len() * super::filter::BLOCKS) as f64
     }
 
     /// Median time between samples, s; 0 without any.
@@ -219,10 +195,9 @@ impl Problem<'_> {
         let augmented = augment::augment(&self.circuit, &[], variables);
         let flat = self.flat(&augmented).ok()?;
         let model = self.lifted(flat, augmented, &[]).ok()?;
-        let setting = model.setting(&[], &vec![1.0; variables.len()], Vec::new());
         let mut all = vec![Vec::new(); variables.len()];
         for r in &self.train {
-            let run = held::from_start(&setting, r)?;
+            let run = from_start(&model.plan, &model.theta, &model.sizes, r)?;
             all.iter_mut().zip(run).for_each(|(a, v)| a.extend(v));
         }
         Some(all)
@@ -313,8 +288,6 @@ impl Problem<'_> {
                 *size = travel;
             }
         }
-        let most_noise = self.noise_floor.iter().map(|n| MOST_NOISE * n).collect();
-        let tau = TAU.max(TAU_STEPS * self.step());
         Ok(Assembled {
             plan,
             theta,
@@ -324,53 +297,8 @@ impl Problem<'_> {
             own: Vec::new(),
             sizes,
             travel,
-            starts: Vec::new(),
-            most_noise,
-            tau,
             augmented,
         })
-    }
-}
-
-impl Assembled {
-    /// A setting for the filter with sources as strong and as slow as these, in the order of its own.
-    pub fn setting(&self, like: &[Source], noise: &[f64], columns: Vec<usize>) -> Setting {
-        let source = |(parameter, like): (usize, &Source)| Source { parameter, ..like.clone() };
-        Setting {
-            plan: self.plan.clone(),
-            theta: self.theta.clone(),
-            own: self.own.clone(),
-            sources: self.sources.clone().zip(like).map(source).collect(),
-            noise: noise.to_vec(),
-            most_noise: self.most_noise.clone(),
-            colours: Vec::new(),
-            common: columns.len(),
-            groups: Vec::new(),
-            columns,
-            sizes: self.sizes.clone(),
-            travel: self.travel.clone(),
-            cuts: Vec::new(),
-            starts: self.starts.clone(),
-        }
-    }
-}
-
-impl Assembled {
-    /// Lets the recordings begin where they did in another model; states that it did not have begin at their own start.
-    pub fn begin_like(&mut self, other: &Setting, train: &[Recording]) {
-        fn names(plan: &Plan) -> impl Iterator<Item = &str> {
-            plan.state_variables().map(|v| plan.system.dae.variables[v.index()].name.as_str())
-        }
-        let start = |(r, known): (&Recording, &Vec<f64>)| {
-            let u = Inputs::new(r).from;
-            let mut start = Local::start(self.plan.clone(), r.times[0], &self.theta, &u).ok()?.state();
-            let known: BTreeMap<&str, f64> = names(&other.plan).zip(known.iter().copied()).collect();
-            let own = start.iter_mut().zip(names(&self.plan));
-            own.for_each(|(x, name)| *x = known.get(name).copied().unwrap_or(*x));
-            Some(start)
-        };
-        let starts: Option<Vec<Vec<f64>>> = train.iter().zip(&other.starts).map(start).collect();
-        self.starts = starts.filter(|s| s.len() == train.len()).unwrap_or_default();
     }
 }
 

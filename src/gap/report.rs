@@ -3,12 +3,12 @@
 //! The page needs no network and no other file; the curves can be zoomed like those of `bramah plot`.
 
 use super::data::Recording;
-use super::diagnose::Search;
-use super::held;
-use super::hypotheses::{Hypothesis, Site};
-use super::locate;
+use super::estimate::candidate::Errors;
+use super::hypotheses::Signal;
 use super::problem::Problem;
-use super::verdict::{Columns, Effect, Maybe, Side, SignalGap, Verdict};
+use super::select::search::Found;
+use super::study::Held;
+use super::verdict::{Columns, Effect, Maybe, Side, SignalGap, Verdict, Weighed, nominal};
 use super::whiteness::{Whiteness, whiteness};
 use super::words::{distance, findings, gap_row, number, percent, rest};
 use crate::compile::flatten;
@@ -23,23 +23,29 @@ const FAR: f64 = 2.0;
 /// What a model left, signal by signal, with the model's name.
 type Left = (&'static str, Vec<Whiteness>);
 
-/// Writes the page. `held` are the recordings that were not used; of these and of those that were used the first is
-/// drawn.
-pub fn report(problem: &Problem<'_>, search: &Search, verdict: &Verdict, held: &[Recording]) -> String {
-    let mut panels = panels(problem, search, &problem.train, "a recording that was used");
-    panels.extend(self::panels(problem, search, held, "a held recording"));
+/// Writes the page.
+pub fn report(problem: &Problem<'_>, found: &Found, verdict: &Verdict, held: &Held) -> String {
+    let used: Vec<(&String, &Recording)> = problem.files.iter().zip(&problem.train).collect();
+    let others: Vec<(&String, &Recording)> = held.files.iter().zip(&held.recordings).collect();
+    let mut panels = Vec::new();
+    for (i, (file, recording)) in used.iter().enumerate() {
+        panels.extend(curves(problem, found, recording, Some(i), &format!("{file}, used")));
+    }
+    for (file, recording) in others {
+        panels.extend(curves(problem, found, recording, None, &format!("{file}, held")));
+    }
     // without effects both are one
-    let fits = [("within tolerances", search.tolerated().0), ("with effects", search.last().0)];
+    let fits = [("within tolerances", &found.base.fit), ("with effects", &found.last.fit)];
     let fits = &fits[..1 + usize::from(!verdict.effects.is_empty())];
-    let left: Vec<Left> = fits.iter().map(|(stage, fit)| (*stage, whiteness(fit, &problem.train))).collect();
+    let of = |errors: &[Errors]| whiteness(errors, &problem.train, &problem.noise_floor);
+    let left: Vec<Left> = fits.iter().map(|(stage, fit)| (*stage, of(&fit.evaluated.errors))).collect();
     panels.extend(left.iter().map(|left| spectrum(problem, left)));
-    panels.extend(missing(problem, search, verdict));
     let title = format!("Gap of {}", problem.circuit.class);
     let figure = Figure { title, panels, shared_x: false };
     let facts = [
         ("verdict".to_string(), verdict.verdict.replace('_', " ")),
         ("recordings used".to_string(), problem.files.join(", ")),
-        ("held recordings".to_string(), held.len().to_string()),
+        ("held recordings".to_string(), held.files.join(", ")),
         ("hypotheses".to_string(), problem.hypotheses.len().to_string()),
         ("bramah".to_string(), env!("CARGO_PKG_VERSION").to_string()),
     ];
@@ -61,8 +67,10 @@ fn before(problem: &Problem<'_>, v: &Verdict, left: &[Left]) -> String {
     out.push_str(&table("Parameters against their tolerances", DRIFTS, &drifts(v)));
     out.push_str(&table("Places where model and bench part", PLACES, &places(v)));
     out.push_str(&table("What stays unexplained", UNEXPLAINED, &unexplained(v)));
-    out.push_str(&table("What the filter did not expect", WHITE, &white(problem, left)));
-    out.push_str("<h2>Measured and simulated; spectra of what the filter did not expect</h2>\n");
+    out.push_str(&table("What is left of the recordings used, beside the sensors' noise", WHITE, &white(problem, left)));
+    out.push_str(&table("What was weighed", WEIGHED, &weighed(v)));
+    out.push_str(&not_fitted(v));
+    out.push_str("<h2>Measured and simulated; spectra of what is left</h2>\n");
     out
 }
 
@@ -96,7 +104,8 @@ const EFFECTS: &[&str] = &[
 const GAPS: &[&str] = &["recordings", "signal", "nominal", "within tolerances", "with effects", "sensor noise"];
 const DRIFTS: &[&str] = &["parameter", "nominal", "fitted", "std", "tolerances"];
 const PLACES: &[&str] = &["place", "kind", "evidence in nats", "share", "the same place"];
-const UNEXPLAINED: &[&str] = &["share of the nominal gap", "place", "shape", "part of the gap's square"];
+const UNEXPLAINED: &[&str] = &["share of the nominal gap", "place", "shape", "closes"];
+const WEIGHED: &[&str] = &["step", "effect", "places", "leaves, of full scale", "t", "evidence in nats", "why not taken"];
 const WHITE: &[&str] = &["signal", "model", "mean square (1)", "correlation of neighbours (0)", "white noise at most"];
 
 /// A table of cells that are HTML already; nothing without rows.
@@ -192,12 +201,36 @@ fn unexplained(v: &Verdict) -> Vec<Vec<String>> {
     let place = u.place.as_deref().map_or_else(|| "unknown".to_string(), escape);
     let row = |shape: String, r2: String| vec![share(u.share), place.clone(), shape, r2];
     match &u.shape {
-        Some(terms) => terms.iter().map(|t| row(escape(&t.term), percent(t.r2))).collect(),
+        Some(terms) => terms.iter().map(|t| row(escape(&t.term), percent(t.closes))).collect(),
         None => vec![row("none that is known".into(), String::new())],
     }
 }
 
-/// How far innovations are from white noise of the size expected.
+/// What was fitted, with the reason why it was not taken.
+fn weighed(v: &Verdict) -> Vec<Vec<String>> {
+    let digits = |v: Maybe, digits: usize| v.map_or_else(String::new, |v| format!("{v:.digits$}"));
+    let row = |w: &Weighed| {
+        let at: Vec<String> = w.places.iter().map(|p| escape(&p.place)).collect();
+        vec![
+            w.step.to_string(),
+            escape(&w.effect),
+            at.join("<br>"),
+            w.gap.map_or_else(String::new, percent),
+            digits(w.t, 1),
+            digits(w.evidence, 1),
+            w.refused.as_deref().map_or_else(|| "<b>taken</b>".to_string(), escape),
+        ]
+    };
+    v.weighed.iter().filter(|w| w.gap.is_some()).map(row).collect()
+}
+
+/// How many hypotheses were not fitted.
+fn not_fitted(v: &Verdict) -> String {
+    let count = v.weighed.iter().filter(|w| w.gap.is_none()).count();
+    format!("<p>{count} more were not fitted: a linear step promised too little. The JSON verdict lists them.</p>\n")
+}
+
+/// How far what is left is from white noise of the size of the sensor's.
 fn white(problem: &Problem<'_>, left: &[Left]) -> Vec<Vec<String>> {
     let row = |name: &str, stage: &str, w: &Whiteness| {
         let coloured = w.neighbours.abs() > w.limit;
@@ -205,38 +238,48 @@ fn white(problem: &Problem<'_>, left: &[Left]) -> Vec<Vec<String>> {
         let neighbours = if coloured { format!("<b class=\"far\">{neighbours}</b>") } else { neighbours };
         vec![escape(name), stage.into(), format!("{:.2}", w.power), neighbours, format!("{:.3}", w.limit)]
     };
-    let signal = |(i, s): (usize, &super::hypotheses::Signal)| {
+    let signal = |(i, s): (usize, &Signal)| {
         let models = left.iter().filter_map(move |(stage, left)| Some((left.get(i)?, stage)));
         models.map(|(w, stage)| row(&s.name, stage, w)).collect::<Vec<_>>()
     };
     problem.signals.iter().enumerate().flat_map(signal).collect()
 }
 
-/// Spectra of the innovations of all signals, in decibels over white noise.
+/// Spectra of what is left of all signals, in decibels over the sensors' noise.
 fn spectrum(problem: &Problem<'_>, (stage, left): &Left) -> Panel {
     let level = |d: &f64| if *d > 0.0 { 10.0 * d.log10() } else { f64::NAN };
-    let series = |(i, (s, w)): (usize, (&super::hypotheses::Signal, &Whiteness))| {
+    let series = |(i, (s, w)): (usize, (&Signal, &Whiteness))| {
         curve(&s.name, &w.frequencies, &w.density.iter().map(level).collect::<Vec<f64>>(), i)
     };
     Panel {
         x_label: format!("frequency in Hz, {stage}"),
-        y_label: "unexpected, dB over white".into(),
+        y_label: "left, dB over the noise".into(),
         series: problem.signals.iter().zip(left).enumerate().map(series).collect(),
         ..Panel::default()
     }
 }
 
-/// Per signal the first of the recordings against the nominal model and the corrected one.
-fn panels(problem: &Problem<'_>, search: &Search, recordings: &[Recording], what: &str) -> Vec<Panel> {
-    let Some(recording) = recordings.first() else { return Vec::new() };
-    let settings = [search.nominal(problem), search.last().0.setting.clone()];
-    let runs = settings.map(|s| held::simulate(&s, recording));
-    let panel = |(i, signal): (usize, &super::hypotheses::Signal)| {
+/// A recording, signal by signal, against the nominal model and the corrected one. `number`: among the recordings used.
+fn curves(
+    problem: &Problem<'_>,
+    found: &Found,
+    recording: &Recording,
+    number: Option<usize>,
+    what: &str,
+) -> Vec<Panel> {
+    let (base, last) = (&found.base.fit, &found.last.fit);
+    let of_nominal = base.candidate.errors(&nominal(problem, &base.candidate), recording, number);
+    let of_last = last.candidate.errors(&last.x, recording, number);
+    let behind = |errors: &Errors| recording.len() - errors.first().map_or(0, Vec::len);
+    let panel = |(i, signal): (usize, &Signal)| {
+        let measured = &recording.signals[i];
         let unit = problem.circuit.units.get(&signal.variable).map_or("", String::as_str);
-        let mut series = vec![curve("measured", &recording.times, &recording.signals[i], 6)];
-        for ((name, colour), run) in [("nominal", 1), ("corrected", 0)].into_iter().zip(&runs) {
-            let Some(run) = run else { continue };
-            series.push(curve(name, &recording.times[run.from..], &run.simulated[i], colour));
+        let mut series = vec![curve("measured", &recording.times, measured, 6)];
+        for ((name, colour), errors) in [("nominal", 1), ("corrected", 0)].into_iter().zip([&of_nominal, &of_last]) {
+            let Some(errors) = errors else { continue };
+            let from = behind(errors);
+            let simulated: Vec<f64> = measured[from..].iter().zip(&errors[i]).map(|(y, e)| y - e).collect();
+            series.push(curve(name, &recording.times[from..], &simulated, colour));
         }
         Panel {
             x_label: format!("time in s, {what}"),
@@ -246,30 +289,6 @@ fn panels(problem: &Problem<'_>, search: &Search, recordings: &[Recording], what
         }
     };
     problem.signals.iter().enumerate().map(panel).collect()
-}
-
-/// What is missing over time at the place that stays unexplained; of two ports, at the first.
-fn missing(problem: &Problem<'_>, search: &Search, v: &Verdict) -> Option<Panel> {
-    let place = v.unexplained.place.as_deref()?.split('|').next()?;
-    let there = |h: &Hypothesis| h.places().iter().any(|p| p.place == place || p.node.iter().any(|n| n == place));
-    let disturbance = problem.disturbances.iter().position(there)?;
-    let recording = problem.train.first()?;
-    let values = locate::course(problem, search.last().0, search.accepted(), disturbance, recording)?;
-    let attachment = &problem.disturbances[disturbance].attachments[0];
-    let circuit = &problem.circuit;
-    let of = |variable: &str| circuit.units.get(variable).map_or("", String::as_str);
-    let unit = match &attachment.site {
-        Site::Node(p) | Site::Into(p) | Site::Across(p, _) => circuit.ports[*p].through.unit.as_str(),
-        Site::Sensor(name) => problem.signals.iter().find(|s| s.name == *name).map_or("", |s| of(&s.variable)),
-        Site::Command(name) | Site::Parameter(name) => of(name),
-    };
-    let place = &attachment.place.place;
-    Some(Panel {
-        x_label: "time in s, a recording that was used: what the filter makes of the samples so far".into(),
-        y_label: format!("missing at {place}{}{unit}", if unit.is_empty() { "" } else { " in " }),
-        series: vec![curve("estimated", &recording.times[..values.len()], &values, 2)],
-        ..Panel::default()
-    })
 }
 
 fn curve(name: &str, x: &[f64], y: &[f64], colour: usize) -> Series {

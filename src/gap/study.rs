@@ -39,6 +39,14 @@ pub struct Question<'a> {
     pub diagnostics: Vec<Diagnostic>,
 }
 
+/// Recordings that take no part in fitting.
+pub struct Held {
+    /// Their names, for messages alone.
+    pub files: Vec<String>,
+    /// What was recorded.
+    pub recordings: Vec<Recording>,
+}
+
 /// Why a study cannot be used, with the texts its messages point into.
 pub struct Unusable {
     /// What is wrong.
@@ -92,6 +100,8 @@ pub fn planned<'a>(
     let train = nominal.shown(world, study, train)?;
     let mut question = nominal.question(world, study, train, warnings)?;
     let problem = &mut question.problem;
+    // nothing was recorded that could be wrong
+    problem.hypotheses.retain(|h| !h.is_recording_error());
     let accuracy = |(s, &scale): (&BoundSignal, &f64)| s.deviation(scale).unwrap_or(ACCURACY * scale);
     let floor = question.bound.signals.iter().zip(&problem.full_scale).map(accuracy);
     problem.noise_floor = floor.zip(&problem.full_scale).map(|(n, f)| n.max(1e-9 * f.abs())).collect();
@@ -145,7 +155,6 @@ impl Nominal {
             folder: None,
             circuit: offer.circuit,
             hypotheses: Vec::new(),
-            mistakes: Vec::new(),
             disturbances: Vec::new(),
             noise_floor: vec![1.0; signals.len()],
             full_scale: vec![1.0; signals.len()],
@@ -192,7 +201,6 @@ impl Nominal {
             folder: offer.folder,
             circuit: offer.circuit,
             hypotheses: offer.hypotheses,
-            mistakes: Vec::new(),
             disturbances,
             signals,
             full_scale,
@@ -206,7 +214,8 @@ impl Nominal {
         problem.explore();
         shapes::fit(&mut problem);
         capacity::bound(&mut problem);
-        problem.mistakes = mistakes(&problem, &offer.effects);
+        let mistakes = mistakes(&problem, &offer.effects);
+        problem.hypotheses.extend(mistakes);
         Ok(Question { problem, bound, flat, diagnostics })
     }
 }
@@ -278,10 +287,12 @@ impl Question<'_> {
     ///
     /// # Errors
     /// What is wrong with them.
-    pub fn held(&self, data: Option<&Path>, sources: &mut Sources) -> Result<Vec<Recording>, Vec<Diagnostic>> {
+    pub fn held(&self, data: Option<&Path>, sources: &mut Sources) -> Result<Held, Vec<Diagnostic>> {
         let checked = self.bound.load(self.problem.world, data, Role::Held, sources);
         let found = checked.value.ok_or(checked.diagnostics)?;
-        Ok(found.into_iter().map(|r| recording(&self.flat, &self.bound, r)).collect())
+        let files = found.iter().map(|r| r.file.clone()).collect();
+        let recordings = found.into_iter().map(|r| recording(&self.flat, &self.bound, r)).collect();
+        Ok(Held { files, recordings })
     }
 }
 

@@ -2,7 +2,7 @@
 
 mod conclude;
 
-pub use conclude::conclude;
+pub use conclude::{conclude, nominal};
 
 use super::hypotheses::Hypothesis;
 use serde::Serialize;
@@ -37,8 +37,7 @@ pub struct Verdict {
     pub closed: Maybe,
     /// Part that effects close beyond tolerances.
     pub closed_by_effects: Maybe,
-    /// Every hypothesis that was fitted, step by step, with the reason why it was not taken; of the judge by simulation.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    /// Every hypothesis that was weighed, step by step, with the reason why it was not taken.
     pub weighed: Vec<Weighed>,
     /// What is left.
     pub unexplained: Unexplained,
@@ -251,13 +250,17 @@ pub struct OpenGap {
 pub struct Term {
     /// What the missing quantity follows.
     pub term: String,
-    /// Part of the simulated gap's square on the train recordings that it closes.
-    pub r2: f64,
+    /// Part of the gap of left-out train data that it closes.
+    pub closes: f64,
 }
 
 /// What parts effects that move alike.
 pub(super) const PARTING: &str =
     "slow triangles through zero, steps and a chirp over the whole range: what moves alike here may part there";
+
+/// What to measure where the recordings show next to nothing.
+pub(super) const EXCITING: &str =
+    "more excitation: steps of the inputs over their whole range, then slow triangles through zero";
 
 /// One gap over another, where both are known.
 pub(super) fn ratio(a: Maybe, b: Maybe) -> Maybe {

@@ -1,10 +1,9 @@
-//! What the filter did not expect, signal by signal: how strong it is, whether neighbours have anything in common, and at
-//! which frequencies it lies. A complete model leaves white noise of unit power.
+//! What a model leaves, signal by signal: how strong it is beside the sensor's noise, whether neighbours have anything in
+//! common, and at which frequencies it lies. A complete model leaves white noise of unit power.
 
 use super::data::Recording;
-use super::fit::Fit;
+use super::estimate::candidate::Errors;
 use super::lines::goertzel;
-use nalgebra::DMatrix;
 use std::f64::consts::PI;
 
 /// Samples of a stretch of which one spectrum is made, and the fewest that make one.
@@ -13,10 +12,10 @@ const FEWEST: usize = 32;
 /// Steps that differ by less than this part are the same.
 const SAME_STEP: f64 = 0.01;
 
-/// The whitened innovations of one signal.
+/// The errors of one signal, in the standard deviation of its noise.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Whiteness {
-    /// Mean square: 1 where they are as large as expected.
+    /// Mean square: 1 where they are as large as the noise.
     pub power: f64,
     /// Correlation of a sample with the next.
     pub neighbours: f64,
@@ -28,21 +27,19 @@ pub struct Whiteness {
     pub density: Vec<f64>,
 }
 
-/// Of all signals of a fit, over the recordings that it was made on.
-pub fn whiteness(fit: &Fit, recordings: &[Recording]) -> Vec<Whiteness> {
-    let signals = fit.white.first().map_or(0, DMatrix::ncols);
+/// Of all signals, from the errors that a model leaves of recordings and the noise of the sensors.
+pub fn whiteness(errors: &[Errors], recordings: &[Recording], noise: &[f64]) -> Vec<Whiteness> {
     let steps: Vec<f64> = recordings.iter().map(|r| r.duration() / (r.len().max(2) - 1) as f64).collect();
-    let one = |signal: usize| {
-        let rest = |(white, r): (&DMatrix<f64>, &Recording)| -> Vec<f64> {
-            white.column(signal).iter().skip(r.settled()).copied().collect()
-        };
-        let series: Vec<Vec<f64>> = fit.white.iter().zip(recordings).map(rest).collect();
+    let one = |(signal, noise): (usize, &f64)| {
+        // where nothing was measured, nothing is left
+        let known = |e: &f64| if e.is_finite() { e / noise } else { 0.0 };
+        let series: Vec<Vec<f64>> = errors.iter().map(|e| e[signal].iter().map(known).collect()).collect();
         of(&series, &steps)
     };
-    (0..signals).map(one).collect()
+    noise.iter().enumerate().map(one).collect()
 }
 
-/// Of one signal, with a step for each series; there is no innovation of exactly 0 but where no sample is.
+/// Of one signal, with a step for each series; there is no error of exactly 0 but where no sample is.
 fn of(series: &[Vec<f64>], steps: &[f64]) -> Whiteness {
     let count = series.iter().flatten().filter(|v| **v != 0.0).count().max(1) as f64;
     let square: f64 = series.iter().flatten().map(|v| v * v).sum();

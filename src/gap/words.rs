@@ -38,7 +38,12 @@ pub(super) fn rest(v: &Verdict) -> String {
         let _ = writeln!(text, "Not explained: {} of the nominal gap{at}.", percent(share));
     }
     for t in v.unexplained.shape.iter().flatten() {
-        let _ = writeln!(text, "What is missing there has this shape: {} (r2 = {:.2}).", lower(&t.term), t.r2);
+        let _ = writeln!(
+            text,
+            "What is missing there has this shape: {}. It closes {} of the gap on left-out data.",
+            lower(&t.term),
+            percent(t.closes)
+        );
     }
     for d in v.drifts.iter().filter(|d| d.tolerances.abs() >= 2.0) {
         let _ = writeln!(

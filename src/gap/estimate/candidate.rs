@@ -2,9 +2,9 @@
 //! depends on what is free.
 
 use super::super::data::Recording;
-use super::super::policy::PIECES;
+use super::super::policy::{DOUBLINGS, PIECES};
 use super::super::problem::{Assembled, Chosen};
-use super::super::step;
+use super::exponential;
 use super::map::Weights;
 use super::simulation::Course;
 use super::start::Valued;
@@ -98,7 +98,7 @@ impl Products {
     }
 
     fn add(&mut self, row: &[f64], error: f64) {
-        step::add_outer(&mut self.slopes, 1.0, row, row);
+        exponential::add_outer(&mut self.slopes, 1.0, row, row);
         self.errors.iter_mut().zip(row).for_each(|(sum, y)| *sum += y * error);
     }
 
@@ -107,10 +107,52 @@ impl Products {
         Products { slopes: self.slopes.resize(width, width, 0.0), errors: self.errors.resize_vertically(width, 0.0) }
     }
 
+    /// By how much squared errors fall in the linear model where the coordinates move like this.
+    pub fn gain(&self, change: &DVector<f64>) -> f64 {
+        2.0 * self.errors.dot(change) - change.dot(&(&self.slopes * change))
+    }
+
     /// Adds others, weighed.
     pub fn add_weighed(&mut self, other: &Products, weight: f64) {
         self.slopes += &other.slopes * weight;
         self.errors.axpy(weight, &other.errors, 1.0);
+    }
+}
+
+/// Sums of coordinates in front with all, and of each group behind them with itself.
+struct Grouped {
+    across: DMatrix<f64>,
+    errors: DVector<f64>,
+    own: Vec<DMatrix<f64>>,
+}
+
+impl Grouped {
+    fn none(common: usize, width: usize, groups: &[Range<usize>]) -> Self {
+        let own = groups.iter().map(|g| DMatrix::zeros(g.len(), g.len())).collect();
+        Grouped { across: DMatrix::zeros(common, width), errors: DVector::zeros(width), own }
+    }
+
+    fn add(&mut self, row: &[f64], error: f64, groups: &[Range<usize>]) {
+        let common = self.across.nrows();
+        exponential::add_outer(&mut self.across, 1.0, &row[..common], row);
+        self.errors.iter_mut().zip(row).for_each(|(sum, y)| *sum += error * y);
+        for (own, group) in self.own.iter_mut().zip(groups) {
+            exponential::add_outer(own, 1.0, &row[group.clone()], &row[group.clone()]);
+        }
+    }
+
+    /// The sums of one group with what is in front.
+    fn of(&self, k: usize, group: &Range<usize>) -> Products {
+        let (common, len) = (self.across.nrows(), group.len());
+        let mut all = Products::none(common + len);
+        let beside = self.across.columns(group.start, len);
+        all.slopes.view_mut((0, 0), (common, common)).copy_from(&self.across.columns(0, common));
+        all.slopes.view_mut((0, common), (common, len)).copy_from(&beside);
+        all.slopes.view_mut((common, 0), (len, common)).copy_from(&beside.transpose());
+        all.slopes.view_mut((common, common), (len, len)).copy_from(&self.own[k]);
+        all.errors.rows_mut(0, common).copy_from(&self.errors.rows(0, common));
+        all.errors.rows_mut(common, len).copy_from(&self.errors.rows(group.start, len));
+        all
     }
 }
 
@@ -121,6 +163,29 @@ pub struct Evaluated {
     pub errors: Vec<Errors>,
     /// Per recording, piece and signal.
     pub products: Vec<Vec<Vec<Products>>>,
+}
+
+impl Evaluated {
+    /// Weighed sums over the pieces wanted, by recording and piece.
+    pub fn sums(&self, width: usize, weights: &Weights, wanted: impl Fn(usize, usize) -> bool) -> Products {
+        let mut sum = Products::none(width);
+        for (number, pieces) in self.products.iter().enumerate() {
+            for (_, signals) in pieces.iter().enumerate().filter(|(piece, _)| wanted(number, *piece)) {
+                signals.iter().enumerate().for_each(|(i, p)| sum.add_weighed(p, weights.weight(i)));
+            }
+        }
+        sum
+    }
+
+    /// Sums of each signal over all recordings.
+    pub fn by_signal(&self, width: usize) -> Vec<Products> {
+        let signals = self.errors.first().map_or(0, Vec::len);
+        let mut sums = vec![Products::none(width); signals];
+        for of_piece in self.products.iter().flatten() {
+            sums.iter_mut().zip(of_piece).for_each(|(sum, p)| sum.add_weighed(p, 1.0));
+        }
+        sums
+    }
 }
 
 /// The piece of a recording that a counted sample belongs to.
@@ -163,6 +228,31 @@ impl Candidate {
         Some(errors)
     }
 
+    /// A step to a point of this cost, doubled as long as the cost falls, within the bounds.
+    pub fn stretched(
+        &self,
+        from: &[f64],
+        (mut best, mut least): (Vec<f64>, f64),
+        cost: &impl Fn(&[f64]) -> Option<f64>,
+    ) -> (Vec<f64>, f64) {
+        for _ in 0..DOUBLINGS {
+            let far = |((c, from), to): ((&Coordinate, &f64), &f64)| (2.0 * to - from).clamp(c.low, c.high);
+            let tried: Vec<f64> = self.coordinates.iter().zip(from).zip(&best).map(far).collect();
+            match cost(&tried).filter(|c| *c < least) {
+                Some(c) => (best, least) = (tried, c),
+                None => break,
+            }
+        }
+        (best, least)
+    }
+
+    /// When the simulation of a train recording stops before its end, s.
+    pub fn stops(&self, x: &[f64], recording: &Recording) -> Option<f64> {
+        let mut sample = recording.settled();
+        let ends = self.run(x, recording, None, false, |_, _| sample += 1);
+        ends.is_none().then(|| recording.times[sample.min(recording.len() - 1)])
+    }
+
     /// What the model leaves of the train recordings. `None` where it does not reach the end of one.
     pub fn all_errors(&self, x: &[f64], train: &[Recording]) -> Option<Vec<Errors>> {
         train.iter().enumerate().map(|(i, r)| self.errors(x, r, Some(i))).collect()
@@ -193,45 +283,21 @@ impl Candidate {
         Some(Evaluated { errors, products })
     }
 
-    /// Groups of coordinates that are tried one at a time beside those in front of them all: of each the weighed sums with
-    /// these. `None` where the model does not reach the end of a recording.
-    pub fn groups(
-        &self,
-        x: &[f64],
-        train: &[Recording],
-        weights: &Weights,
-        groups: &[Range<usize>],
-    ) -> Option<Vec<Products>> {
-        let (common, width) = (groups.first().map_or(0, |g| g.start), x.len());
-        let mut across = DMatrix::zeros(common, width);
-        let mut errors = DVector::zeros(width);
-        let mut own: Vec<Products> = groups.iter().map(|g| Products::none(g.len())).collect();
+    /// Groups of coordinates that are tried one at a time beside those in front of them all: of each the sums with these,
+    /// signal by signal. `None` where the model does not reach the end of a recording.
+    pub fn groups(&self, x: &[f64], train: &[Recording], groups: &[Range<usize>]) -> Option<Vec<Vec<Products>>> {
+        let common = groups.first().map_or(0, |g| g.start);
+        let mut sums: Vec<Grouped> =
+            self.deviations.iter().map(|_| Grouped::none(common, x.len(), groups)).collect();
         for (number, recording) in train.iter().enumerate() {
             self.run(x, recording, Some(number), true, |errors_of, slopes| {
                 let Some(slopes) = slopes else { return };
-                for (i, e) in errors_of.iter().enumerate().filter(|(_, e)| e.is_finite()) {
-                    let (row, weight) = (slopes.column(i), weights.weight(i));
-                    step::add_outer(&mut across, weight, &row.as_slice()[..common], row.as_slice());
-                    errors.axpy(weight * e, &row, 1.0);
-                    for (own, group) in own.iter_mut().zip(groups) {
-                        let row = &row.as_slice()[group.clone()];
-                        step::add_outer(&mut own.slopes, weight, row, row);
-                    }
+                for (i, (sums, e)) in sums.iter_mut().zip(errors_of).enumerate().filter(|(_, (_, e))| e.is_finite()) {
+                    sums.add(slopes.column(i).as_slice(), *e, groups);
                 }
             })?;
         }
-        let joined = |(own, group): (&Products, &Range<usize>)| {
-            let mut all = Products::none(common + group.len());
-            let beside = across.columns(group.start, group.len());
-            all.slopes.view_mut((0, 0), (common, common)).copy_from(&across.columns(0, common));
-            all.slopes.view_mut((0, common), beside.shape()).copy_from(&beside);
-            all.slopes.view_mut((common, 0), (group.len(), common)).copy_from(&beside.transpose());
-            all.slopes.view_mut((common, common), own.slopes.shape()).copy_from(&own.slopes);
-            all.errors.rows_mut(0, common).copy_from(&errors.rows(0, common));
-            all.errors.rows_mut(common, group.len()).copy_from(&errors.rows(group.start, group.len()));
-            all
-        };
-        Some(own.iter().zip(groups).map(joined).collect())
+        Some(groups.iter().enumerate().map(|(k, group)| sums.iter().map(|s| s.of(k, group)).collect()).collect())
     }
 
     fn run(

@@ -3,7 +3,8 @@
 //! small and independent, and the data speak about parameters too.
 
 use super::super::data::Recording;
-use super::super::policy::{ITERATIONS, LEAST, SETTLED, TRIALS};
+use super::super::problem::Chosen;
+use super::super::policy::{ITERATIONS, LEAST, SETTLED, SETTLED_PART, TRIALS};
 use super::candidate::{Candidate, Coordinate, Errors, Evaluated, Products};
 use super::correlation;
 use nalgebra::{DMatrix, DVector};
@@ -58,7 +59,7 @@ impl Weights {
 }
 
 /// Sum of a signal's squared errors over all recordings.
-fn squares(errors: &[Errors], signal: usize) -> f64 {
+pub fn squares(errors: &[Errors], signal: usize) -> f64 {
     errors.iter().flat_map(|e| &e[signal]).filter(|v| v.is_finite()).map(|v| v * v).sum()
 }
 
@@ -111,18 +112,21 @@ impl Fit {
                 if x == self.x {
                     break;
                 }
-                if let Some(evaluated) = self.candidate.evaluate(&x, train) {
-                    let cost = self.weights.cost(&evaluated.errors) + self.candidate.prior(&x);
-                    if cost < before {
-                        (self.x, self.evaluated) = (x, evaluated);
-                        damping /= EASED;
-                        taken = true;
-                        break;
-                    }
+                let cost = |x: &[f64]| {
+                    let errors = self.candidate.all_errors(x, train)?;
+                    Some(self.weights.cost(&errors) + self.candidate.prior(x))
+                };
+                if let Some(found) = cost(&x).filter(|c| *c < before) {
+                    let (x, _) = self.candidate.stretched(&self.x, (x, found), &cost);
+                    let Some(evaluated) = self.candidate.evaluate(&x, train) else { break };
+                    (self.x, self.evaluated) = (x, evaluated);
+                    damping /= EASED;
+                    taken = true;
+                    break;
                 }
                 damping = damping.max(LEAST_DAMPING) * STIFFENED;
             }
-            if !taken || before - self.cost() < SETTLED * before {
+            if !taken || before - self.cost() < SETTLED.max(SETTLED_PART * before) {
                 break;
             }
         }
@@ -140,13 +144,7 @@ impl Fit {
 
     /// Their weighed sums, without what is known of the coordinates beforehand.
     pub fn sums(&self, wanted: impl Fn(usize, usize) -> bool) -> Products {
-        let mut sum = Products::none(self.x.len());
-        for (number, pieces) in self.evaluated.products.iter().enumerate() {
-            for (_, signals) in pieces.iter().enumerate().filter(|(piece, _)| wanted(number, *piece)) {
-                signals.iter().enumerate().for_each(|(i, p)| sum.add_weighed(p, self.weights.weight(i)));
-            }
-        }
-        sum
+        self.evaluated.sums(self.x.len(), &self.weights, wanted)
     }
 
     /// Samples of a signal with a value.
@@ -155,11 +153,15 @@ impl Fit {
         self.evaluated.errors.iter().map(count).sum::<usize>() as f64
     }
 
+    /// Mean square of a signal's errors.
+    pub fn mean_square(&self, signal: usize) -> f64 {
+        squares(&self.evaluated.errors, signal) / self.samples(signal).max(1.0)
+    }
+
     /// Minus the log posterior with each signal's variance at its optimum, nats: what orders fits of one model.
     pub fn nats(&self) -> f64 {
         let one = |i: usize| {
-            let mean = squares(&self.evaluated.errors, i) / self.samples(i).max(1.0);
-            0.5 * self.samples(i) / self.weights.tau[i] * mean.max(f64::MIN_POSITIVE).ln()
+            0.5 * self.samples(i) / self.weights.tau[i] * self.mean_square(i).max(f64::MIN_POSITIVE).ln()
         };
         (0..self.weights.tau.len()).map(one).sum::<f64>() + self.prior()
     }
@@ -167,6 +169,16 @@ impl Fit {
     /// Nats that the distance of parameters from their data sheet costs.
     pub fn prior(&self) -> f64 {
         0.5 * self.candidate.prior(&self.x)
+    }
+
+    /// Its hypotheses with their fitted values.
+    pub fn causes(&self) -> Vec<Chosen> {
+        let theta = self.candidate.theta(&self.x);
+        let with = |(c, places): (&Chosen, &Vec<usize>)| Chosen {
+            hypothesis: c.hypothesis,
+            values: places.iter().map(|&p| theta[p]).collect(),
+        };
+        self.candidate.causes.iter().zip(&self.candidate.model.attached).map(with).collect()
     }
 
     /// Values of the parameters that may be off within their tolerances, SI.
@@ -234,10 +246,16 @@ impl System {
         x
     }
 
-    /// By how much the linear model's cost falls from one point to another.
-    pub fn gain(&self, from: &[f64], to: &[f64]) -> f64 {
-        let change = DVector::from_fn(from.len(), |i, _| to[i] - from[i]);
-        2.0 * self.towards.dot(&change) - change.dot(&(&self.information * &change))
+    /// Nats that a move by one unit of some coordinates behind the first ones gains, beyond what these can take over.
+    pub fn visible(&self, first: usize, moved: usize) -> f64 {
+        let ones = DVector::from_element(moved, 1.0);
+        let own = self.information.view((first, first), (moved, moved)) * &ones;
+        let across = self.information.view((0, first), (first, moved)) * &ones;
+        let known: Vec<usize> = (0..first).filter(|&i| self.information[(i, i)] > 0.0).collect();
+        let (unit, matrix) = self.scaled(&known, 0.0);
+        let across = DVector::from_fn(known.len(), |a, _| across[known[a]] / unit[a]);
+        let taken = matrix.cholesky().map_or(0.0, |f| across.dot(&f.solve(&across)));
+        0.5 * (own.sum() - taken).max(0.0)
     }
 
     fn deviations(&self, coordinates: &[Coordinate], x: &[f64]) -> Vec<f64> {

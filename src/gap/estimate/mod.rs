@@ -3,6 +3,7 @@
 
 pub mod candidate;
 pub mod correlation;
+pub mod exponential;
 pub mod map;
 pub mod simulation;
 pub mod start;

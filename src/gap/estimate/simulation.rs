@@ -4,10 +4,11 @@
 //! equation of each linearised step, S' = A S + B, which has the same exponential.
 
 use super::super::data::{Inputs, Recording};
-use super::super::step::{self, Exponential};
-use crate::analysis::local::Local;
+use super::exponential::{self, Exponential};
+use crate::analysis::local::{Local, Plan};
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Halvings of a step at most.
 const DEEPEST: u32 = 6;
@@ -70,8 +71,8 @@ impl Slopes {
                 column.iter_mut().zip(b.iter()).zip(sizes).for_each(|((to, b), size)| *to = b * factor / size);
             }
         }
-        step::multiply(&mut self.next, &exponential.transition, &self.states, 0.0);
-        step::multiply(&mut self.next, &exponential.integral, &self.driven, 1.0);
+        exponential::multiply(&mut self.next, &exponential.transition, &self.states, 0.0);
+        exponential::multiply(&mut self.next, &exponential.integral, &self.driven, 1.0);
         std::mem::swap(&mut self.states, &mut self.next);
     }
 }
@@ -126,6 +127,19 @@ impl Course<'_> {
     }
 }
 
+/// Outputs of a model over a recording, from its own start: signals by samples. `None` where it does not reach the end.
+pub fn from_start(plan: &Arc<Plan>, theta: &[f64], sizes: &[f64], recording: &Recording) -> Option<Vec<Vec<f64>>> {
+    let u = Inputs::new(recording).from;
+    let mut local = Local::start(plan.clone(), recording.times[0], theta, &u).ok()?;
+    let mut outputs = vec![Vec::with_capacity(recording.len()); plan.outputs()];
+    let state = local.state();
+    let mut course = Course { local: &mut local, theta, sizes, state, slopes: None };
+    course.run(recording, 0..recording.len(), |_, local, _| {
+        outputs.iter_mut().zip(&local.outputs).for_each(|(all, y)| all.push(*y));
+    })?;
+    Some(outputs)
+}
+
 struct Stepper {
     /// One for each length of step, in halvings of the distance between two samples.
     exponentials: Vec<Exponential>,
@@ -151,7 +165,7 @@ impl Stepper {
     fn new(n: usize, recording: &Recording) -> Self {
         let zeros = || DVector::zeros(n);
         Stepper {
-            exponentials: (0..=DEEPEST).map(|_| Exponential::with_ramps(n)).collect(),
+            exponentials: (0..=DEEPEST).map(|_| Exponential::new(n)).collect(),
             a: DMatrix::zeros(n, n),
             b: DMatrix::zeros(n, recording.inputs.len()),
             lengths: [0.0; DEEPEST as usize + 1],
@@ -176,7 +190,7 @@ impl Stepper {
             let part = WHOLE >> self.depth;
             let fraction = |ticks: u32| h * f64::from(ticks) / f64::from(WHOLE);
             let (after, length) = (fraction(gone), fraction(part));
-            let serves = step::as_long(length, self.lengths[self.depth as usize]);
+            let serves = exponential::as_long(length, self.lengths[self.depth as usize]);
             let mut bend = f64::INFINITY;
             if serves {
                 self.grow();
@@ -231,7 +245,7 @@ impl Stepper {
         // other lengths belong to another matrix
         self.lengths = [0.0; DEEPEST as usize + 1];
         self.lengths[self.depth as usize] = length;
-        self.exponentials[self.depth as usize].compute(&self.a, length, None);
+        self.exponentials[self.depth as usize].compute(&self.a, length);
     }
 
     /// How fast the rates grow with the inputs of this interval.
@@ -244,15 +258,15 @@ impl Stepper {
     /// A step so long after the sample at `t`, and how far the model is from linear over it.
     fn step(&mut self, course: &mut Course<'_>, t: f64, after: f64, length: f64) -> f64 {
         let exponential = &self.exponentials[self.depth as usize];
-        step::apply(&mut self.change, &exponential.integral, &self.rate, 0.0);
-        if let (Some(twice), true) = (&exponential.twice, self.ramp.iter().any(|v| *v != 0.0)) {
-            step::apply(&mut self.change, twice, &self.ramp, 1.0);
+        exponential::apply(&mut self.change, &exponential.integral, &self.rate, 0.0);
+        if self.ramp.iter().any(|v| *v != 0.0) {
+            exponential::apply(&mut self.change, &exponential.twice, &self.ramp, 1.0);
         }
         for (i, next) in self.next.iter_mut().enumerate() {
             *next = course.state[i] + self.change[i] * course.sizes[i];
         }
         self.expected.copy_from(&self.rate);
-        step::apply(&mut self.expected, &self.a, &self.change, 1.0);
+        exponential::apply(&mut self.expected, &self.a, &self.change, 1.0);
         self.expected.axpy(length, &self.ramp, 1.0);
         self.inputs.at(after + length, &mut self.u);
         if course.local.evaluate(t + after + length, &self.next, course.theta, &self.u).is_err() {

@@ -3,7 +3,7 @@
 
 use super::super::circuit::same_kind;
 use super::super::data::{Inputs, Recording};
-use super::super::step;
+use super::exponential;
 use super::simulation::{Course, Slopes};
 use crate::analysis::local::{Local, Plan};
 use nalgebra::{Cholesky, DMatrix, DVector};
@@ -136,7 +136,7 @@ impl Valued<'_> {
                 cost += error * error;
                 row.iter_mut().zip(slopes.column(i).iter()).for_each(|(to, s)| *to = s / deviation);
                 row[width] = error;
-                step::add_outer(&mut gram, 1.0, &row[..n], &row);
+                exponential::add_outer(&mut gram, 1.0, &row[..n], &row);
             }
         })?;
         let (state, slopes) = (course.state, course.slopes?.states);

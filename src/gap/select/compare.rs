@@ -120,9 +120,15 @@ pub fn signal_gap(left: &LeftOut, signal: usize, sensors: &Sensors) -> f64 {
 
 /// Noise-free gap over all signals, in parts of full scale.
 pub fn gap(left: &LeftOut, sensors: &Sensors) -> f64 {
-    let n = sensors.noise.len();
-    let one = |i: usize| (signal_gap(left, i, sensors) / sensors.full_scale[i]).powi(2);
-    ((0..n).map(one).sum::<f64>() / n.max(1) as f64).sqrt()
+    let squares: Vec<f64> = (0..sensors.noise.len()).map(|i| left.mean(i)).collect();
+    total_gap(&squares, sensors)
+}
+
+/// The same from the mean square of each signal.
+pub fn total_gap(squares: &[f64], sensors: &Sensors) -> f64 {
+    let parts = squares.iter().zip(&sensors.noise).zip(&sensors.full_scale);
+    let sum: f64 = parts.map(|((s, noise), scale)| (s - noise * noise).max(0.0) / (scale * scale)).sum();
+    (sum / squares.len().max(1) as f64).sqrt()
 }
 
 #[cfg(test)]

@@ -2,7 +2,9 @@
 
 pub mod compare;
 pub mod confirm;
+pub mod criteria;
 pub mod folds;
 pub mod models;
 pub mod screen;
 pub mod search;
+pub mod weighed;

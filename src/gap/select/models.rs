@@ -1,11 +1,12 @@
 //! Models with hypotheses attached: what is free in them, and where they begin.
 
 use super::super::effects::{Coefficient, Shape};
-use super::super::estimate::{Candidate, Coordinate, Fit};
-use super::super::hypotheses::{Hypothesis, Signal};
+use super::super::estimate::{Candidate, Coordinate};
+use super::super::hypotheses::Hypothesis;
 use super::super::policy::{ACCURACY, GRID};
 use super::super::problem::{Chosen, Problem};
 use super::compare::Sensors;
+use crate::diag::Diagnostic;
 
 /// Sizes, in usual ones, at which effects begin that make no linear model where they vanish.
 const SIZES: [f64; 3] = [0.1, 1.0, 10.0];
@@ -19,17 +20,28 @@ pub fn sensors(problem: &Problem<'_>) -> Sensors {
 
 /// A model with these causes; tolerances, where they are given, at these values.
 pub fn candidate(problem: &Problem<'_>, causes: &[Chosen], tolerances: Option<&[f64]>) -> Option<Candidate> {
-    shaped(problem, causes, tolerances, causes.len())
+    shaped(problem, causes, tolerances, causes.len()).ok()
 }
 
-/// The same where only the first so many hypotheses have free shapes.
+/// The nominal model with its tolerances free.
+///
+/// # Errors
+/// The diagnostics of the compiler.
+pub fn nominal(problem: &Problem<'_>) -> Result<Candidate, Vec<Diagnostic>> {
+    shaped(problem, &[], None, 0)
+}
+
+/// A model with these causes where only the first so many have free shapes.
+///
+/// # Errors
+/// The diagnostics of the compiler.
 pub fn shaped(
     problem: &Problem<'_>,
     causes: &[Chosen],
     tolerances: Option<&[f64]>,
     shapes: usize,
-) -> Option<Candidate> {
-    let mut model = problem.assembled(causes, &[], shapes).ok()?;
+) -> Result<Candidate, Vec<Diagnostic>> {
+    let mut model = problem.assembled(causes, &[], shapes)?;
     if let Some(values) = tolerances {
         model.theta[model.free.clone()].copy_from_slice(values);
     }
@@ -57,9 +69,8 @@ pub fn shaped(
     }
     let deviation = |(n, f): (&f64, &f64)| n.max(ACCURACY * f);
     let deviations = problem.noise_floor.iter().zip(&problem.full_scale).map(deviation).collect();
-    let unit = |s: &Signal| problem.circuit.units.get(&s.variable).cloned().unwrap_or_default();
-    let units = problem.signals.iter().map(unit).collect();
-    Some(Candidate { causes: causes.to_vec(), model, coordinates, own, units, deviations })
+    let units = problem.signals.iter().map(|s| problem.unit(s)).collect();
+    Ok(Candidate { causes: causes.to_vec(), model, coordinates, own, units, deviations })
 }
 
 /// A share of a whole is not free: an effect is there or not.
@@ -107,14 +118,4 @@ pub fn beginnings(h: &Hypothesis) -> Vec<Vec<f64>> {
         all = (0..GRID).map(|i| all[i * (count - 1) / (GRID - 1)].clone()).collect();
     }
     all
-}
-
-/// The causes of a fit with their fitted values.
-pub fn causes(fit: &Fit) -> Vec<Chosen> {
-    let theta = fit.candidate.theta(&fit.x);
-    let with = |(c, places): (&Chosen, &Vec<usize>)| Chosen {
-        hypothesis: c.hypothesis,
-        values: places.iter().map(|&p| theta[p]).collect(),
-    };
-    fit.candidate.causes.iter().zip(&fit.candidate.model.attached).map(with).collect()
 }

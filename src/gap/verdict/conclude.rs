@@ -8,8 +8,10 @@ use super::super::hypotheses::Hypothesis;
 use super::super::mistakes;
 use super::super::problem::{Chosen, Problem, Tolerance};
 use super::super::select::models;
-use super::super::select::search::{Found, Taken, Trial, Weighed, weighed};
-use super::{Drift, Effect, Estimate, Gaps, Located, Maybe, PARTING, RecordingError, Unexplained, Verdict};
+use super::super::policy::VISIBLE;
+use super::super::select::search::{Found, Taken, Trial};
+use super::super::select::weighed::{Weighed, weighed};
+use super::{Drift, EXCITING, Effect, Estimate, Gaps, Located, Maybe, PARTING, RecordingError, Term, Unexplained, Verdict};
 use super::{alternative, ratio, spots};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -46,7 +48,9 @@ impl Conclusion<'_> {
         let verdict = match () {
             () if !recording.is_empty() => "recording_error",
             () if !named.is_empty() => "effects",
+            () if found.shape.is_some() => "outside_library",
             () if !open.is_empty() => "gap_open",
+            () if found.visible < VISIBLE => "undecidable",
             () => "nothing_found",
         };
         let ambiguous = found.taken.iter().any(|t| !t.set.is_empty());
@@ -66,9 +70,13 @@ impl Conclusion<'_> {
             closed: share.map(|s| 1.0 - s),
             closed_by_effects: ratio(effects, tolerated).map(|s| 1.0 - s),
             weighed: found.trials.iter().map(|t| self.weighed(t)).collect(),
-            unexplained: Unexplained { share, place: None, shape: None },
+            unexplained: self.unexplained(share),
             open,
-            next_experiment: (verdict == "effects" && ambiguous).then(|| PARTING.to_string()),
+            next_experiment: match verdict {
+                "undecidable" => Some(EXCITING.into()),
+                "effects" if ambiguous => Some(PARTING.into()),
+                _ => None,
+            },
             seconds,
         }
     }
@@ -83,6 +91,20 @@ impl Conclusion<'_> {
 
     fn hypothesis(&self, taken: &Taken) -> &Hypothesis {
         &self.problem.hypotheses[taken.hypothesis]
+    }
+
+    /// What is left, and the shape that it has where it has one.
+    fn unexplained(&self, share: Maybe) -> Unexplained {
+        let shape = self.found.shape.as_ref().map(|s| (s, self.hypothesis(s)));
+        let term = |(taken, h): (&Taken, &Hypothesis)| {
+            let effect = h.attachments[0].effect.as_ref();
+            Term { term: effect.map_or_else(String::new, |e| e.description.clone()), closes: taken.closes }
+        };
+        Unexplained {
+            share,
+            place: shape.map(|(_, h)| h.attachments[0].place.place.clone()),
+            shape: shape.map(|s| vec![term(s)]),
+        }
     }
 
     /// The mistakes of the recordings: one of a column is in every file.
@@ -129,7 +151,7 @@ impl Conclusion<'_> {
 
     /// The held gap of the model with some of the effects, fitted anew.
     fn gap_with(&self, kept: &[usize]) -> Maybe {
-        let all = models::causes(&self.found.last.fit);
+        let all = self.found.last.fit.causes();
         let causes: Vec<Chosen> = kept.iter().map(|&i| all[i].clone()).collect();
         let candidate = models::candidate(self.problem, &causes, Some(&self.found.base.fit.tolerances()))?;
         let x = candidate.present();
@@ -189,7 +211,8 @@ impl Conclusion<'_> {
                 all.push(Located { place, node, kind, evidence, share: 0.0 });
             }
         };
-        self.found.taken.iter().for_each(|t| add(self.hypothesis(t), t.evidence));
+        let named = self.found.taken.iter().chain(&self.found.shape);
+        named.for_each(|t| add(self.hypothesis(t), t.evidence));
         for t in self.found.trials.iter().filter(|t| t.step == 1) {
             add(self.of(&t.chosen), t.found.map_or(0.0, |f| f.evidence));
         }
@@ -200,7 +223,7 @@ impl Conclusion<'_> {
 }
 
 /// Where the tolerances are at their nominal values.
-fn nominal(problem: &Problem<'_>, candidate: &Candidate) -> Vec<f64> {
+pub fn nominal(problem: &Problem<'_>, candidate: &Candidate) -> Vec<f64> {
     candidate.coordinates.iter().zip(&problem.tolerances).map(|(c, t)| c.of(t.nominal)).collect()
 }
 

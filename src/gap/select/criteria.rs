@@ -1,0 +1,226 @@
+//! When is a hypothesis taken? When left-out data are sure of it, it is worth a name and it opens nothing; of those, the
+//! simplest among what cannot be told apart. Everything else has its reason.
+
+use super::super::policy::{ACCURACY, ALPHA, DELTA, NEAR, OPENS, PROMISED, SURE};
+use super::compare::{Sensors, chances, differences, gap, loss, needed, t_statistic};
+use super::confirm::Asked;
+use super::screen::Start;
+use super::weighed::{Weighed, left_by, nats, saved};
+use std::collections::BTreeMap;
+
+/// A hypothesis beside the model of one step.
+#[derive(Clone, Debug)]
+pub struct Rival {
+    /// Index into [`Problem::hypotheses`].
+    pub hypothesis: usize,
+    /// The model with it.
+    pub model: Weighed,
+}
+
+/// Why a hypothesis was not taken; printed as it is. Gaps are parts of full scale, evidence is in nats.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Reason {
+    /// It was not fitted: others come further.
+    #[error("not fitted: others leave less after a linear step")]
+    Behind,
+    /// It was not fitted: the gap that it leaves after a linear step.
+    #[error("not fitted: a linear step leaves {0:.4} of full scale, which is not worth a name")]
+    TooLittle(f64),
+    /// Left-out data do not show that it is better: chance, evidence, and the evidence needed.
+    #[error("left-out data are not sure: chance {0:.3}, evidence {1:.1} of {2:.1} nats")]
+    NotSure(f64, f64, f64),
+    /// It closes too little.
+    #[error("closes less than is worth a name")]
+    NotWorth,
+    /// The gap over all signals grows, by this factor.
+    #[error("the gap over all signals grows to {0:.2} times what it was")]
+    Opens(f64),
+    /// The held recordings do not show the same.
+    #[error(
+        "held recordings do not confirm it: evidence {:.1} nats, gap {:.4} to {:.4} of full scale",
+        .0.evidence, .0.before, .0.after
+    )]
+    NotConfirmed(Asked),
+    /// Surely worse than the best: the gap that it leaves, and the best one's.
+    #[error("surely worse: leaves {0:.4} of full scale, the best {1:.4}")]
+    Beaten(f64, f64),
+    /// In the set of what was taken.
+    #[error("cannot be told from what was taken, which is simpler or more usual")]
+    Alike,
+}
+
+/// What left-out data say of a model with a hypothesis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Judged {
+    /// t statistic over the blocks.
+    pub t: f64,
+    /// Chance that the best of all hypotheses does as well by accident.
+    pub chance: f64,
+    /// Evidence of left-out data and prior, nats.
+    pub evidence: f64,
+    /// Gap that it leaves, in parts of full scale.
+    pub gap: f64,
+    sure: bool,
+    worth: bool,
+    opens: f64,
+}
+
+impl Judged {
+    /// Whether it may be taken.
+    pub fn accepted(&self) -> bool {
+        self.sure && self.may()
+    }
+
+    /// Whether it may be taken where other data are sure of it.
+    pub fn may(&self) -> bool {
+        self.worth && self.opens <= 1.0 + OPENS
+    }
+
+    /// Why it may not be taken.
+    pub fn refused(&self, needed: f64) -> Reason {
+        match () {
+            () if !self.sure => Reason::NotSure(self.chance, self.evidence, needed),
+            () if !self.worth => Reason::NotWorth,
+            () => Reason::Opens(self.opens),
+        }
+    }
+}
+
+/// What rivals are judged by.
+pub struct Criteria {
+    /// The sensors.
+    pub sensors: Sensors,
+    /// Noise-free gap of each signal before anything was taken.
+    pub first: Vec<f64>,
+    /// How many hypotheses there are.
+    pub count: usize,
+}
+
+impl Criteria {
+    /// Whether no signal has a gap that could shrink by as much as is worth a name, and no parameter is bent.
+    pub fn nothing_is_worth_it(&self, before: &Weighed) -> bool {
+        let left = |i: usize| left_by(&before.left[0], i, &self.sensors);
+        (0..self.first.len()).all(|i| self.least(before, i) > left(i)) && !self.is_bent(before)
+    }
+
+    /// Whether a start promises, or shows after a step, enough to be worth a fit: left-out data may see more of it.
+    pub fn may_be_worth(&self, before: &Weighed, start: &Start) -> bool {
+        let gap = |square: f64, i: usize| (square - self.sensors.noise[i].powi(2)).max(0.0).sqrt();
+        let shrinks = |i: usize| {
+            let now = gap(before.fit.mean_square(i), i);
+            let then = gap(start.leaves.squares[i].min(start.promised.squares[i]), i);
+            now - then >= PROMISED * self.least(before, i)
+        };
+        (0..self.first.len()).any(shrinks) || self.is_bent(before)
+    }
+
+    /// Whether parameters are so far off that an effect which brings them back is worth a name.
+    fn is_bent(&self, before: &Weighed) -> bool {
+        before.fit.prior() > needed(self.count)
+    }
+
+    /// By how much the gap of a signal must shrink to be worth a name: by a part of what it is and was at first, and by the
+    /// sensors' accuracy.
+    fn least(&self, before: &Weighed, signal: usize) -> f64 {
+        let now = left_by(&before.left[0], signal, &self.sensors);
+        (DELTA * now).max(0.5 * DELTA * self.first[signal]).max(ACCURACY * self.sensors.full_scale[signal])
+    }
+
+    /// Whether left-out data are sure of each rival, and whether it is worth a name.
+    pub fn judged(&self, before: &Weighed, rivals: &[Rival]) -> Vec<Judged> {
+        let (schemes, needed) = (before.left.len(), needed(self.count));
+        let mut all: Vec<Judged> = rivals.iter().map(|r| self.worth(before, &r.model)).collect();
+        for scheme in 0..schemes {
+            let d: Vec<Vec<f64>> = rivals
+                .iter()
+                .map(|r| differences(&before.left[scheme], &r.model.left[scheme], &self.sensors))
+                .collect();
+            let chances = chances(&d);
+            for (i, judged) in all.iter_mut().enumerate() {
+                let found = nats(before, &rivals[i].model, scheme, &self.sensors);
+                judged.t = judged.t.max(t_statistic(&d[i]));
+                judged.chance = judged.chance.min(chances[i]);
+                judged.evidence = judged.evidence.max(found + saved(before, &rivals[i].model));
+            }
+        }
+        for j in &mut all {
+            // blocks do not see what a model costs of the prior
+            let by_blocks = j.chance <= ALPHA / schemes as f64 && j.evidence > 0.0;
+            j.sure = by_blocks || j.evidence > needed + (schemes as f64).ln();
+        }
+        all
+    }
+
+    /// The gap of a signal must shrink, or the parameters return to their data sheet.
+    fn worth(&self, before: &Weighed, model: &Weighed) -> Judged {
+        let closes = |i: usize| {
+            let left = |w: &Weighed| left_by(&w.left[0], i, &self.sensors);
+            left(before) - left(model) >= self.least(before, i)
+        };
+        let gap = |w: &Weighed| gap(&w.left[0], &self.sensors);
+        let worth = (0..self.first.len()).any(closes) || saved(before, model) > needed(self.count);
+        let opens = gap(model) / gap(before).max(f64::MIN_POSITIVE);
+        let (t, evidence) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
+        Judged { t, chance: 1.0, evidence, gap: gap(model), sure: false, worth, opens }
+    }
+
+    /// Two models that are one for the user.
+    pub fn alike(&self, a: f64, best: f64) -> bool {
+        a <= ((1.0 + NEAR) * best).max(best + ACCURACY)
+    }
+
+    /// Whether a model is surely worse than the best.
+    pub fn worse(&self, best: &Weighed, other: &Weighed) -> bool {
+        let of = |w: &Weighed| gap(&w.left[0], &self.sensors);
+        if self.alike(of(other), of(best)) {
+            return false;
+        }
+        let t = t_statistic(&differences(&other.left[0], &best.left[0], &self.sensors));
+        t > SURE || self.ahead(other, best) > (1.0 / ALPHA).ln()
+    }
+
+    /// Nats by which left-out data and prior prefer the second model.
+    fn ahead(&self, model: &Weighed, other: &Weighed) -> f64 {
+        nats(model, other, 0, &self.sensors) + saved(model, other)
+    }
+
+    /// Mean loss over blocks and signals: what orders rivals.
+    pub fn score(&self, model: &Weighed, closed: &[f64]) -> f64 {
+        let left = &model.left[0];
+        let mut sum = 0.0;
+        for (squares, samples) in left.squares.iter().zip(&left.samples) {
+            for i in 0..closed.len() {
+                sum += samples[i] * loss(squares[i], closed[i]);
+            }
+        }
+        sum
+    }
+
+    /// The set of what cannot be told apart: those that leave hardly more than the best first, of these the simplest, then
+    /// what leaves parameters where they are known to be, then what the data prefer, then what is usual on machines.
+    pub fn order(&self, accepted: &[usize], rivals: &[Rival], reasons: &mut [Option<Reason>]) -> Vec<usize> {
+        let Some(&best) = accepted.first() else { return Vec::new() };
+        let of = |i: usize| gap(&rivals[i].model.left[0], &self.sensors);
+        let near = |i: usize| self.alike(of(i), of(best));
+        let mut set = Vec::new();
+        for &i in accepted {
+            if i != best && self.worse(&rivals[best].model, &rivals[i].model) {
+                reasons[i] = Some(Reason::Beaten(of(i), of(best)));
+            } else {
+                set.push(i);
+            }
+        }
+        let prior = |i: usize| rivals[i].model.fit.prior();
+        let least = set.iter().filter(|&&i| near(i)).map(|&i| prior(i)).fold(f64::INFINITY, f64::min);
+        let bent = |i: usize| prior(i) - least > (1.0 / ALPHA).ln();
+        let own = |i: usize| rivals[i].model.fit.candidate.own;
+        let behind = |i: usize| {
+            let as_simple = set.iter().filter(|&&k| k != i && near(k) && own(k) == own(i));
+            as_simple.map(|&k| self.ahead(&rivals[i].model, &rivals[k].model)).fold(0.0, f64::max) > (1.0 / ALPHA).ln()
+        };
+        let keys: BTreeMap<usize, _> =
+            set.iter().map(|&i| (i, (!near(i), own(i), bent(i), behind(i), rivals[i].hypothesis))).collect();
+        set.sort_by_key(|i| keys[i]);
+        set
+    }
+}

@@ -1,0 +1,74 @@
+//! Models with what they leave of left-out data, by both weightings.
+
+use super::super::estimate::{Candidate, Fit, Weights};
+use super::super::policy::{LEAST, OTHER_WEIGHTING, SETTLING};
+use super::super::problem::Problem;
+use super::compare::{Sensors, evidence, signal_gap};
+use super::folds::{LeftOut, left_out};
+
+/// A fit with what it leaves of left-out data.
+#[derive(Clone, Debug)]
+pub struct Weighed {
+    /// The fit.
+    pub fit: Fit,
+    /// By pieces, and by recordings where there are enough.
+    pub left: Vec<LeftOut>,
+}
+
+impl Weighed {
+    /// Simulates what was left out.
+    pub fn new(problem: &Problem<'_>, fit: Fit) -> Self {
+        Weighed { left: left_out(&fit, &problem.train), fit }
+    }
+}
+
+/// Both weightings: errors as they are now (tolerances hold), and as if only the sensors' noise were left (the data hold).
+/// Left-out data and the prior decide.
+pub fn weighed(problem: &Problem<'_>, sensors: &Sensors, candidate: &Candidate, x: &[f64]) -> Option<Weighed> {
+    let one = Weighed::new(problem, as_they_are(problem, candidate.clone(), x.to_vec())?);
+    Some(at_the_noise(problem, sensors, &one).unwrap_or(one))
+}
+
+/// A model fitted again with the weights that it left, until left-out data see no difference: what is not at its optimum
+/// would be improved by any effect.
+pub fn settled(problem: &Problem<'_>, sensors: &Sensors, mut model: Weighed) -> Weighed {
+    for _ in 0..SETTLING {
+        let Some(next) = weighed(problem, sensors, &model.fit.candidate, &model.fit.x) else { break };
+        if nats(&model, &next, 0, sensors) + saved(&model, &next) <= OTHER_WEIGHTING {
+            break;
+        }
+        model = next;
+    }
+    model
+}
+
+/// A fit that weighs errors as large and as correlated as it leaves them.
+pub fn as_they_are(problem: &Problem<'_>, candidate: Candidate, x: Vec<f64>) -> Option<Fit> {
+    Fit::of(candidate, x, &problem.train, &problem.full_scale, None, 2)
+}
+
+/// The fit that begins where only the sensors' noise is left, where it is better.
+pub fn at_the_noise(problem: &Problem<'_>, sensors: &Sensors, one: &Weighed) -> Option<Weighed> {
+    let white = Weights::sensors(&sensors.noise, &problem.full_scale);
+    let (candidate, x) = (one.fit.candidate.clone(), one.fit.x.clone());
+    let begun = Fit::of(candidate, x, &problem.train, &problem.full_scale, Some(white), 1)?;
+    let other = Weighed::new(problem, as_they_are(problem, begun.candidate, begun.x)?);
+    (nats(one, &other, 0, sensors) + saved(one, &other) > OTHER_WEIGHTING).then_some(other)
+}
+
+/// Evidence of left-out data for the second model, nats.
+pub fn nats(a: &Weighed, b: &Weighed, scheme: usize, sensors: &Sensors) -> f64 {
+    let tau = |i: usize| a.fit.weights.tau[i].max(b.fit.weights.tau[i]);
+    let independent: Vec<f64> = (0..sensors.noise.len()).map(|i| a.fit.samples(i) / tau(i)).collect();
+    evidence(&a.left[scheme], &b.left[scheme], &independent, sensors)
+}
+
+/// What the second model saves of the prior, nats: without an effect parameters bend, which left-out data do not see.
+pub fn saved(a: &Weighed, b: &Weighed) -> f64 {
+    a.fit.prior() - b.fit.prior()
+}
+
+/// Noise-free gap of a signal, in its unit, never quite closed.
+pub fn left_by(left: &LeftOut, signal: usize, sensors: &Sensors) -> f64 {
+    signal_gap(left, signal, sensors).max(0.1 * LEAST * sensors.full_scale[signal])
+}
