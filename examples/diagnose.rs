@@ -4,8 +4,9 @@
 #![allow(clippy::print_stdout, reason = "an example shows what it found")]
 
 use bramah::diag::Sources;
-use bramah::gap::diagnose::search;
+use bramah::gap::select::search::search;
 use bramah::gap::study::question;
+use bramah::gap::verdict::conclude;
 use bramah::gap::words::words;
 use bramah::solve::Interpolation;
 use bramah::study::Study;
@@ -93,8 +94,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut sources = Sources::default();
     let study = Study::read(&world, Path::new("study.toml"), &mut sources).value.ok_or("the study is wrong")?;
     let question = question(&world, &study, None, &mut sources).map_err(|_| "the study does not fit its model")?;
-    let found = search(&question.problem, &mut |_| ()).map_err(|_| "the model cannot follow the recordings")?;
-    let held = question.held(None, &mut sources).map_err(|_| "the held recordings cannot be read")?;
-    println!("{}", words(&found.verdict(&question.problem, &held, 0.0)));
+    let held = question.held(None, &mut sources).map_err(|_| "the held recordings cannot be read")?.recordings;
+    let found = search(&question.problem, &held, &mut |_| ()).map_err(|_| "the model cannot follow the recordings")?;
+    println!("{}", words(&conclude(&question.problem, &found, &held, 0.0)));
     Ok(())
 }

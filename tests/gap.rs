@@ -3,15 +3,14 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use bramah::diag::Sources;
-use bramah::gap::diagnose::search;
-use bramah::gap::filter::{Tape, run as run_filter};
+use bramah::gap::estimate::simulation::from_start;
 use bramah::gap::fixed::corrected;
-use bramah::gap::held::from_start;
-use bramah::gap::locate::{self, Located};
 use bramah::gap::plan::{Pair, plan};
 use bramah::gap::report::report;
+use bramah::gap::select::models;
+use bramah::gap::select::search::search;
 use bramah::gap::study::{planned, question};
-use bramah::gap::verdict::Verdict;
+use bramah::gap::verdict::{Verdict, conclude};
 use bramah::solve::Interpolation;
 use bramah::study::Study;
 use bramah::world::MemoryWorld;
@@ -176,13 +175,13 @@ fn verdict(mut world: MemoryWorld, study: &str, train: String, held: String) -> 
     let mut sources = Sources::default();
     let study = Study::read(&world, Path::new("study.toml"), &mut sources).value.unwrap();
     let question = question(&world, &study, None, &mut sources).ok().unwrap();
-    let found = search(&question.problem, &mut |_| ()).unwrap_or_else(|trouble| panic!("{trouble:?}"));
-    let held = question.held(None, &mut sources).unwrap();
-    found.verdict(&question.problem, &held, 0.0)
+    let held = question.held(None, &mut sources).unwrap().recordings;
+    let found = search(&question.problem, &held, &mut |_| ()).unwrap_or_else(|trouble| panic!("{trouble:?}"));
+    conclude(&question.problem, &found, &held, 0.0)
 }
 
 #[test]
-fn dry_friction_is_named_at_its_place_and_held_recordings_change_no_choice() {
+fn dry_friction_is_named_at_its_place_and_held_recordings_only_confirm_it() {
     let first = diagnosed(("rub.F", 3.0), 12);
     assert_eq!(first.verdict, "effects");
     let effect = &first.effects[0];
@@ -270,34 +269,6 @@ time = \"t\"
     }
 }
 
-/// What nobody told the model of, a slow force here, is drawn as the filter follows it.
-#[test]
-fn the_course_of_what_is_missing_is_estimated() {
-    let pushed = format!(
-        "{MODEL}\nmodel Pushed extends Slide.Nominal; Slide.Push other; equation
-        connect(other.flange, mass.flange); other.u = 6*sin(2.5*time); end Pushed;"
-    );
-    let mut world = MemoryWorld::single("Slide.mo", pushed);
-    let signals = [("s", "mass.s", 2e-5), ("v", "mass.v", 2e-4)];
-    for (file, seed) in [("train.csv", 11), ("held.csv", 12)] {
-        let text = stepped(&world, ("Slide.mo", "Pushed"), &[], (20.0, 0.004), &signals, seed);
-        world.add(file, text);
-    }
-    world.add("study.toml", STUDY);
-    let mut sources = Sources::default();
-    let study = Study::read(&world, Path::new("study.toml"), &mut sources).value.unwrap();
-    let problem = question(&world, &study, None, &mut sources).ok().unwrap().problem;
-    let found = search(&problem, &mut |_| ()).unwrap();
-    let recording = &problem.train[0];
-    let force = |l: &&Located| problem.disturbances[l.disturbance].attachments[0].place.place.ends_with("flange");
-    let place = found.left().iter().find(force).expect("the only node").disturbance;
-    let course = locate::course(&problem, found.tolerated().0, &[], place, recording).expect("it has values");
-    let pairs = || recording.times.iter().zip(&course).map(|(t, f)| (6.0 * (2.5 * t).sin(), f)).skip(100);
-    let rms = |squares: &mut dyn Iterator<Item = f64>| squares.sum::<f64>().sqrt();
-    let (error, size) = (rms(&mut pairs().map(|(t, f)| (t - f).powi(2))), rms(&mut pairs().map(|(t, _)| t * t)));
-    assert!(error < 0.3 * size, "{error} of {size}");
-}
-
 #[test]
 fn what_no_effect_explains_is_told_by_its_shape() {
     let verdict = diagnosed(("rub.W", 3.0), 12);
@@ -305,15 +276,16 @@ fn what_no_effect_explains_is_told_by_its_shape() {
     assert!(verdict.places[0].node.iter().any(|n| n == "mass.flange"), "{:?}", verdict.places);
     let shape = &verdict.unexplained.shape.unwrap()[0];
     assert_eq!(shape.term, "Dry friction that depends on the position, again and again along the way");
-    assert!(shape.r2 > 0.5, "{}", shape.r2);
+    assert!(shape.closes > 0.3, "{}", shape.closes);
 }
 
+/// A step of friction at a speed is steeper than any shape; in one recording left-out data are not sure of one. No effect
+/// is named for it.
 #[test]
-fn friction_above_a_speed_is_told_by_its_shape() {
+fn friction_above_a_speed_has_no_name() {
     let verdict = diagnosed(("rub.Z", 6.0), 12);
-    assert_eq!(verdict.verdict, "outside_library", "{:?}", verdict.effects);
-    let shape = &verdict.unexplained.shape.unwrap()[0];
-    assert_eq!(shape.term, "Friction that depends on the speed in a way of its own");
+    assert!(verdict.effects.is_empty(), "{:?}", verdict.effects);
+    assert!(matches!(verdict.verdict, "outside_library" | "gap_open"), "{}", verdict.verdict);
 }
 
 #[test]
@@ -337,7 +309,7 @@ fn a_periodic_force_begins_anywhere_in_its_period() {
     assert_eq!(found.verdict, "outside_library", "{found:?}");
     let term = &found.unexplained.shape.expect("a shape")[0];
     assert_eq!(term.term, "A periodic force that follows no variable");
-    assert!(term.r2 > 0.9, "{}", term.r2);
+    assert!(term.closes > 0.7, "{}", term.closes);
 }
 
 #[test]
@@ -404,9 +376,9 @@ fn a_sensor_that_comes_very_late_is_named_with_its_delay() {
     assert!((time.value - 0.08).abs() < (5.0 * time.std).max(2e-3), "{time:?}");
 }
 
-/// The filter cannot follow a sensor that loses the sign where nothing else tells it.
+/// Nothing else tells the sign.
 #[test]
-fn a_rectifying_sensor_is_named_although_the_filter_loses_it() {
+fn a_rectifying_sensor_is_named() {
     let world = MemoryWorld::single("Slide.mo", MODEL);
     let rectified = |seed: u64| {
         let text = recording(&world, ("rub.F", 0.0), seed);
@@ -466,11 +438,12 @@ fn the_corrected_model_stands_alone_and_so_does_the_page() {
     let study = Study::read(&world, Path::new("study.toml"), &mut sources).value.unwrap();
     let question = question(&world, &study, None, &mut sources).ok().unwrap();
     let problem = &question.problem;
-    let found = search(problem, &mut |_| ()).ok().unwrap();
-    let held = question.held(None, &mut sources).unwrap();
-    let verdict = found.verdict(problem, &held, 0.0);
+    let others = question.held(None, &mut sources).unwrap();
+    let held = &others.recordings;
+    let found = search(problem, held, &mut |_| ()).ok().unwrap();
+    let verdict = conclude(problem, &found, held, 0.0);
 
-    let text = corrected(problem, &found).value.unwrap();
+    let text = corrected(problem, &found.last.fit).value.unwrap();
     let alone = MemoryWorld::single("fixed.mo", text);
     let request = Request { source: "fixed.mo".into(), model: Some("Fixed".into()), ..Request::default() };
     let mut fixed = Simulation::compile(&alone, &request).unwrap();
@@ -482,7 +455,9 @@ fn the_corrected_model_stands_alone_and_so_does_the_page() {
     settings.event_rows = false;
     settings.tolerance = 1e-8;
     let run = fixed.run().unwrap().trajectory;
-    let fitted = from_start(&found.last().0.setting, &held[0]).unwrap();
+    let fit = &found.last.fit;
+    let model = &fit.candidate.model;
+    let fitted = from_start(&model.plan, &fit.candidate.theta(&fit.x), &model.sizes, &held[0]).unwrap();
     for (name, wanted) in ["s", "v"].into_iter().zip(&fitted) {
         let column = run.column(name).unwrap();
         let largest = wanted.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
@@ -490,11 +465,11 @@ fn the_corrected_model_stands_alone_and_so_does_the_page() {
         assert!(apart < 0.01 * largest, "{name}: {apart} of {largest}");
     }
 
-    let page = report(problem, &found, &verdict, &held);
+    let page = report(problem, &found, &verdict, &others);
     assert!(!page.replace("http://www.w3.org/2000/svg", "").contains("http"));
     assert!(page.matches("<p>").count() > 3, "each sentence of the verdict stands on its own");
     for part in
-        ["dry friction", "mass.flange", "spring.d", "v in m/s", "a held recording", "corrected", "dB over white"]
+        ["dry friction", "mass.flange", "spring.d", "v in m/s", "held.csv, held", "corrected", "dB over the noise"]
     {
         assert!(page.contains(part), "{part}");
     }
@@ -555,7 +530,7 @@ fn a_start_far_from_the_models_is_found_through_an_output_that_bends() {
 /// A pump that presses oil with air against a closed port: below the pressure at which its check valve closes the oil is so
 /// soft that its pressure runs away from any linear model. A coarse first reading leads there, and no further.
 #[test]
-fn soft_oil_behind_a_check_valve_does_not_lead_the_filter_astray() {
+fn soft_oil_behind_a_check_valve_does_not_lead_the_simulation_astray() {
     let rig = "
         model Rig
           extends ServoPump.DeadZone(break speed, break connect(speed.y, motor.w_ref));
@@ -598,11 +573,12 @@ fn soft_oil_behind_a_check_valve_does_not_lead_the_filter_astray() {
     let study = Study::read(&world, Path::new("study.toml"), &mut sources).value.unwrap();
     let question = question(&world, &study, None, &mut sources).ok().unwrap();
     let problem = &question.problem;
-    let model = problem.assemble(&[], &[]).unwrap();
-    let setting = model.setting(&[], &problem.noise_floor, Vec::new());
-    let pass = run_filter(&setting, &problem.train[0], 0, usize::MAX, Tape::Nothing).unwrap();
-    // 17,000 deviations where the filter goes along
-    assert!(pass.white.amax() < 10.0, "{}", pass.white.amax());
+    let nominal = models::nominal(problem).unwrap();
+    let errors = nominal.errors(&nominal.present(), &problem.train[0], Some(0)).unwrap();
+    // 17,000 deviations where it goes along
+    let farthest = |(e, n): (&Vec<f64>, &f64)| e.iter().fold(0.0_f64, |most, v| most.max(v.abs() / n));
+    let most = errors.iter().zip(&problem.noise_floor).map(farthest).fold(0.0, f64::max);
+    assert!(most < 10.0, "{most}");
 }
 
 /// A network without states, an orifice between a source and a tank, whose bench has a sensor with an offset.

@@ -9,7 +9,7 @@ use super::estimate::{Candidate, Fit, Weights};
 use super::hypotheses::{Hypothesis, Place, Signal};
 use super::policy::{ACCURACY, ALPHA, SEEN};
 use super::problem::{Chosen, Problem};
-use super::select::models::{beginnings, shaped};
+use super::select::models::{attached, beginnings};
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 use std::collections::BTreeSet;
@@ -207,7 +207,7 @@ impl Products {
 /// A model with all hypotheses that can be attached together: where all cannot, halves of halves are tried.
 fn joined(problem: &Problem<'_>, chosen: Vec<Chosen>) -> Option<Candidate> {
     let model = |chosen: &[Chosen]| {
-        let model = shaped(problem, chosen, None, 0).ok()?;
+        let model = attached(problem, chosen, None, 0, 0).ok()?;
         // what is compiled may have no values where it begins
         let first = beginning(problem.train.first()?, FEWEST);
         model.errors(&model.present(), &first, Some(0)).map(|_| model)

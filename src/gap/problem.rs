@@ -288,17 +288,7 @@ impl Problem<'_> {
                 *size = travel;
             }
         }
-        Ok(Assembled {
-            plan,
-            theta,
-            free,
-            sources,
-            attached,
-            own: Vec::new(),
-            sizes,
-            travel,
-            augmented,
-        })
+        Ok(Assembled { plan, theta, free, sources, attached, own: Vec::new(), sizes, travel, augmented })
     }
 }
 

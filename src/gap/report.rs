@@ -67,7 +67,11 @@ fn before(problem: &Problem<'_>, v: &Verdict, left: &[Left]) -> String {
     out.push_str(&table("Parameters against their tolerances", DRIFTS, &drifts(v)));
     out.push_str(&table("Places where model and bench part", PLACES, &places(v)));
     out.push_str(&table("What stays unexplained", UNEXPLAINED, &unexplained(v)));
-    out.push_str(&table("What is left of the recordings used, beside the sensors' noise", WHITE, &white(problem, left)));
+    out.push_str(&table(
+        "What is left of the recordings used, beside the sensors' noise",
+        WHITE,
+        &white(problem, left),
+    ));
     out.push_str(&table("What was weighed", WEIGHED, &weighed(v)));
     out.push_str(&not_fitted(v));
     out.push_str("<h2>Measured and simulated; spectra of what is left</h2>\n");
@@ -105,7 +109,8 @@ const GAPS: &[&str] = &["recordings", "signal", "nominal", "within tolerances", 
 const DRIFTS: &[&str] = &["parameter", "nominal", "fitted", "std", "tolerances"];
 const PLACES: &[&str] = &["place", "kind", "evidence in nats", "share", "the same place"];
 const UNEXPLAINED: &[&str] = &["share of the nominal gap", "place", "shape", "closes"];
-const WEIGHED: &[&str] = &["step", "effect", "places", "leaves, of full scale", "t", "evidence in nats", "why not taken"];
+const WEIGHED: &[&str] =
+    &["step", "effect", "places", "leaves, of full scale", "t", "evidence in nats", "why not taken"];
 const WHITE: &[&str] = &["signal", "model", "mean square (1)", "correlation of neighbours (0)", "white noise at most"];
 
 /// A table of cells that are HTML already; nothing without rows.

@@ -1,7 +1,7 @@
 within Effects.Shapes;
 model FrictionOverAngle "Dry friction that depends on the angle of the shaft"
   extends Interfaces.RotationalShunt;
-  parameter SI.Torque tau_0(nominal = 0.1) = 0 "Friction on the average";
+  parameter SI.Torque tau_0(min = 0, nominal = 0.1) = 0 "Friction on the average";
   parameter SI.Torque tau_k1(nominal = 0.1) = 0 "Cosine of its change with the turn";
   parameter SI.Torque tau_s1(nominal = 0.1) = 0 "Sine of its change with the turn";
   parameter SI.Torque tau_k2(nominal = 0.1) = 0 "Cosine of its change with half a turn";

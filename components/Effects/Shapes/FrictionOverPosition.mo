@@ -1,13 +1,13 @@
 within Effects.Shapes;
 model FrictionOverPosition "Dry friction that depends on the position"
   extends Interfaces.TranslationalShunt;
-  parameter SI.Force F_1(nominal = 100) = 0 "Friction at one end";
-  parameter SI.Force F_2(nominal = 100) = 0 "Friction at a sixth of the way";
-  parameter SI.Force F_3(nominal = 100) = 0 "Friction at a third of the way";
-  parameter SI.Force F_4(nominal = 100) = 0 "Friction at half of the way";
-  parameter SI.Force F_5(nominal = 100) = 0 "Friction at two thirds of the way";
-  parameter SI.Force F_6(nominal = 100) = 0 "Friction at five sixths of the way";
-  parameter SI.Force F_7(nominal = 100) = 0 "Friction at the other end";
+  parameter SI.Force F_1(min = 0, nominal = 100) = 0 "Friction at one end";
+  parameter SI.Force F_2(min = 0, nominal = 100) = 0 "Friction at a sixth of the way";
+  parameter SI.Force F_3(min = 0, nominal = 100) = 0 "Friction at a third of the way";
+  parameter SI.Force F_4(min = 0, nominal = 100) = 0 "Friction at half of the way";
+  parameter SI.Force F_5(min = 0, nominal = 100) = 0 "Friction at two thirds of the way";
+  parameter SI.Force F_6(min = 0, nominal = 100) = 0 "Friction at five sixths of the way";
+  parameter SI.Force F_7(min = 0, nominal = 100) = 0 "Friction at the other end";
   parameter SI.Position s_min(nominal = 1e-2) = 0 "Least position that occurs";
   parameter SI.Position s_max(nominal = 1e-2) = 1 "Greatest position that occurs";
   Real g[7] "How near each of seven positions is";

@@ -1,13 +1,13 @@
 within Effects.Shapes;
 model FrictionOverSpeed "Friction that depends on the speed in a way of its own"
   extends Interfaces.TranslationalShunt;
-  parameter SI.Force F_1(nominal = 100) = 0 "Friction at rest";
-  parameter SI.Force F_2(nominal = 100) = 0 "Friction at a sixth of the greatest speed";
-  parameter SI.Force F_3(nominal = 100) = 0 "Friction at a third of it";
-  parameter SI.Force F_4(nominal = 100) = 0 "Friction at half of it";
-  parameter SI.Force F_5(nominal = 100) = 0 "Friction at two thirds of it";
-  parameter SI.Force F_6(nominal = 100) = 0 "Friction at five sixths of it";
-  parameter SI.Force F_7(nominal = 100) = 0 "Friction at the greatest speed";
+  parameter SI.Force F_1(min = 0, nominal = 100) = 0 "Friction at rest";
+  parameter SI.Force F_2(min = 0, nominal = 100) = 0 "Friction at a sixth of the greatest speed";
+  parameter SI.Force F_3(min = 0, nominal = 100) = 0 "Friction at a third of it";
+  parameter SI.Force F_4(min = 0, nominal = 100) = 0 "Friction at half of it";
+  parameter SI.Force F_5(min = 0, nominal = 100) = 0 "Friction at two thirds of it";
+  parameter SI.Force F_6(min = 0, nominal = 100) = 0 "Friction at five sixths of it";
+  parameter SI.Force F_7(min = 0, nominal = 100) = 0 "Friction at the greatest speed";
   parameter SI.Velocity v_min(nominal = 0.003) = 0 "Least speed that occurs";
   parameter SI.Velocity v_max(nominal = 0.003) = 1 "Greatest speed that occurs";
   Real g[7] "How near each of seven speeds is";

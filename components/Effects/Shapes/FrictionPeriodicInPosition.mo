@@ -1,7 +1,7 @@
 within Effects.Shapes;
 model FrictionPeriodicInPosition "Dry friction that depends on the position, again and again along the way"
   extends Interfaces.TranslationalShunt;
-  parameter SI.Force F_0(nominal = 100) = 0 "Mean friction";
+  parameter SI.Force F_0(min = 0, nominal = 100) = 0 "Mean friction";
   parameter SI.Force F_s(nominal = 100) = 0 "Part that goes with the sine";
   parameter SI.Force F_c(nominal = 100) = 0 "Part that goes with the cosine";
   parameter SI.Position s_min(nominal = 1e-2) = 0 "Least position that occurs";

@@ -1,7 +1,7 @@
 within Effects.Shapes;
 model JumpingDrain "Leakage to the low side that opens at once above some pressure"
   extends Interfaces.HydraulicDrain;
-  parameter Real G(unit = "m3/(s.Pa)", nominal = 3e-12) = 0 "Conductance above the pressure at which it opens";
+  parameter Real G(unit = "m3/(s.Pa)", min = 0, nominal = 3e-12) = 0 "Conductance above the pressure at which it opens";
   parameter SI.Pressure p_o(nominal = 1e6) = 1e6 "Pressure difference at which it opens";
 equation
   q = 0.5*G*(p - p_0)*(1 + tanh(40*(p - p_0 - p_o)/p_o));

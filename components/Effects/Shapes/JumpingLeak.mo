@@ -1,7 +1,7 @@
 within Effects.Shapes;
 model JumpingLeak "Leakage between two ports that opens at once above some pressure difference"
   extends Interfaces.HydraulicBridge;
-  parameter Real G(unit = "m3/(s.Pa)", nominal = 3e-12) = 0 "Conductance above the pressure at which it opens";
+  parameter Real G(unit = "m3/(s.Pa)", min = 0, nominal = 3e-12) = 0 "Conductance above the pressure at which it opens";
   parameter SI.Pressure p_o(nominal = 1e6) = 1e6 "Pressure difference at which it opens";
 equation
   q = 0.5*G*dp*(1 + tanh(40*(dp - p_o)/p_o));

@@ -1,13 +1,13 @@
 within Effects.Shapes;
 model LeakOverPosition "Leakage between two ports that depends on the position of a rod"
   extends Interfaces.HydraulicBridgeAtRod;
-  parameter Real G_1(unit = "m3/(s.Pa)", nominal = 3e-12) = 0 "Conductance at one end";
-  parameter Real G_2(unit = "m3/(s.Pa)", nominal = 3e-12) = 0 "Conductance at a sixth of the way";
-  parameter Real G_3(unit = "m3/(s.Pa)", nominal = 3e-12) = 0 "Conductance at a third of the way";
-  parameter Real G_4(unit = "m3/(s.Pa)", nominal = 3e-12) = 0 "Conductance at half of the way";
-  parameter Real G_5(unit = "m3/(s.Pa)", nominal = 3e-12) = 0 "Conductance at two thirds of the way";
-  parameter Real G_6(unit = "m3/(s.Pa)", nominal = 3e-12) = 0 "Conductance at five sixths of the way";
-  parameter Real G_7(unit = "m3/(s.Pa)", nominal = 3e-12) = 0 "Conductance at the other end";
+  parameter Real G_1(unit = "m3/(s.Pa)", min = 0, nominal = 3e-12) = 0 "Conductance at one end";
+  parameter Real G_2(unit = "m3/(s.Pa)", min = 0, nominal = 3e-12) = 0 "Conductance at a sixth of the way";
+  parameter Real G_3(unit = "m3/(s.Pa)", min = 0, nominal = 3e-12) = 0 "Conductance at a third of the way";
+  parameter Real G_4(unit = "m3/(s.Pa)", min = 0, nominal = 3e-12) = 0 "Conductance at half of the way";
+  parameter Real G_5(unit = "m3/(s.Pa)", min = 0, nominal = 3e-12) = 0 "Conductance at two thirds of the way";
+  parameter Real G_6(unit = "m3/(s.Pa)", min = 0, nominal = 3e-12) = 0 "Conductance at five sixths of the way";
+  parameter Real G_7(unit = "m3/(s.Pa)", min = 0, nominal = 3e-12) = 0 "Conductance at the other end";
   parameter SI.Position s_min(nominal = 1e-2) = 0 "Least position that occurs";
   parameter SI.Position s_max(nominal = 1e-2) = 1 "Greatest position that occurs";
   Real g[7] "How near each of seven positions is";

@@ -1,13 +1,13 @@
 within Effects.Shapes;
 model ShaftFrictionOverSpeed "Friction that depends on the speed in a way of its own"
   extends Interfaces.RotationalShunt;
-  parameter SI.Torque tau_1(nominal = 0.1) = 0 "Friction at rest";
-  parameter SI.Torque tau_2(nominal = 0.1) = 0 "Friction at a sixth of the greatest speed";
-  parameter SI.Torque tau_3(nominal = 0.1) = 0 "Friction at a third of it";
-  parameter SI.Torque tau_4(nominal = 0.1) = 0 "Friction at half of it";
-  parameter SI.Torque tau_5(nominal = 0.1) = 0 "Friction at two thirds of it";
-  parameter SI.Torque tau_6(nominal = 0.1) = 0 "Friction at five sixths of it";
-  parameter SI.Torque tau_7(nominal = 0.1) = 0 "Friction at the greatest speed";
+  parameter SI.Torque tau_1(min = 0, nominal = 0.1) = 0 "Friction at rest";
+  parameter SI.Torque tau_2(min = 0, nominal = 0.1) = 0 "Friction at a sixth of the greatest speed";
+  parameter SI.Torque tau_3(min = 0, nominal = 0.1) = 0 "Friction at a third of it";
+  parameter SI.Torque tau_4(min = 0, nominal = 0.1) = 0 "Friction at half of it";
+  parameter SI.Torque tau_5(min = 0, nominal = 0.1) = 0 "Friction at two thirds of it";
+  parameter SI.Torque tau_6(min = 0, nominal = 0.1) = 0 "Friction at five sixths of it";
+  parameter SI.Torque tau_7(min = 0, nominal = 0.1) = 0 "Friction at the greatest speed";
   parameter SI.AngularVelocity w_min(nominal = 0.1) = 0 "Least speed that occurs";
   parameter SI.AngularVelocity w_max(nominal = 0.1) = 1 "Greatest speed that occurs";
   Real g[7] "How near each of seven speeds is";

@@ -66,6 +66,8 @@ impl Coordinate {
 pub struct Candidate {
     /// The hypotheses, with the values that are not free.
     pub causes: Vec<Chosen>,
+    /// Of so many, the first ones, widths are free.
+    pub taken: usize,
     /// The model.
     pub model: Assembled,
     /// What is free: tolerances first, then the hypotheses' own in their order.
@@ -287,8 +289,7 @@ impl Candidate {
     /// signal by signal. `None` where the model does not reach the end of a recording.
     pub fn groups(&self, x: &[f64], train: &[Recording], groups: &[Range<usize>]) -> Option<Vec<Vec<Products>>> {
         let common = groups.first().map_or(0, |g| g.start);
-        let mut sums: Vec<Grouped> =
-            self.deviations.iter().map(|_| Grouped::none(common, x.len(), groups)).collect();
+        let mut sums: Vec<Grouped> = self.deviations.iter().map(|_| Grouped::none(common, x.len(), groups)).collect();
         for (number, recording) in train.iter().enumerate() {
             self.run(x, recording, Some(number), true, |errors_of, slopes| {
                 let Some(slopes) = slopes else { return };

@@ -3,8 +3,8 @@
 //! small and independent, and the data speak about parameters too.
 
 use super::super::data::Recording;
-use super::super::problem::Chosen;
 use super::super::policy::{ITERATIONS, LEAST, SETTLED, SETTLED_PART, TRIALS};
+use super::super::problem::Chosen;
 use super::candidate::{Candidate, Coordinate, Errors, Evaluated, Products};
 use super::correlation;
 use nalgebra::{DMatrix, DVector};
@@ -160,9 +160,8 @@ impl Fit {
 
     /// Minus the log posterior with each signal's variance at its optimum, nats: what orders fits of one model.
     pub fn nats(&self) -> f64 {
-        let one = |i: usize| {
-            0.5 * self.samples(i) / self.weights.tau[i] * self.mean_square(i).max(f64::MIN_POSITIVE).ln()
-        };
+        let one =
+            |i: usize| 0.5 * self.samples(i) / self.weights.tau[i] * self.mean_square(i).max(f64::MIN_POSITIVE).ln();
         (0..self.weights.tau.len()).map(one).sum::<f64>() + self.prior()
     }
 
@@ -186,9 +185,24 @@ impl Fit {
         self.candidate.theta(&self.x)[self.candidate.model.free.clone()].to_vec()
     }
 
-    /// Standard deviation of each coordinate, in its units; what a bound holds has none.
+    /// Standard deviation of each coordinate, in its units; what a bound holds has none. The largest of three: from the
+    /// information, and from how far the pieces and the recordings contradict each other (White, Econometrica 48, 1980;
+    /// Liang, Zeger, Biometrika 73, 1986).
     pub fn deviations(&self) -> Vec<f64> {
-        self.system(|_, _| true).deviations(&self.candidate.coordinates, &self.x)
+        let system = self.system(|_, _| true);
+        let pieces = self.evaluated.products.iter().flatten().map(|signals| self.score([signals]));
+        let recordings = self.evaluated.products.iter().map(|pieces| self.score(pieces));
+        let scores = [pieces.collect(), recordings.collect::<Vec<_>>()];
+        system.deviations(&self.candidate.coordinates, &self.x, &scores)
+    }
+
+    /// Minus half the gradient of some pieces' weighed squares.
+    fn score<'a>(&self, pieces: impl IntoIterator<Item = &'a Vec<Products>>) -> DVector<f64> {
+        let mut sum = DVector::zeros(self.x.len());
+        for signals in pieces {
+            signals.iter().enumerate().for_each(|(i, p)| sum.axpy(self.weights.weight(i), &p.errors, 1.0));
+        }
+        sum
     }
 }
 
@@ -258,14 +272,26 @@ impl System {
         0.5 * (own.sum() - taken).max(0.0)
     }
 
-    fn deviations(&self, coordinates: &[Coordinate], x: &[f64]) -> Vec<f64> {
+    fn deviations(&self, coordinates: &[Coordinate], x: &[f64], scores: &[Vec<DVector<f64>>]) -> Vec<f64> {
         let free = self.free(coordinates, x);
         let mut deviations = vec![0.0; x.len()];
         let (unit, matrix) = self.scaled(&free, 0.0);
-        if let Some(inverse) = matrix.try_inverse() {
-            for (a, &i) in free.iter().enumerate() {
-                deviations[i] = inverse[(a, a)].max(0.0).sqrt() / unit[a];
-            }
+        let Some(inverse) = matrix.try_inverse() else { return deviations };
+        let mut variances: DVector<f64> = inverse.diagonal();
+        for groups in scores.iter().filter(|g| g.len() > 1) {
+            let count = groups.len() as f64;
+            let mean = groups.iter().fold(DVector::zeros(x.len()), |sum, g| sum + g) / count;
+            let moved = |g: &DVector<f64>| {
+                &inverse * DVector::from_fn(free.len(), |a, _| (g[free[a]] - mean[free[a]]) / unit[a])
+            };
+            let spread = groups
+                .iter()
+                .map(moved)
+                .fold(DVector::zeros(free.len()), |sum: DVector<f64>, m| sum + m.component_mul(&m));
+            variances.zip_apply(&(spread * (count / (count - 1.0))), |v, s| *v = v.max(s));
+        }
+        for (a, &i) in free.iter().enumerate() {
+            deviations[i] = variances[a].max(0.0).sqrt() / unit[a];
         }
         deviations
     }

@@ -13,6 +13,8 @@ use std::collections::BTreeMap;
 pub struct Rival {
     /// Index into [`Problem::hypotheses`].
     pub hypothesis: usize,
+    /// At how many places it acts.
+    pub places: usize,
     /// The model with it.
     pub model: Weighed,
 }
@@ -180,7 +182,7 @@ impl Criteria {
     }
 
     /// Nats by which left-out data and prior prefer the second model.
-    fn ahead(&self, model: &Weighed, other: &Weighed) -> f64 {
+    pub fn ahead(&self, model: &Weighed, other: &Weighed) -> f64 {
         nats(model, other, 0, &self.sensors) + saved(model, other)
     }
 
@@ -196,7 +198,7 @@ impl Criteria {
         sum
     }
 
-    /// The set of what cannot be told apart: those that leave hardly more than the best first, of these the simplest, then
+    /// The set of what cannot be told apart: those that leave hardly more than the best first, of these the simplest (fewest coefficients, fewest places), then
     /// what leaves parameters where they are known to be, then what the data prefer, then what is usual on machines.
     pub fn order(&self, accepted: &[usize], rivals: &[Rival], reasons: &mut [Option<Reason>]) -> Vec<usize> {
         let Some(&best) = accepted.first() else { return Vec::new() };
@@ -213,13 +215,13 @@ impl Criteria {
         let prior = |i: usize| rivals[i].model.fit.prior();
         let least = set.iter().filter(|&&i| near(i)).map(|&i| prior(i)).fold(f64::INFINITY, f64::min);
         let bent = |i: usize| prior(i) - least > (1.0 / ALPHA).ln();
-        let own = |i: usize| rivals[i].model.fit.candidate.own;
+        let simple = |i: usize| (rivals[i].model.fit.candidate.own, rivals[i].places);
         let behind = |i: usize| {
-            let as_simple = set.iter().filter(|&&k| k != i && near(k) && own(k) == own(i));
+            let as_simple = set.iter().filter(|&&k| k != i && near(k) && simple(k) == simple(i));
             as_simple.map(|&k| self.ahead(&rivals[i].model, &rivals[k].model)).fold(0.0, f64::max) > (1.0 / ALPHA).ln()
         };
         let keys: BTreeMap<usize, _> =
-            set.iter().map(|&i| (i, (!near(i), own(i), bent(i), behind(i), rivals[i].hypothesis))).collect();
+            set.iter().map(|&i| (i, (!near(i), simple(i), bent(i), behind(i), rivals[i].hypothesis))).collect();
         set.sort_by_key(|i| keys[i]);
         set
     }

@@ -10,17 +10,23 @@ use crate::diag::Diagnostic;
 
 /// Sizes, in usual ones, at which effects begin that make no linear model where they vanish.
 const SIZES: [f64; 3] = [0.1, 1.0, 10.0];
-/// A shape may lie so many times beyond its grid.
+/// A shape may lie so many times beyond its grid, a width so many times beside its value.
 const BEYOND: f64 = 3.0;
+const WIDER: f64 = 10.0;
 
 /// The sensors of a problem.
 pub fn sensors(problem: &Problem<'_>) -> Sensors {
     Sensors { noise: problem.noise_floor.clone(), full_scale: problem.full_scale.clone() }
 }
 
-/// A model with these causes; tolerances, where they are given, at these values.
-pub fn candidate(problem: &Problem<'_>, causes: &[Chosen], tolerances: Option<&[f64]>) -> Option<Candidate> {
-    shaped(problem, causes, tolerances, causes.len()).ok()
+/// A model with these causes, of the first so many with free widths; tolerances, where they are given, at these values.
+pub fn candidate(
+    problem: &Problem<'_>,
+    causes: &[Chosen],
+    tolerances: Option<&[f64]>,
+    taken: usize,
+) -> Option<Candidate> {
+    attached(problem, causes, tolerances, taken, causes.len()).ok()
 }
 
 /// The nominal model with its tolerances free.
@@ -28,17 +34,18 @@ pub fn candidate(problem: &Problem<'_>, causes: &[Chosen], tolerances: Option<&[
 /// # Errors
 /// The diagnostics of the compiler.
 pub fn nominal(problem: &Problem<'_>) -> Result<Candidate, Vec<Diagnostic>> {
-    shaped(problem, &[], None, 0)
+    attached(problem, &[], None, 0, 0)
 }
 
-/// A model with these causes where only the first so many have free shapes.
+/// The same where only the first so many have free shapes at all.
 ///
 /// # Errors
 /// The diagnostics of the compiler.
-pub fn shaped(
+pub fn attached(
     problem: &Problem<'_>,
     causes: &[Chosen],
     tolerances: Option<&[f64]>,
+    taken: usize,
     shapes: usize,
 ) -> Result<Candidate, Vec<Diagnostic>> {
     let mut model = problem.assembled(causes, &[], shapes)?;
@@ -53,7 +60,7 @@ pub fn shaped(
         coordinates.push(c);
     }
     let mut own = 0;
-    for (cause, places) in causes.iter().zip(&model.attached) {
+    for (k, (cause, places)) in causes.iter().zip(&model.attached).enumerate() {
         let h = hypothesis(cause);
         if h.family == "parameter" {
             coordinates[places[0]].prior = None;
@@ -62,7 +69,8 @@ pub fn shaped(
         }
         let (linear, shaped) = places.split_at(h.coefficients.len());
         let coefficients = h.coefficients.iter().zip(linear).filter_map(|(c, &p)| coefficient(c, p));
-        let shapes = h.shapes.iter().zip(shaped).filter_map(|(s, &p)| shape(s, p));
+        let is_taken = k < taken;
+        let shapes = h.shapes.iter().zip(shaped).filter_map(|(s, &p)| shape(s, p, is_taken));
         let of_cause: Vec<Coordinate> = coefficients.chain(shapes).collect();
         own += of_cause.len();
         coordinates.extend(of_cause);
@@ -70,7 +78,7 @@ pub fn shaped(
     let deviation = |(n, f): (&f64, &f64)| n.max(ACCURACY * f);
     let deviations = problem.noise_floor.iter().zip(&problem.full_scale).map(deviation).collect();
     let units = problem.signals.iter().map(|s| problem.unit(s)).collect();
-    Ok(Candidate { causes: causes.to_vec(), model, coordinates, own, units, deviations })
+    Ok(Candidate { causes: causes.to_vec(), taken, model, coordinates, own, units, deviations })
 }
 
 /// A share of a whole is not free: an effect is there or not.
@@ -82,13 +90,18 @@ fn coefficient(c: &Coefficient, parameter: usize) -> Option<Coordinate> {
     })
 }
 
-/// A shape with one value is a width.
-fn shape(s: &Shape, parameter: usize) -> Option<Coordinate> {
+/// A shape with one value is a width: it is free once its effect is taken, so that no second effect makes up for a corner
+/// of another form.
+fn shape(s: &Shape, parameter: usize, is_taken: bool) -> Option<Coordinate> {
     let (least, most) = s.grid.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, m), x| (l.min(*x), m.max(*x)));
-    if s.grid.len() < 2 {
-        return None;
-    }
     let (min, max) = (s.min.unwrap_or(f64::NEG_INFINITY), s.max.unwrap_or(f64::INFINITY));
+    if s.grid.len() < 2 {
+        let free = is_taken && least > 0.0;
+        return free.then(|| {
+            let width = Coordinate::by_logarithm(parameter, min.max(least / WIDER), max.min(most * WIDER));
+            Coordinate { prior: Some((least.ln(), WIDER.ln())), ..width }
+        });
+    }
     Some(if least > 0.0 {
         Coordinate::by_logarithm(parameter, min.max(least / BEYOND), max.min(most * BEYOND))
     } else {

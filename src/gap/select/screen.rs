@@ -10,7 +10,7 @@ use super::super::hypotheses::Hypothesis;
 use super::super::policy::{DAMPINGS, FITTED, FITTED_WITHOUT, OTHER_WEIGHTING, STARTS, STEPPED};
 use super::super::problem::{Chosen, Problem};
 use super::compare::{Sensors, total_gap};
-use super::models::{beginnings, candidate, shaped};
+use super::models::{self, beginnings, candidate};
 use nalgebra::DVector;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -107,9 +107,8 @@ pub fn screened(ground: &Ground<'_>, open: &[usize]) -> Screen {
 
 /// Whether the model with a hypothesis is at its first values the model without it.
 fn vanishes(h: &Hypothesis, model: &Candidate, before: &Fit) -> bool {
-    let off = |c: &Coefficient| {
-        c.whole().is_none() && c.min.is_none_or(|m| m <= c.off) && c.max.is_none_or(|m| m >= c.off)
-    };
+    let off =
+        |c: &Coefficient| c.whole().is_none() && c.min.is_none_or(|m| m <= c.off) && c.max.is_none_or(|m| m >= c.off);
     let states = model.model.plan.states() == before.candidate.model.plan.states();
     h.family == "parameter" || !h.changes_order && states && h.coefficients.iter().all(off)
 }
@@ -201,7 +200,7 @@ impl Ground<'_> {
         }
         let mut causes = self.before.causes();
         causes.push(Chosen { hypothesis, values: values.first()?.clone() });
-        let first = candidate(self.problem, &causes, Some(&tolerances))?;
+        let first = candidate(self.problem, &causes, Some(&tolerances), self.before.candidate.taken)?;
         let with = |values: &Vec<f64>| {
             let mut candidate = first.clone();
             if let (Some(places), false) = (candidate.model.attached.last(), is_parameter) {
@@ -257,7 +256,8 @@ impl Ground<'_> {
         let mut causes = self.before.causes();
         let shapes = causes.len();
         causes.extend(some.iter().cloned());
-        let model = shaped(self.problem, &causes, Some(&self.before.tolerances()), shapes).ok()?;
+        let taken = self.before.candidate.taken;
+        let model = models::attached(self.problem, &causes, Some(&self.before.tolerances()), taken, shapes).ok()?;
         let mut first = self.before.x.len();
         let group = |c: &Chosen| {
             let from = first;

@@ -99,11 +99,7 @@ struct Search<'a> {
 ///
 /// # Errors
 /// [`Trouble`].
-pub fn search(
-    problem: &Problem<'_>,
-    held: &[Recording],
-    progress: &mut dyn FnMut(Stage),
-) -> Result<Found, Trouble> {
+pub fn search(problem: &Problem<'_>, held: &[Recording], progress: &mut dyn FnMut(Stage)) -> Result<Found, Trouble> {
     progress(Stage::Tolerances);
     let sensors = models::sensors(problem);
     let nominal = models::nominal(problem).map_err(Trouble::Model)?;
@@ -116,7 +112,7 @@ pub fn search(
     let (mut last, mut taken) = (base.clone(), Vec::new());
     for step in 1..=EFFECTS {
         let Some((chosen, effect)) = search.step(step, &last, progress) else { break };
-        last = settled(problem, &search.criteria.sensors, chosen);
+        last = settled(problem, &search.criteria.sensors, search.widened(chosen));
         taken.push(effect);
         search.drop_needless(&mut last, &mut taken);
         if search.is_recording_error(&taken) {
@@ -145,12 +141,7 @@ impl Search<'_> {
     }
 
     /// Looks for one more effect.
-    fn step(
-        &mut self,
-        step: usize,
-        before: &Weighed,
-        progress: &mut dyn FnMut(Stage),
-    ) -> Option<(Weighed, Taken)> {
+    fn step(&mut self, step: usize, before: &Weighed, progress: &mut dyn FnMut(Stage)) -> Option<(Weighed, Taken)> {
         progress(Stage::Screen(step));
         let open = self.open(&before.fit);
         let screened = self.screened(step, before, &open);
@@ -231,7 +222,8 @@ impl Search<'_> {
         let one = |(hypothesis, starts): Screened| {
             let fits = starts.into_iter().filter_map(|s| as_they_are(problem, s.candidate, s.x));
             let fit = fits.min_by(|a, b| a.nats().total_cmp(&b.nats()))?;
-            Some(Rival { hypothesis, model: Weighed::new(problem, fit) })
+            let places = problem.hypotheses[hypothesis].attachments.len();
+            Some(Rival { hypothesis, places, model: Weighed::new(problem, fit) })
         };
         let mut rivals: Vec<Rival> = screened.into_par_iter().filter_map(one).collect();
         rivals.sort_by(|a, b| gap(&a.model.left[0], sensors).total_cmp(&gap(&b.model.left[0], sensors)));
@@ -299,8 +291,12 @@ impl Search<'_> {
         rivals.sort_by(|a, b| score(a).total_cmp(&score(b)));
     }
 
-    /// Why held recordings do not confirm a model; nothing where they do, or there are none.
+    /// Why held recordings do not confirm a model; nothing where they do, or there are none, or the effect has values of its
+    /// own in each recording.
     fn unconfirmed(&self, before: &Weighed, model: &Weighed) -> Option<Reason> {
+        if !model.fit.candidate.model.own.is_empty() {
+            return None;
+        }
         let asked = ask(&before.fit, &model.fit, self.held, &self.criteria.sensors)?;
         let confirmed = asked.confirms(saved(before, model), self.criteria.count);
         (!confirmed).then_some(Reason::NotConfirmed(asked))
@@ -325,13 +321,24 @@ impl Search<'_> {
         None
     }
 
+    /// The model with the widths of everything that was taken free, where that is better.
+    fn widened(&self, chosen: Weighed) -> Weighed {
+        let causes = chosen.fit.causes();
+        let wider = models::candidate(self.problem, &causes, Some(&chosen.fit.tolerances()), causes.len());
+        let fitted = wider
+            .filter(|c| c.coordinates.len() > chosen.fit.x.len())
+            .and_then(|c| weighed(self.problem, &self.criteria.sensors, &c, &c.present()));
+        let better = |f: &Weighed| self.criteria.ahead(&chosen, f) > 0.0;
+        fitted.filter(better).unwrap_or(chosen)
+    }
+
     /// Drops what was taken before and is not missed any more.
     fn drop_needless(&self, last: &mut Weighed, taken: &mut Vec<Taken>) {
         let mut i = 0;
         while i + 1 < taken.len() {
             let mut causes = last.fit.causes();
             causes.remove(i);
-            let without = models::candidate(self.problem, &causes, Some(&last.fit.tolerances()));
+            let without = models::candidate(self.problem, &causes, Some(&last.fit.tolerances()), causes.len());
             let fitted = without.and_then(|c| weighed(self.problem, &self.criteria.sensors, &c, &c.present()));
             match fitted.filter(|f| !self.criteria.worse(last, f)) {
                 Some(fitted) => {

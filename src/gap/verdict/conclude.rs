@@ -6,12 +6,14 @@ use super::super::estimate::candidate::Errors;
 use super::super::figures::{self, Left};
 use super::super::hypotheses::Hypothesis;
 use super::super::mistakes;
+use super::super::policy::VISIBLE;
 use super::super::problem::{Chosen, Problem, Tolerance};
 use super::super::select::models;
-use super::super::policy::VISIBLE;
 use super::super::select::search::{Found, Taken, Trial};
 use super::super::select::weighed::{Weighed, weighed};
-use super::{Drift, EXCITING, Effect, Estimate, Gaps, Located, Maybe, PARTING, RecordingError, Term, Unexplained, Verdict};
+use super::{
+    Drift, EXCITING, Effect, Estimate, Gaps, Located, Maybe, PARTING, RecordingError, Term, Unexplained, Verdict,
+};
 use super::{alternative, ratio, spots};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -153,7 +155,8 @@ impl Conclusion<'_> {
     fn gap_with(&self, kept: &[usize]) -> Maybe {
         let all = self.found.last.fit.causes();
         let causes: Vec<Chosen> = kept.iter().map(|&i| all[i].clone()).collect();
-        let candidate = models::candidate(self.problem, &causes, Some(&self.found.base.fit.tolerances()))?;
+        let candidate =
+            models::candidate(self.problem, &causes, Some(&self.found.base.fit.tolerances()), causes.len())?;
         let x = candidate.present();
         let Weighed { fit, .. } = weighed(self.problem, &models::sensors(self.problem), &candidate, &x)?;
         self.left(&fit.candidate, &fit.x).total(&self.problem.full_scale)
