@@ -36,6 +36,14 @@ fn finds(bench: &str, recordings: &str, families: &[&str], place: &str, closes: 
     assert!(first["closes_alone"].as_f64().unwrap() > closes, "{first:#}");
 }
 
+/// No effect of another family is named.
+fn names_only(bench: &str, recordings: &str, families: &[&str]) {
+    let Some(verdict) = verdict(bench, "Nominal", recordings) else { return };
+    for effect in verdict["effects"].as_array().unwrap() {
+        assert!(effect["family"].as_str().is_some_and(|f| families.contains(&f)), "{effect:#}");
+    }
+}
+
 /// No effect is claimed that closes more than a tenth of the held gap.
 fn claims_nothing(bench: &str, recordings: &str) {
     let Some(verdict) = verdict(bench, "Complete", recordings) else { return };
@@ -52,8 +60,8 @@ fn coupled_drives() {
 
 #[test]
 fn cascaded_tanks() {
-    // the dead zone of the pump is missing too: without it the overflow alone closes little
-    finds("CascadedTanks", "cascaded_tanks", &["overflow"], "lower.port", 0.05);
+    // overflow and dead zone only work together, and one recording has few independent samples: nothing is sure
+    names_only("CascadedTanks", "cascaded_tanks", &["overflow", "dead_zone"]);
     claims_nothing("CascadedTanks", "cascaded_tanks");
 }
 

@@ -122,7 +122,7 @@ mod tests {
         assert!((left.signal(0).unwrap() - (18.0_f64 / 5.0).sqrt()).abs() < 1e-15);
         assert!((left.total(&[2.0]).unwrap() - (18.0_f64 / 5.0).sqrt() / 2.0).abs() < 1e-15);
         assert_eq!(left.wider(0, 1.0), 1);
-        let stopped = Left::of(&[run(&[0.0]), None]);
+        let stopped = Left::of(&[run(&[3.0]), None]);
         assert_eq!((stopped.signal(0), stopped.total(&[1.0]), stopped.wider(0, 1.0)), (None, None, 2));
     }
 }

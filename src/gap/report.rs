@@ -10,7 +10,7 @@ use super::select::search::Found;
 use super::study::Held;
 use super::verdict::{Columns, Effect, Maybe, Side, SignalGap, Verdict, Weighed, nominal};
 use super::whiteness::{Whiteness, whiteness};
-use super::words::{distance, findings, gap_row, number, percent, rest};
+use super::words::{distance, estimate, findings, gap_row, number, percent, rest};
 use crate::compile::flatten;
 use crate::plot::network::{self, Mark};
 use crate::plot::svg::escape;
@@ -134,11 +134,8 @@ fn table(title: &str, heads: &[&str], rows: &[Vec<String>]) -> String {
 
 fn effects(v: &Verdict) -> Vec<Vec<String>> {
     let row = |e: &Effect| {
-        let parameters: Vec<String> = e
-            .parameters
-            .iter()
-            .map(|(n, p)| escape(format!("{n} = {} ± {} {}", number(p.value), number(p.std), p.unit).trim_end()))
-            .collect();
+        let parameters: Vec<String> =
+            e.parameters.iter().map(|(n, p)| escape(&format!("{n} = {}", estimate(p, "±")))).collect();
         let others: Vec<String> = e
             .indistinguishable
             .iter()

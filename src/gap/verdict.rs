@@ -57,9 +57,9 @@ pub struct RecordingError {
     pub file: String,
     /// The signal.
     pub signal: String,
-    /// `sign`, `factor`, `swap`, `shift` or `stuck`.
+    /// `sign` or `factor`.
     pub error: &'static str,
-    /// The factor, the delay in s, or nothing of interest.
+    /// What it is times what it should be.
     pub value: f64,
 }
 
@@ -96,9 +96,9 @@ pub struct Effect {
     pub family: String,
     /// Where.
     pub places: Vec<Spot>,
-    /// Nats gained when it was accepted.
+    /// Evidence of left-out data and tolerances when it was taken, nats.
     pub evidence: f64,
-    /// Block-wise Vuong statistic.
+    /// Statistic over blocks of left-out data: mean gain over its standard error.
     pub t: f64,
     /// Part of the held gap (behind tolerances) that it closes alone.
     pub closes_alone: Maybe,

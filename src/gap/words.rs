@@ -1,6 +1,6 @@
 //! The verdict in words, one screen of them.
 
-use super::verdict::{Effect, Maybe, OpenGap, SignalGap, Verdict};
+use super::verdict::{Effect, Estimate, Maybe, OpenGap, SignalGap, Verdict};
 use std::fmt::Write;
 
 /// What the diagnosis found, for people: findings, the gap as a table, what is left.
@@ -14,10 +14,7 @@ pub(super) fn findings(v: &Verdict) -> String {
     for r in &v.recording {
         let what = match r.error {
             "sign" => "has the wrong sign".to_string(),
-            "factor" => format!("is {} times what it should be", number(r.value)),
-            "swap" => "is swapped with another column".to_string(),
-            "stuck" => "is stuck".to_string(),
-            _ => "is shifted".to_string(),
+            _ => format!("is {} times what it should be", number(r.value)),
         };
         let _ = writeln!(text, "The recording `{}` is wrong: `{}` {what}.", r.file, r.signal);
     }
@@ -149,18 +146,14 @@ fn quantity(v: f64, unit: &str) -> String {
 
 fn effect(i: usize, e: &Effect) -> String {
     let places: Vec<String> = e.places.iter().map(|p| format!("`{}`", p.place)).collect();
-    let values: Vec<String> = e
-        .parameters
-        .iter()
-        .map(|(n, p)| format!("{n} = {} +- {} {}", number(p.value), number(p.std), p.unit))
-        .collect();
+    let values: Vec<String> = e.parameters.iter().map(|(n, p)| format!("{n} = {}", estimate(p, "+-"))).collect();
     let mut text = format!(
         "{}. {} ({}) at {}: {}. Evidence {:.0} nats, t = {:.1}.\n",
         i + 1,
         e.family.replace('_', " "),
         e.effect,
         places.join(" and "),
-        values.join(", ").trim_end(),
+        values.join(", "),
         e.evidence,
         e.t
     );
@@ -180,6 +173,13 @@ fn effect(i: usize, e: &Effect) -> String {
         let _ = writeln!(text, "   These data cannot tell it from {}.", others.join(", "));
     }
     text
+}
+
+/// A value with its deviation and unit; one that was not free has none.
+pub(super) fn estimate(p: &Estimate, sign: &str) -> String {
+    let deviation = if p.std > 0.0 { format!(" {sign} {}", number(p.std)) } else { String::new() };
+    let fixed = if p.std > 0.0 { "" } else { " (fixed)" };
+    format!("{}{deviation} {}", number(p.value), p.unit).trim_end().to_string() + fixed
 }
 
 /// How far an alternative is from what is named, in words. One that is ahead has more parameters or states, or cuts a

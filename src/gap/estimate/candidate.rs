@@ -9,6 +9,7 @@ use super::map::Weights;
 use super::simulation::Course;
 use super::start::Valued;
 use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 use std::ops::Range;
 
 /// Something that may be chosen: a parameter in its tolerance, a coefficient or shape of an effect.
@@ -223,8 +224,13 @@ impl Candidate {
     /// What the model leaves of a recording: of the train recordings the `number`-th, or any other. `None` where it does
     /// not reach the end.
     pub fn errors(&self, x: &[f64], recording: &Recording, number: Option<usize>) -> Option<Errors> {
+        self.errors_to(x, recording, number, recording.len())
+    }
+
+    /// The same of the samples before `end`.
+    pub fn errors_to(&self, x: &[f64], recording: &Recording, number: Option<usize>, end: usize) -> Option<Errors> {
         let mut errors = vec![Vec::with_capacity(recording.len()); self.deviations.len()];
-        self.run(x, recording, number, false, |errors_of, _| {
+        self.run(x, recording, number, end, false, |errors_of, _| {
             errors.iter_mut().zip(errors_of).for_each(|(all, e)| all.push(*e));
         })?;
         Some(errors)
@@ -251,38 +257,41 @@ impl Candidate {
     /// When the simulation of a train recording stops before its end, s.
     pub fn stops(&self, x: &[f64], recording: &Recording) -> Option<f64> {
         let mut sample = recording.settled();
-        let ends = self.run(x, recording, None, false, |_, _| sample += 1);
+        let ends = self.run(x, recording, None, recording.len(), false, |_, _| sample += 1);
         ends.is_none().then(|| recording.times[sample.min(recording.len() - 1)])
     }
 
     /// What the model leaves of the train recordings. `None` where it does not reach the end of one.
     pub fn all_errors(&self, x: &[f64], train: &[Recording]) -> Option<Vec<Errors>> {
-        train.iter().enumerate().map(|(i, r)| self.errors(x, r, Some(i))).collect()
+        train.par_iter().enumerate().map(|(i, r)| self.errors(x, r, Some(i))).collect()
     }
 
     /// The same with slopes.
     pub fn evaluate(&self, x: &[f64], train: &[Recording]) -> Option<Evaluated> {
-        let (mut errors, mut products) = (Vec::new(), Vec::new());
-        let (signals, width) = (self.deviations.len(), self.coordinates.len());
-        for (number, recording) in train.iter().enumerate() {
-            let samples = recording.len() - recording.settled() - 1;
-            let mut own = vec![Vec::with_capacity(samples); signals];
-            let mut sums = vec![vec![Products::none(width); signals]; PIECES];
-            let mut sample = 0;
-            self.run(x, recording, Some(number), true, |errors_of, slopes| {
-                let into = &mut sums[piece(sample, samples)];
-                sample += 1;
-                for (i, e) in errors_of.iter().enumerate() {
-                    own[i].push(*e);
-                    if let (true, Some(slopes)) = (e.is_finite(), slopes) {
-                        into[i].add(slopes.column(i).as_slice(), *e);
-                    }
-                }
-            })?;
-            errors.push(own);
-            products.push(sums);
-        }
+        let one = |(i, r): (usize, &Recording)| self.evaluate_one(x, r, i);
+        let all: Option<Vec<_>> = train.par_iter().enumerate().map(one).collect();
+        let (errors, products) = all?.into_iter().unzip();
         Some(Evaluated { errors, products })
+    }
+
+    /// Errors of the `number`-th train recording, and the sums of its pieces and signals.
+    fn evaluate_one(&self, x: &[f64], recording: &Recording, number: usize) -> Option<(Errors, Vec<Vec<Products>>)> {
+        let (signals, width) = (self.deviations.len(), self.coordinates.len());
+        let samples = recording.len() - recording.settled() - 1;
+        let mut errors = vec![Vec::with_capacity(samples); signals];
+        let mut sums = vec![vec![Products::none(width); signals]; PIECES];
+        let mut sample = 0;
+        self.run(x, recording, Some(number), recording.len(), true, |errors_of, slopes| {
+            let into = &mut sums[piece(sample, samples)];
+            sample += 1;
+            for (i, e) in errors_of.iter().enumerate() {
+                errors[i].push(*e);
+                if let (true, Some(slopes)) = (e.is_finite(), slopes) {
+                    into[i].add(slopes.column(i).as_slice(), *e);
+                }
+            }
+        })?;
+        Some((errors, sums))
     }
 
     /// Groups of coordinates that are tried one at a time beside those in front of them all: of each the sums with these,
@@ -291,7 +300,7 @@ impl Candidate {
         let common = groups.first().map_or(0, |g| g.start);
         let mut sums: Vec<Grouped> = self.deviations.iter().map(|_| Grouped::none(common, x.len(), groups)).collect();
         for (number, recording) in train.iter().enumerate() {
-            self.run(x, recording, Some(number), true, |errors_of, slopes| {
+            self.run(x, recording, Some(number), recording.len(), true, |errors_of, slopes| {
                 let Some(slopes) = slopes else { return };
                 for (i, (sums, e)) in sums.iter_mut().zip(errors_of).enumerate().filter(|(_, (_, e))| e.is_finite()) {
                     sums.add(slopes.column(i).as_slice(), *e, groups);
@@ -306,6 +315,7 @@ impl Candidate {
         x: &[f64],
         recording: &Recording,
         number: Option<usize>,
+        end: usize,
         slopes: bool,
         mut at: impl FnMut(&[f64], Option<&DMatrix<f64>>),
     ) -> Option<()> {
@@ -332,7 +342,7 @@ impl Candidate {
             state: begun.state,
             slopes: begun.slopes,
         };
-        course.run(recording, from..recording.len(), |k, local, slopes| {
+        course.run(recording, from..end.max(from + 1), |k, local, slopes| {
             // the sample at which the run begins is known
             if k == from {
                 return;

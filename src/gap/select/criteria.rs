@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 /// A hypothesis beside the model of one step.
 #[derive(Clone, Debug)]
 pub struct Rival {
-    /// Index into [`Problem::hypotheses`].
+    /// Which of the problem's hypotheses.
     pub hypothesis: usize,
     /// At how many places it acts.
     pub places: usize,

@@ -80,7 +80,8 @@ fn errors(fit: &Fit, train: &[Recording], scheme: usize) -> Vec<Errors> {
             }
             let samples = own.first().map_or(0, Vec::len);
             let out = |s: usize| fold(scheme, number, piece(s, samples)) == k;
-            let found = fit.candidate.errors(&x, recording, Some(number));
+            let Some(last) = (0..samples).rev().find(|s| out(*s)) else { continue };
+            let found = fit.candidate.errors_to(&x, recording, Some(number), recording.len() - samples + last + 1);
             for (i, signal) in own.iter_mut().enumerate() {
                 for (s, e) in signal.iter_mut().enumerate().filter(|(s, e)| out(*s) && !e.is_nan()) {
                     *e = found.as_ref().map_or(f64::INFINITY, |f| f[i][s]);

@@ -20,6 +20,9 @@ const TOGETHER: usize = 64;
 /// Hypotheses that are stepped before those that promise less are looked at again.
 const ROUND: usize = 8;
 
+/// Starts that are nearer in all coordinates, in their units, are one.
+const NEAR_BY: f64 = 0.1;
+
 /// A model to which hypotheses are added.
 #[derive(Clone, Copy)]
 pub struct Ground<'a> {
@@ -41,6 +44,13 @@ pub struct Start {
     pub leaves: Leaves,
     /// What its linear model promised to leave.
     pub promised: Leaves,
+}
+
+impl Start {
+    /// Whether it is not where another one is, of the same hypothesis.
+    fn is_elsewhere(&self, other: &Start) -> bool {
+        self.x.iter().zip(&other.x).any(|(a, b)| (a - b).abs() > NEAR_BY)
+    }
 }
 
 /// What a model leaves of the train recordings.
@@ -311,8 +321,12 @@ impl Ground<'_> {
             sort(&mut again, criterion);
             for (i, starts) in again.into_iter().take(each) {
                 match found.iter_mut().find(|f| f.0 == i) {
-                    // each criterion has its best start
-                    Some((_, known)) => known.splice(1.min(known.len()).., starts.into_iter().take(1)).for_each(drop),
+                    Some((_, known)) => {
+                        // each criterion has its best start; one is enough where they are the same
+                        known.truncate(1);
+                        let other = starts.into_iter().next().filter(|s| s.is_elsewhere(&known[0]));
+                        known.extend(other);
+                    }
                     None => found.push((i, starts)),
                 }
             }
