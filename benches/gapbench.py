@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs `bramah gap` over labelled cases and compares the verdicts with their labels.
 
-usage: gapbench.py BRAMAH STUDY CASES_DIR [CASE ...]
+usage: gapbench.py BRAMAH STUDY CASES_DIR SCORES.json [CASE ...]
 
 Truth is read here, after the diagnosis has ended; the diagnosis sees the recordings only.
 """
@@ -59,9 +59,10 @@ def score(labels, verdict):
 
 
 def main():
-    binary, study, cases = sys.argv[1:4]
-    names = sys.argv[4:] or sorted(os.listdir(cases))
+    binary, study, cases, scores = sys.argv[1:5]
+    names = sys.argv[5:] or sorted(os.listdir(cases))
     total = [0, 0, 0, 0]
+    all_scores = []
     print(f"{'case':10} {'labels':26} {'verdict':16} {'found':44} {'first':>5} {'set':>4} {'false':>5} {'closed':>7} {'s':>4}")
     for name in names:
         folder = os.path.join(cases, name)
@@ -73,6 +74,13 @@ def main():
         found = score(labels, verdict)
         total = [a + b for a, b in zip(total, found)]
         effects = ",".join(e["family"] for e in verdict["effects"])
+        known, first, within, false = found
+        all_scores.append({
+            "case": name, "labels": labels, "known": known, "first": first, "within": within, "false": false,
+            "verdict": verdict["verdict"], "found": [e["family"] for e in verdict["effects"]],
+            "closed": verdict["closed"], "seconds": verdict["seconds"],
+        })
+        json.dump(all_scores, open(scores, "w"), indent=1)
         closed = "-" if verdict["closed"] is None else f"{verdict['closed']:.2f}"
         print(
             f"{name:10} {','.join(labels):26} {verdict['verdict']:16} {effects[:44]:44} {found[1]:5} {found[2]:4} "
