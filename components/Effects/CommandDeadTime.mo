@@ -15,5 +15,5 @@ equation
   T_d*der(z) = b;
   T_d*der(b) = 60*(u - x) - 36*z - 9*b;
   y = u + k*(x - 2/5*z + b/20 - u);
-  annotation(__bramah(family = "dead_time", id = "E39", coefficients = {"k"}, shapes(T_d = {1e-3, 2e-3, 4e-3, 8e-3, 20e-3})));
+  annotation(__bramah(family = "dead_time", id = "E39", coefficients = {"k"}, shapes(T_d = {1e-3, 2e-3, 4e-3, 8e-3, 20e-3}), measured = "yes"));
 end CommandDeadTime;

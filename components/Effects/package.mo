@@ -11,7 +11,7 @@ element is given <code>through</code> and gives <code>drop</code>. <code>sense</
 any other with <code>anywhere = \"yes\"</code>.</p>
 <p>An effect adds</p>
 <pre>__bramah(family = \"...\", id = \"E27\", coefficients = {\"F_c\"}, shapes(v_s = {0.002, 0.02}), base = {\"d\"}, relative = {\"b\"},
-  threshold = {\"p_o\"}, level = {\"p_o\"}, limit = {\"m\"}, order = {\"n\"}, part = {\"C\"}, own = {\"a_s\"}, range = {\"s\", \"s_min\", \"s_max\"}, temperature = \"T\", group = \"...\", law = \"...\", ends = \"free\", directed = \"yes\", without = \"Drain\")</pre>
+  threshold = {\"p_o\"}, level = {\"p_o\"}, limit = {\"m\"}, order = {\"n\"}, part = {\"C\"}, own = {\"a_s\"}, range = {\"s\", \"s_min\", \"s_max\"}, temperature = \"T\", group = \"...\", law = \"...\", ends = \"free\", directed = \"yes\", measured = \"yes\", without = \"Drain\")</pre>
 <p>Coefficients have the off value 0 at which the effect vanishes exactly, <code>nominal</code> is their typical size on a usual bench and
 <code>min = 0</code> stands where the sign counts. Shapes enter nonlinearly and are tried on the grid given. A parameter in <code>base</code> takes the value
 of the parameter of equal unit of the component to which the effect is attached. Coefficients and shapes in <code>relative</code> count in full
@@ -23,7 +23,7 @@ follows nothing begins). <code>range</code> names a potential and the two parame
 that it has in the recordings. Times are written for samples a millisecond apart and grow with slower ones.
 <code>temperature</code> is given an input in kelvin. Effects of one <code>group</code> are also tried together with one set of coefficients; those of one
 <code>law</code> are forms of it, of which a place has one. What the package names first is the more usual on machines: it stands first where data do not decide. A Bridge
-with free ends is not tried towards a fixed potential, a directed one both ways round; <code>without</code> an interface: only where no effect of the family
+with free ends is not tried towards a fixed potential, a directed one both ways round; an effect of a command that is <code>measured</code> is also tried where a sensor shows the input; <code>without</code> an interface: only where no effect of the family
 fits by that one. Laws are smooth, with the width given. An effect with states of its own has them as variables with a
 derivative.</p></html>"));
 end Effects;

@@ -156,6 +156,8 @@ pub struct Effect {
     pub free_ends: bool,
     /// A Bridge that is tried in both directions.
     pub directed: bool,
+    /// An effect on a command that also fits what a sensor shows.
+    pub measured: bool,
     /// Not tried where an effect of this kind fits.
     pub without: Option<Attach>,
     /// States of its own; inside a connection the order of the system changes with them.
@@ -411,6 +413,7 @@ fn effect(found: &Found, interface: &Found, read: &Attributes<'_>, number: usize
         law: text(own, "law"),
         free_ends: text(own, "ends").as_deref() == Some("free"),
         directed: text(own, "directed").is_some(),
+        measured: text(own, "measured").is_some(),
         without: text(own, "without").and_then(|t| attach(&t)),
         interface,
         states: 0,

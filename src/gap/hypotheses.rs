@@ -255,6 +255,15 @@ pub fn narrow(all: &mut Vec<Hypothesis>, choice: &EffectChoice) {
     });
 }
 
+/// Leaves out what only a command suffers at inputs that a sensor shows.
+pub fn without_commands(all: &mut Vec<Hypothesis>, measured: &[&str]) {
+    let fits = |a: &Attachment| match (&a.site, &a.effect) {
+        (Site::Command(name), Some(effect)) => effect.measured || !measured.contains(&name.as_str()),
+        _ => true,
+    };
+    all.retain(|h| h.attachments.iter().all(fits));
+}
+
 /// An attachment before identical ones are merged, with its component and what is alike in other instances.
 struct Candidate {
     component: usize,

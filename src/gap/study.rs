@@ -257,6 +257,8 @@ fn offer(world: &dyn World, study: &Study, signals: &[Signal], free: &[Free]) ->
     let Some(catalogue) = checked.value else { return Err(Unusable::study(checked.diagnostics)) };
     let mut hypotheses = hypotheses::hypotheses(&circuit, &catalogue.effects, signals, free);
     hypotheses::narrow(&mut hypotheses, &study.effects);
+    let measured = study.inputs.iter().filter(|i| i.measured).map(|i| i.name.as_str()).collect::<Vec<_>>();
+    hypotheses::without_commands(&mut hypotheses, &measured);
     let (effects, sources) = (catalogue.effects, catalogue.disturbances);
     Ok(Offer { circuit, folder, hypotheses, effects, sources, diagnostics: checked.diagnostics })
 }

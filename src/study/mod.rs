@@ -51,6 +51,8 @@ pub struct InputColumn {
     pub unit: Option<String>,
     /// Each sample holds until the next; else straight lines join them.
     pub hold: bool,
+    /// A sensor shows it: it is no command that may be limited or come late inside the machine.
+    pub measured: bool,
     /// Where the entry stands.
     pub span: Span,
 }

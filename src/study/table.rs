@@ -9,7 +9,7 @@ use super::{Amount, EffectChoice, InputColumn, ParameterEntry, RecordingFile, Ro
 use crate::diag::{Checked, Code, Diagnostic, FileId, Sources, Span};
 
 const KEYS: &[&str] = &["version", "model", "class", "inputs", "signals", "recordings", "parameters", "effects"];
-const INPUT_KEYS: &[&str] = &["column", "unit", "hold"];
+const INPUT_KEYS: &[&str] = &["column", "unit", "hold", "kind"];
 const SIGNAL_KEYS: &[&str] = &["variable", "column", "unit", "sign", "full_scale", "accuracy"];
 const RECORDING_KEYS: &[&str] = &["file", "role", "time", "window", "optional", "pieces"];
 const PARAMETER_KEYS: &[&str] = &["sigma", "min", "max"];
@@ -102,10 +102,11 @@ impl Table {
 
     fn inputs(&mut self, value: &Value<'_>) {
         for Named { name, span, value } in self.reader.named("inputs", value) {
-            let mut input = InputColumn { column: name.clone(), name, unit: None, hold: true, span };
+            let mut input = InputColumn { column: name.clone(), name, unit: None, hold: true, measured: false, span };
             self.fields(&input.name.clone(), value, INPUT_KEYS, |reader, key, value| match key {
                 "column" => input.column = reader.text(key, value).unwrap_or_default(),
                 "unit" => input.unit = unit(reader, key, value),
+                "kind" => input.measured = is_measured(reader, key, value),
                 _ => input.hold = reader.truth(key, value).unwrap_or(true),
             });
             self.study.inputs.push(input);
@@ -246,6 +247,17 @@ fn sign(reader: &mut Reader, key: &str, value: &Value<'_>) -> f64 {
         _ => {
             reader.wrong_kind(key, value, "1 or -1");
             1.0
+        }
+    }
+}
+
+fn is_measured(reader: &mut Reader, key: &str, value: &Value<'_>) -> bool {
+    match value.get_ref().as_str() {
+        Some("command") => false,
+        Some("measured") => true,
+        _ => {
+            reader.report(&value.span(), format!("`{key}` is `\"command\"` or `\"measured\"`"), "this is neither");
+            false
         }
     }
 }

@@ -8,8 +8,6 @@ use super::super::problem::{Chosen, Problem};
 use super::compare::Sensors;
 use crate::diag::Diagnostic;
 
-/// Sizes, in usual ones, at which effects begin that make no linear model where they vanish.
-const SIZES: [f64; 3] = [0.1, 1.0, 10.0];
 /// A shape may lie so many times beyond its grid, a width so many times beside its value.
 const BEYOND: f64 = 3.0;
 const WIDER: f64 = 10.0;
@@ -113,19 +111,16 @@ fn shape(s: &Shape, parameter: usize, is_taken: bool) -> Option<Coordinate> {
 /// Values of a hypothesis where it may begin: linear coefficients where they vanish, shares as the whole, shapes on their
 /// grids.
 pub fn beginnings(h: &Hypothesis) -> Vec<Vec<f64>> {
-    let sizes: &[f64] = if h.changes_order { &SIZES } else { &[0.0] };
-    let value = |c: &Coefficient, size: f64| match c.whole() {
+    // what makes no linear model where it vanishes begins at its usual size
+    let size = if h.changes_order { 1.0 } else { 0.0 };
+    let value = |c: &Coefficient| match c.whole() {
         Some(whole) => whole,
         None => (c.off + size * c.nominal).clamp(c.min.unwrap_or(f64::MIN), c.max.unwrap_or(f64::MAX)),
     };
-    let mut all = Vec::new();
-    for variant in h.variants() {
-        for &size in sizes {
-            let mut values: Vec<f64> = h.coefficients.iter().map(|c| value(c, size)).collect();
-            values.extend(variant.iter().map(|v| v.1));
-            all.push(values);
-        }
-    }
+    let with = |variant: Vec<(String, f64)>| -> Vec<f64> {
+        h.coefficients.iter().map(value).chain(variant.into_iter().map(|v| v.1)).collect()
+    };
+    let mut all: Vec<Vec<f64>> = h.variants().into_iter().map(with).collect();
     let count = all.len();
     if count > GRID {
         all = (0..GRID).map(|i| all[i * (count - 1) / (GRID - 1)].clone()).collect();

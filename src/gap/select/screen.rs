@@ -372,7 +372,7 @@ impl Ground<'_> {
         (hypothesis, starts)
     }
 
-    /// A model after the best of some damped linear steps, doubled as long as that helps.
+    /// A model after the least damped linear step that helps, doubled as long as that helps more.
     fn step(&self, begun: &Begun, criterion: Criterion) -> Start {
         let Begun { candidate, x: from, now, system, promised } = begun;
         let leaves = |x: &[f64]| {
@@ -384,11 +384,9 @@ impl Ground<'_> {
         for damping in DAMPINGS {
             let x = system.step(&candidate.coordinates, from, damping);
             if let Some(found) = cost(&x).filter(|c| *c < best.1) {
-                best = (x, found);
+                best = candidate.stretched(from, (x, found), &cost);
+                break;
             }
-        }
-        if best.0 != *from {
-            best = candidate.stretched(from, best, &cost);
         }
         let leaves = leaves(&best.0).unwrap_or_else(|| now.clone());
         Start { candidate: candidate.clone(), x: best.0, leaves, promised: promised.clone() }

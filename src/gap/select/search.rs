@@ -157,14 +157,19 @@ impl Search<'_> {
         self.choose(step, before, rivals)
     }
 
-    /// A shape beside the last model; or in the place of the only effect, where it surely leaves less: then that is named
-    /// for want of a better one.
+    /// A shape beside the last model; or, where one may say something beside the only effect, in the place of that effect, if
+    /// it surely leaves less: then the effect is named for want of a better one.
     fn shape(&mut self, base: &Weighed, last: &mut Weighed, taken: &mut Vec<Taken>) -> Option<Taken> {
         let step = taken.len() + 1;
         let shapes: Vec<usize> = (0..self.problem.hypotheses.len()).filter(|&i| self.h(i).is_shape()).collect();
-        let left = gap(&last.left[0], &self.criteria.sensors);
+        let screened = self.screened(step, last, &shapes);
+        if screened.is_empty() {
+            self.trials.append(&mut self.passed);
+            return None;
+        }
+        let rivals = self.fitted(screened);
+        let beside = self.choose(step, last, rivals);
         if taken.len() == 1
-            && !self.criteria.alike(left, 0.0)
             && let Some((model, shape)) = self.beside(step, base, &shapes)
             && self.criteria.worse(&model, last)
         {
@@ -172,7 +177,7 @@ impl Search<'_> {
             *last = base.clone();
             return Some(shape);
         }
-        self.beside(step, last, &shapes).map(|s| s.1)
+        beside.map(|b| b.1)
     }
 
     /// Hypotheses with a name that may be tried beside what was taken.
