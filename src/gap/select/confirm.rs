@@ -2,8 +2,8 @@
 
 use super::super::data::Recording;
 use super::super::estimate::candidate::Errors;
-use super::super::estimate::{Fit, Weights};
-use super::super::policy::{ACCURACY, ALPHA, DELTA};
+use super::super::estimate::{Candidate, Fit, Weights};
+use super::super::policy::{ACCURACY, ALPHA, DELTA, OPENS};
 use super::compare::{Sensors, evidence, gap, needed};
 use super::folds::LeftOut;
 
@@ -16,11 +16,17 @@ pub struct Asked {
     pub before: f64,
     /// That of the model.
     pub after: f64,
+    /// That of the nominal model.
+    pub nominal: f64,
 }
 
 impl Asked {
     /// Whether they confirm it. `saved`: nats that it saves of the prior; `hypotheses`: among how many it was found.
     pub fn confirms(&self, saved: f64, hypotheses: usize) -> bool {
+        // a corrected model is better than the nominal one, or it is none
+        if self.after > (1.0 + OPENS) * self.nominal {
+            return false;
+        }
         // what brings parameters back to their data sheet must only not be contradicted
         if saved > needed(hypotheses) && self.evidence > -1.0 {
             return true;
@@ -30,9 +36,15 @@ impl Asked {
     }
 }
 
-/// Asks the held recordings; `None` where there are none.
-pub fn ask(before: &Fit, after: &Fit, held: &[Recording], sensors: &Sensors) -> Option<Asked> {
-    let errors = |fit: &Fit| -> Vec<Errors> { held.iter().map(|r| of(fit, r)).collect() };
+/// Noise-free gap of a model on held recordings, in parts of full scale.
+pub fn held_gap(candidate: &Candidate, x: &[f64], held: &[Recording], sensors: &Sensors) -> f64 {
+    let errors: Vec<Errors> = held.iter().map(|r| of(candidate, x, r)).collect();
+    gap(&LeftOut::of(&errors), sensors)
+}
+
+/// Asks the held recordings, on which the nominal model leaves so much; `None` where there are none.
+pub fn ask(before: &Fit, after: &Fit, held: &[Recording], nominal: f64, sensors: &Sensors) -> Option<Asked> {
+    let errors = |fit: &Fit| -> Vec<Errors> { held.iter().map(|r| of(&fit.candidate, &fit.x, r)).collect() };
     if held.is_empty() {
         return None;
     }
@@ -41,12 +53,13 @@ pub fn ask(before: &Fit, after: &Fit, held: &[Recording], sensors: &Sensors) -> 
     let samples = |i: usize| a.iter().flat_map(|e| &e[i]).filter(|v| !v.is_nan()).count() as f64;
     let independent: Vec<f64> = (0..sensors.noise.len()).map(|i| samples(i) / tau_a[i].max(tau_b[i])).collect();
     let (a, b) = (LeftOut::of(&a), LeftOut::of(&b));
-    Some(Asked { evidence: evidence(&a, &b, &independent, sensors), before: gap(&a, sensors), after: gap(&b, sensors) })
+    let evidence = evidence(&a, &b, &independent, sensors);
+    Some(Asked { evidence, before: gap(&a, sensors), after: gap(&b, sensors), nominal })
 }
 
 /// Errors on a recording that took no part; infinite where the simulation does not reach the end.
-fn of(fit: &Fit, recording: &Recording) -> Errors {
-    fit.candidate.errors(&fit.x, recording, None).unwrap_or_else(|| {
+fn of(candidate: &Candidate, x: &[f64], recording: &Recording) -> Errors {
+    candidate.errors(x, recording, None).unwrap_or_else(|| {
         let samples = recording.len() - recording.settled() - 1;
         recording.signals.iter().map(|_| vec![f64::INFINITY; samples]).collect()
     })

@@ -39,8 +39,8 @@ pub enum Reason {
     Opens(f64),
     /// The held recordings do not show the same.
     #[error(
-        "held recordings do not confirm it: evidence {:.1} nats, gap {:.4} to {:.4} of full scale",
-        .0.evidence, .0.before, .0.after
+        "held recordings do not confirm it: evidence {:.1} nats, gap {:.4} to {:.4} of full scale, nominal {:.4}",
+        .0.evidence, .0.before, .0.after, .0.nominal
     )]
     NotConfirmed(Asked),
     /// Surely worse than the best: the gap that it leaves, and the best one's.

@@ -7,7 +7,7 @@ use super::super::hypotheses::Hypothesis;
 use super::super::policy::{EFFECTS, FRONT, SEEN};
 use super::super::problem::{Chosen, Problem, Tolerance};
 use super::compare::{closed, gap, needed};
-use super::confirm::ask;
+use super::confirm::{ask, held_gap};
 use super::criteria::{Criteria, Judged, Reason, Rival};
 use super::models;
 use super::screen::{Ground, Screened, screened};
@@ -87,6 +87,8 @@ pub struct Found {
 struct Search<'a> {
     problem: &'a Problem<'a>,
     held: &'a [Recording],
+    /// Noise-free gap of the nominal model on the held recordings.
+    nominal: f64,
     criteria: Criteria,
     /// Share of the hypotheses of the first step that would be seen.
     visible: Option<f64>,
@@ -108,7 +110,8 @@ pub fn search(problem: &Problem<'_>, held: &[Recording], progress: &mut dyn FnMu
     let base = settled(problem, &sensors, base);
     let first = (0..sensors.noise.len()).map(|i| left_by(&base.left[0], i, &sensors)).collect();
     let criteria = Criteria { sensors, first, count: problem.hypotheses.len() };
-    let mut search = Search { problem, held, criteria, visible: None, trials: Vec::new(), passed: Vec::new() };
+    let nominal = held_gap(&nominal, &x, held, &criteria.sensors);
+    let mut search = Search { problem, held, nominal, criteria, visible: None, trials: Vec::new(), passed: Vec::new() };
     let (mut last, mut taken) = (base.clone(), Vec::new());
     for step in 1..=EFFECTS {
         let Some((chosen, effect)) = search.step(step, &last, progress) else { break };
@@ -302,7 +305,7 @@ impl Search<'_> {
         if !model.fit.candidate.model.own.is_empty() {
             return None;
         }
-        let asked = ask(&before.fit, &model.fit, self.held, &self.criteria.sensors)?;
+        let asked = ask(&before.fit, &model.fit, self.held, self.nominal, &self.criteria.sensors)?;
         let confirmed = asked.confirms(saved(before, model), self.criteria.count);
         (!confirmed).then_some(Reason::NotConfirmed(asked))
     }
@@ -317,7 +320,7 @@ impl Search<'_> {
         reasons: &mut [Option<Reason>],
     ) -> Option<usize> {
         let best = (0..rivals.len()).find(|&i| judged[i].may())?;
-        let asked = ask(&before.fit, &rivals[best].model.fit, self.held, &self.criteria.sensors)?;
+        let asked = ask(&before.fit, &rivals[best].model.fit, self.held, self.nominal, &self.criteria.sensors)?;
         let sum = judged[best].evidence + asked.evidence;
         if sum > needed(self.criteria.count) && asked.evidence > 0.0 {
             reasons[best] = None;
