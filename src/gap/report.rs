@@ -201,8 +201,9 @@ fn places(v: &Verdict) -> Vec<Vec<String>> {
 fn unexplained(v: &Verdict) -> Vec<Vec<String>> {
     let u = &v.unexplained;
     let place = u.place.as_deref().map_or_else(|| "unknown".to_string(), escape);
-    let row = |shape: String, r2: String| vec![share(u.share), place.clone(), shape, r2];
+    let row = |shape: String, closes: String| vec![share(u.share), place.clone(), shape, closes];
     match &u.shape {
+        None if v.open.is_empty() => Vec::new(),
         Some(terms) => terms.iter().map(|t| row(escape(&t.term), percent(t.closes))).collect(),
         None => vec![row("none that is known".into(), String::new())],
     }
