@@ -19,6 +19,10 @@ def table(heads, rows):
     return "\n".join(lines + ["| " + " | ".join(str(c) for c in row) + " |" for row in rows]) + "\n"
 
 
+def number_of(cases):
+    return f"Cases run: {len(cases)}"
+
+
 def share(value):
     return "" if value is None else f"{100 * value:.0f} %"
 
@@ -30,7 +34,7 @@ def count(studies, key):
 def machines(studies):
     effects = [s for s in studies if s["kind"] == "effect" and not s.get("hard")]
     others = [("complete models: nothing claimed over 10 % of the gap", ["complete"]),
-              ("recording errors and short runs", ["recording", "ambiguous"])]
+              ("recording errors and short runs", ["recording_error", "ambiguous"])]
     rows = [
         ("first effect of the right family", count(effects, "first")),
         ("right one first or in its set", count(effects, "in_set")),
@@ -87,7 +91,7 @@ def main():
     if cases := read(simulated):
         text += ["## Simulated plants\n",
                  "A servo-pump axis by another simulator, in other functional forms than the library's, with noise and "
-                 "disturbances at every node; labelled, and seen while the judge was made.\n", plants(cases)]
+                 f"disturbances at every node; labelled, and seen while the judge was made. {number_of(cases)}.\n", plants(cases)]
     with open(page, "w") as out:
         out.write("\n".join(text))
 
