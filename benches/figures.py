@@ -19,10 +19,6 @@ def table(heads, rows):
     return "\n".join(lines + ["| " + " | ".join(str(c) for c in row) + " |" for row in rows]) + "\n"
 
 
-def number_of(cases):
-    return f"Cases run: {len(cases)}"
-
-
 def share(value):
     return "" if value is None else f"{100 * value:.0f} %"
 
@@ -91,7 +87,7 @@ def main():
     if cases := read(simulated):
         text += ["## Simulated plants\n",
                  "A servo-pump axis by another simulator, in other functional forms than the library's, with noise and "
-                 f"disturbances at every node; labelled, and seen while the judge was made. {number_of(cases)}.\n", plants(cases)]
+                 f"disturbances at every node; labelled, and seen while the judge was made. Cases run: {len(cases)}.\n", plants(cases)]
     with open(page, "w") as out:
         out.write("\n".join(text))
 

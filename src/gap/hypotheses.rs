@@ -196,11 +196,6 @@ impl Hypothesis {
         effect.and_then(|e| e.law.as_deref()).unwrap_or(&self.effect)
     }
 
-    /// An effect that is there or not: one that has a share of a whole. From where it is not it looks nothing like itself.
-    pub fn is_bounded(&self) -> bool {
-        self.family != "parameter" && self.coefficients.iter().any(|c| c.whole().is_some())
-    }
-
     /// Whether it is the same with these values as with others: an effect of an order may come again with another one.
     pub fn same(&self, values: &[f64], by: &[f64]) -> bool {
         let order = self.shapes.iter().position(|s| s.order).map(|k| self.coefficients.len() + k);

@@ -38,15 +38,15 @@ pub const VISIBLE: f64 = 0.2;
 /// Effects that are looked for one after another, at most.
 pub const EFFECTS: usize = 4;
 
-// The constants below change the time that a search takes, not its verdicts.
+// The constants below say how far a search looks: with larger counts it takes longer and misses less.
 
 /// Hypotheses with parameters that are fitted after the screen, half of them by each of its criteria.
 pub const FITTED: usize = 14;
 /// And without.
 pub const FITTED_WITHOUT: usize = 2;
-/// Times as many are stepped a second time before.
+/// Times as many hypotheses as are fitted take a second step before.
 pub const STEPPED: usize = 2;
-/// Of these, the best are also fitted as if only the sensors' noise were left.
+/// Of those fitted, so many of the best are fitted again as if only the sensors' noise were left.
 pub const FRONT: usize = 4;
 /// Part of the least gain that is worth a name which a linear step must promise for a fit: left-out data may see more of it.
 pub const PROMISED: f64 = 0.5;

@@ -1,6 +1,7 @@
 //! The verdict in words, one screen of them.
 
-use super::verdict::{Effect, Estimate, Maybe, OpenGap, SignalGap, Verdict};
+use super::policy::SEEN;
+use super::verdict::{Effect, Estimate, Located, Maybe, OpenGap, SignalGap, Verdict};
 use std::fmt::Write;
 
 /// What the diagnosis found, for people: findings, the gap as a table, what is left.
@@ -63,18 +64,16 @@ pub(super) fn rest(v: &Verdict) -> String {
 
 /// What is said where no effect is named.
 fn found_nothing(v: &Verdict) -> String {
-    let place = v.places.first().filter(|p| p.evidence > 8.0).map(|p| format!("`{}` ({})", p.place, p.kind));
-    match (v.verdict, place) {
-        ("outside_library", Some(p)) => {
-            format!("Something is missing at {p} that none of the known effects explains.\n")
+    let named = |p: &Located| format!("`{}` ({})", p.place, p.kind);
+    match v.verdict {
+        "outside_library" => {
+            let at = v.places.iter().find(|p| Some(&p.place) == v.unexplained.place.as_ref()).map(named);
+            let at = at.map(|p| format!(" at {p}")).unwrap_or_default();
+            format!("Something is missing{at} that none of the known effects explains.\n")
         }
-        ("outside_library", None) => {
-            "Several times the noise stays open, no place stands out, and none of the known effects explains it.\n"
-                .into()
-        }
-        ("gap_open", place) => open(v, place),
-        ("undecidable", _) => "The recordings cannot tell: effects of usual size would hardly show in them.\n".into(),
-        ("nothing_found", _) => {
+        "gap_open" => open(v, v.places.first().filter(|p| p.evidence > SEEN).map(named)),
+        "undecidable" => "The recordings cannot tell: effects of usual size would hardly show in them.\n".into(),
+        "nothing_found" => {
             "Nothing is missing that these recordings could show: what is left is within tolerances and noise.\n".into()
         }
         _ => String::new(),

@@ -2,10 +2,10 @@
 //! simplest among what cannot be told apart. Everything else has its reason.
 
 use super::super::policy::{ACCURACY, ALPHA, DELTA, NEAR, OPENS, PROMISED, SURE};
-use super::compare::{Sensors, chances, differences, gap, loss, needed, t_statistic};
+use super::compare::{Sensors, chances, differences, loss, needed, t_statistic};
 use super::confirm::Asked;
 use super::screen::Start;
-use super::weighed::{Weighed, left_by, nats, saved};
+use super::weighed::{Weighed, ahead, left_by, nats, saved};
 use std::collections::BTreeMap;
 
 /// A hypothesis beside the model of one step.
@@ -159,11 +159,11 @@ impl Criteria {
             let left = |w: &Weighed| left_by(&w.left[0], i, &self.sensors);
             left(before) - left(model) >= self.least(before, i)
         };
-        let gap = |w: &Weighed| gap(&w.left[0], &self.sensors);
+        let gap = model.gap(&self.sensors);
         let worth = (0..self.first.len()).any(closes) || saved(before, model) > needed(self.count);
-        let opens = gap(model) / gap(before).max(f64::MIN_POSITIVE);
+        let opens = gap / before.gap(&self.sensors).max(f64::MIN_POSITIVE);
         let (t, evidence) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
-        Judged { t, chance: 1.0, evidence, gap: gap(model), sure: false, worth, opens }
+        Judged { t, chance: 1.0, evidence, gap, sure: false, worth, opens }
     }
 
     /// Two models that are one for the user.
@@ -173,17 +173,11 @@ impl Criteria {
 
     /// Whether a model is surely worse than the best.
     pub fn worse(&self, best: &Weighed, other: &Weighed) -> bool {
-        let of = |w: &Weighed| gap(&w.left[0], &self.sensors);
-        if self.alike(of(other), of(best)) {
+        if self.alike(other.gap(&self.sensors), best.gap(&self.sensors)) {
             return false;
         }
         let t = t_statistic(&differences(&other.left[0], &best.left[0], &self.sensors));
-        t > SURE || self.ahead(other, best) > (1.0 / ALPHA).ln()
-    }
-
-    /// Nats by which left-out data and prior prefer the second model.
-    pub fn ahead(&self, model: &Weighed, other: &Weighed) -> f64 {
-        nats(model, other, 0, &self.sensors) + saved(model, other)
+        t > SURE || ahead(other, best, &self.sensors) > (1.0 / ALPHA).ln()
     }
 
     /// Mean loss over blocks and signals: what orders rivals.
@@ -202,7 +196,7 @@ impl Criteria {
     /// what leaves parameters where they are known to be, then what the data prefer, then what is usual on machines.
     pub fn order(&self, accepted: &[usize], rivals: &[Rival], reasons: &mut [Option<Reason>]) -> Vec<usize> {
         let Some(&best) = accepted.first() else { return Vec::new() };
-        let of = |i: usize| gap(&rivals[i].model.left[0], &self.sensors);
+        let of = |i: usize| rivals[i].model.gap(&self.sensors);
         let near = |i: usize| self.alike(of(i), of(best));
         let mut set = Vec::new();
         for &i in accepted {
@@ -218,7 +212,8 @@ impl Criteria {
         let simple = |i: usize| (rivals[i].model.fit.candidate.own, rivals[i].places);
         let behind = |i: usize| {
             let as_simple = set.iter().filter(|&&k| k != i && near(k) && simple(k) == simple(i));
-            as_simple.map(|&k| self.ahead(&rivals[i].model, &rivals[k].model)).fold(0.0, f64::max) > (1.0 / ALPHA).ln()
+            as_simple.map(|&k| ahead(&rivals[i].model, &rivals[k].model, &self.sensors)).fold(0.0, f64::max)
+                > (1.0 / ALPHA).ln()
         };
         let keys: BTreeMap<usize, _> =
             set.iter().map(|&i| (i, (!near(i), simple(i), bent(i), behind(i), rivals[i].hypothesis))).collect();

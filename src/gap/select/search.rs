@@ -6,12 +6,12 @@ use super::super::estimate::Fit;
 use super::super::hypotheses::Hypothesis;
 use super::super::policy::{EFFECTS, FRONT, SEEN};
 use super::super::problem::{Chosen, Problem, Tolerance};
-use super::compare::{closed, gap, needed};
+use super::compare::{closed, needed};
 use super::confirm::{ask, held_gap};
 use super::criteria::{Criteria, Judged, Reason, Rival};
 use super::models;
 use super::screen::{Ground, Screened, screened};
-use super::weighed::{Weighed, as_they_are, at_the_noise, left_by, nats, saved, settled, weighed};
+use super::weighed::{Weighed, ahead, as_they_are, at_the_noise, left_by, saved, settled, weighed};
 use crate::diag::Diagnostic;
 use rayon::prelude::*;
 
@@ -234,7 +234,7 @@ impl Search<'_> {
             Some(Rival { hypothesis, places, model: Weighed::new(problem, fit) })
         };
         let mut rivals: Vec<Rival> = screened.into_par_iter().filter_map(one).collect();
-        rivals.sort_by(|a, b| gap(&a.model.left[0], sensors).total_cmp(&gap(&b.model.left[0], sensors)));
+        rivals.sort_by(|a, b| a.model.gap(sensors).total_cmp(&b.model.gap(sensors)));
         let front = FRONT.min(rivals.len());
         rivals[..front].par_iter_mut().for_each(|rival| {
             if let Some(better) = at_the_noise(problem, sensors, &rival.model) {
@@ -270,18 +270,17 @@ impl Search<'_> {
         self.trials.extend(reasons.into_iter().enumerate().map(trial));
         self.trials.append(&mut self.passed);
         let first = taken?;
-        let best = &rivals[first].model;
+        let (best, sensors) = (&rivals[first].model, &self.criteria.sensors);
         let behind = |i: usize| {
             let other = &rivals[i].model;
-            (last_cause(&other.fit), nats(other, best, 0, &self.criteria.sensors) + saved(other, best))
+            (last_cause(&other.fit), ahead(other, best, sensors))
         };
         let Judged { evidence, t, .. } = judged[first];
-        let total = |w: &Weighed| gap(&w.left[0], &self.criteria.sensors);
         let effect = Taken {
             hypothesis: rivals[first].hypothesis,
             evidence,
             t,
-            closes: 1.0 - total(best) / total(before).max(f64::MIN_POSITIVE),
+            closes: 1.0 - best.gap(sensors) / before.gap(sensors).max(f64::MIN_POSITIVE),
             set: order.iter().filter(|i| **i != first).map(|&i| behind(i)).collect(),
         };
         Some((best.clone(), effect))
@@ -336,7 +335,7 @@ impl Search<'_> {
         let fitted = wider
             .filter(|c| c.coordinates.len() > chosen.fit.x.len())
             .and_then(|c| weighed(self.problem, &self.criteria.sensors, &c, &c.present()));
-        let better = |f: &Weighed| self.criteria.ahead(&chosen, f) > 0.0;
+        let better = |f: &Weighed| ahead(&chosen, f, &self.criteria.sensors) > 0.0;
         fitted.filter(better).unwrap_or(chosen)
     }
 

@@ -3,7 +3,7 @@
 use super::super::estimate::{Candidate, Fit, Weights};
 use super::super::policy::{LEAST, OTHER_WEIGHTING, SETTLING};
 use super::super::problem::Problem;
-use super::compare::{Sensors, evidence, signal_gap};
+use super::compare::{Sensors, evidence, gap, signal_gap};
 use super::folds::{LeftOut, left_out};
 
 /// A fit with what it leaves of left-out data.
@@ -20,6 +20,11 @@ impl Weighed {
     pub fn new(problem: &Problem<'_>, fit: Fit) -> Self {
         Weighed { left: left_out(&fit, &problem.train), fit }
     }
+
+    /// Noise-free gap of left-out pieces over all signals, in parts of full scale.
+    pub fn gap(&self, sensors: &Sensors) -> f64 {
+        gap(&self.left[0], sensors)
+    }
 }
 
 /// Both weightings: errors as they are now (tolerances hold), and as if only the sensors' noise were left (the data hold).
@@ -34,7 +39,7 @@ pub fn weighed(problem: &Problem<'_>, sensors: &Sensors, candidate: &Candidate, 
 pub fn settled(problem: &Problem<'_>, sensors: &Sensors, mut model: Weighed) -> Weighed {
     for _ in 0..SETTLING {
         let Some(next) = weighed(problem, sensors, &model.fit.candidate, &model.fit.x) else { break };
-        if nats(&model, &next, 0, sensors) + saved(&model, &next) <= OTHER_WEIGHTING {
+        if ahead(&model, &next, sensors) <= OTHER_WEIGHTING {
             break;
         }
         model = next;
@@ -53,7 +58,7 @@ pub fn at_the_noise(problem: &Problem<'_>, sensors: &Sensors, one: &Weighed) -> 
     let (candidate, x) = (one.fit.candidate.clone(), one.fit.x.clone());
     let begun = Fit::of(candidate, x, &problem.train, &problem.full_scale, Some(white), 1)?;
     let other = Weighed::new(problem, as_they_are(problem, begun.candidate, begun.x)?);
-    (nats(one, &other, 0, sensors) + saved(one, &other) > OTHER_WEIGHTING).then_some(other)
+    (ahead(one, &other, sensors) > OTHER_WEIGHTING).then_some(other)
 }
 
 /// Evidence of left-out data for the second model, nats.
@@ -66,6 +71,11 @@ pub fn nats(a: &Weighed, b: &Weighed, scheme: usize, sensors: &Sensors) -> f64 {
 /// What the second model saves of the prior, nats: without an effect parameters bend, which left-out data do not see.
 pub fn saved(a: &Weighed, b: &Weighed) -> f64 {
     a.fit.prior() - b.fit.prior()
+}
+
+/// Nats by which left-out pieces and the prior prefer the second model.
+pub fn ahead(a: &Weighed, b: &Weighed, sensors: &Sensors) -> f64 {
+    nats(a, b, 0, sensors) + saved(a, b)
 }
 
 /// Noise-free gap of a signal, in its unit, never quite closed.
