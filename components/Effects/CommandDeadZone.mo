@@ -6,5 +6,5 @@ model CommandDeadZone "Small commands do not act"
   parameter Real w(unit = "1", min = 1e-9) = 0.02 "Width of the corners over half the width of the zone";
 equation
   y = u + k*(Smooth.pos(u - d, w*d) - Smooth.pos(-u - d, w*d) - u);
-  annotation(__bramah(family = "dead_zone", id = "E11", coefficients = {"k"}, shapes(d = {0.03, 0.1, 0.25, 0.5}), relative = {"d"}));
+  annotation(__bramah(family = "dead_zone", id = "E11", law = "dead zone", coefficients = {"k"}, shapes(d = {0.03, 0.1, 0.25, 0.5}), relative = {"d"}));
 end CommandDeadZone;

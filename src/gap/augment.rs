@@ -4,7 +4,7 @@
 //! commands before they reach the plant, each signal of the study is a variable of its name behind its sensor effects,
 //! and inside the plant every node that an effect touches gets one tap of the node's own connector class.
 
-use super::circuit::{Circuit, ModelInput};
+use super::circuit::{Circuit, Link, ModelInput};
 use super::effects::{Effect, own_classes};
 use super::hypotheses::{Attachment, Hypothesis, Signal, Site};
 use crate::compile::{Model, Outcome, Request};
@@ -47,6 +47,8 @@ pub struct Augmented {
     pub parameters: Vec<Vec<String>>,
     /// The variable of each signal of the study, sensor effects included.
     pub signals: Vec<String>,
+    /// Signals inside the nominal model whose statements the text replaces.
+    pub replaced: Vec<Link>,
 }
 
 /// How the model is written.
@@ -78,6 +80,7 @@ pub(super) fn written(circuit: &Circuit, attached: &[Attached<'_>], signals: &[S
         drops: BTreeMap::new(),
         cut: BTreeSet::new(),
         classes: Vec::new(),
+        replaced: Vec::new(),
     }
     .write(attached, signals)
 }
@@ -91,20 +94,30 @@ pub fn compile(
     augmented: &Augmented,
     options: &lower::Options,
 ) -> Outcome<Model> {
-    let (overlay, request) = request(world, nominal, folder, &augmented.text, "Augmented");
+    let (overlay, request) = request(world, nominal, folder, augmented, "Augmented");
     crate::compile::compile(&overlay, &request, options)
 }
 
-/// A world with the text in it, and how to ask for its class.
+/// A world with the text in it and without the statements that it replaces, and how to ask for its class.
 pub(super) fn request<'a>(
     world: &'a dyn World,
     nominal: &Request,
     folder: Option<&Path>,
-    text: &str,
+    augmented: &Augmented,
     class: &str,
 ) -> (Overlay<'a>, Request) {
     let source = PathBuf::from(SOURCE);
-    let overlay = Overlay { base: world, files: MemoryWorld::single(&source, text) };
+    let mut files = MemoryWorld::single(&source, &augmented.text);
+    for link in &augmented.replaced {
+        let Ok(mut text) = files.read(&link.file).or_else(|_| world.read(&link.file)) else { continue };
+        let Some(statement) = text.get(link.statement.clone()) else { continue };
+        let blank: String = statement.chars().map(|c| if c == '\n' { '\n' } else { ' ' }).collect();
+        // the semicolon behind it would stand alone
+        let end = link.statement.end + text[link.statement.end..].find(';').map_or(0, |i| i + 1);
+        text.replace_range(link.statement.start..end, &blank);
+        files.add(&link.file, text);
+    }
+    let overlay = Overlay { base: world, files };
     let inner = |o: &Override| Override { name: format!("{PLANT}.{}", o.name), value: o.value.clone() };
     let mut request = Request {
         source,
@@ -140,6 +153,7 @@ struct Writer<'a> {
     cut: BTreeSet<usize>,
     /// Connector classes that have a tap class, each with a port as example.
     classes: Vec<(&'a str, usize)>,
+    replaced: Vec<Link>,
 }
 
 impl<'a> Writer<'a> {
@@ -157,10 +171,11 @@ impl<'a> Writer<'a> {
             }
         }
         self.inputs(attached);
+        self.links(attached);
         let signals = self.signals(attached, signals);
         self.fall();
         self.draw();
-        Augmented { text: self.text(), parameters, signals }
+        Augmented { text: self.text(), parameters, signals, replaced: self.replaced }
     }
 
     /// Declares the coefficients and shapes of a hypothesis, and gives their full names.
@@ -169,7 +184,10 @@ impl<'a> Writer<'a> {
         if let Site::Parameter(name) = &h.attachments[0].site {
             return vec![format!("{PLANT}.{name}")];
         }
-        let inside = matches!(h.attachments[0].site, Site::Node(_) | Site::Across(..) | Site::Into(_));
+        let inside = match &h.attachments[0].site {
+            Site::Command(name) => self.circuit.link(name).is_some(),
+            site => matches!(site, Site::Node(_) | Site::Across(..) | Site::Into(_)),
+        };
         let body = if inside { &mut self.plant } else { &mut self.around };
         let given = |name: &str| a.values.iter().find(|(n, _)| n == name).map(|(_, v)| *v);
         let coefficients = h.coefficients.iter().map(|c| (c.label(), &c.unit, c.off));
@@ -350,8 +368,22 @@ impl<'a> Writer<'a> {
                 self.around.declarations.push_str(&input_declaration(self.circuit, base, input));
             }
             let site = Site::Command(input.name.clone());
-            let last = self.chain(attached, &site, input.name.clone());
+            let last = chain(&mut self.around, attached, &site, input.name.clone());
             let _ = writeln!(self.around.equations, "  {PLANT}.{} = {last};", input.name);
+        }
+    }
+
+    /// Signals inside the plant on which effects act.
+    fn links(&mut self, attached: &[Attached<'_>]) {
+        for link in &self.circuit.links {
+            let name = &link.signal.name;
+            let site = Site::Command(name.clone());
+            if !attached.iter().any(|a| a.hypothesis.attachments.iter().any(|at| at.site == site)) {
+                continue;
+            }
+            let last = chain(&mut self.plant, attached, &site, link.value.clone());
+            let _ = writeln!(self.plant.equations, "    {name} = {last};");
+            self.replaced.push(link.clone());
         }
     }
 
@@ -363,7 +395,8 @@ impl<'a> Writer<'a> {
             let unit = self.circuit.units.get(&s.variable).map_or(String::new(), |u| unit_of(u));
             let _ = writeln!(self.plant.declarations, "    Real gap_true_{}{unit};", i + 1);
             let _ = writeln!(self.plant.equations, "    gap_true_{} = {};", i + 1, s.variable);
-            let last = self.chain(attached, &Site::Sensor(s.name.clone()), format!("{PLANT}.gap_true_{}", i + 1));
+            let (site, from) = (Site::Sensor(s.name.clone()), format!("{PLANT}.gap_true_{}", i + 1));
+            let last = chain(&mut self.around, attached, &site, from);
             let _ = writeln!(self.around.declarations, "  output Real {name}{unit};");
             let _ = writeln!(self.around.equations, "  {name} = {last};");
             names.push(name);
@@ -380,21 +413,6 @@ impl<'a> Writer<'a> {
             (true, true) => format!("signal_{name}"),
             _ => format!("'{}'", name.replace(['\'', '\\'], "_")),
         }
-    }
-
-    /// Puts all signal effects of a site in a row behind `from`; gives the end of the row.
-    fn chain(&mut self, attached: &[Attached<'_>], site: &Site, from: String) -> String {
-        let mut last = from;
-        for a in attached {
-            for (i, at) in a.hypothesis.attachments.iter().enumerate().filter(|(_, at)| at.site == *site) {
-                let Some(effect) = &at.effect else { continue };
-                let (instance, declaration) = Self::declaration(a, i, effect, &at.base);
-                self.around.declarations.push_str(&declaration);
-                let _ = writeln!(self.around.equations, "  {instance}.u = {last};");
-                last = format!("{instance}.y");
-            }
-        }
-        last
     }
 
     fn text(&self) -> String {
@@ -421,6 +439,21 @@ impl<'a> Writer<'a> {
         let _ = writeln!(text, "{}end {};", self.form.annotation, self.form.class);
         text
     }
+}
+
+/// Puts all signal effects of a site in a row behind `from`; gives the end of the row.
+fn chain(body: &mut Body, attached: &[Attached<'_>], site: &Site, from: String) -> String {
+    let mut last = from;
+    for a in attached {
+        for (i, at) in a.hypothesis.attachments.iter().enumerate().filter(|(_, at)| at.site == *site) {
+            let Some(effect) = &at.effect else { continue };
+            let (instance, declaration) = Writer::declaration(a, i, effect, &at.base);
+            body.declarations.push_str(&declaration);
+            let _ = writeln!(body.equations, "    {instance}.u = {last};");
+            last = format!("{instance}.y");
+        }
+    }
+    last
 }
 
 /// Ports that Series elements take out of their nodes.

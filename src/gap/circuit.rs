@@ -11,6 +11,9 @@ use crate::units::Unit;
 use crate::world::World;
 use std::collections::{BTreeMap, BTreeSet};
 
+mod links;
+pub use links::Link;
+
 /// A variable of a port.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quantity {
@@ -105,13 +108,21 @@ pub struct Circuit {
     pub connections: Vec<(usize, usize, usize)>,
     /// Inputs of the model.
     pub inputs: Vec<ModelInput>,
+    /// Signals that its components receive.
+    pub links: Vec<Link>,
     /// All Real variables and parameters by name, with their units.
     pub units: BTreeMap<String, String>,
 }
 
 /// Reads the places of a model.
 pub fn circuit(world: &dyn World, request: &Request) -> Outcome<Circuit> {
-    inspect(world, request, |instance, network, flat| Reader::default().read(instance, network, &flat))
+    let Outcome { sources, diagnostics, value } = inspect(world, request, |instance, network, flat| {
+        let circuit = Reader::default().read(instance, network, &flat);
+        let placed = links::placed(&circuit, instance, network, &flat);
+        (circuit, placed)
+    });
+    let value = value.map(|(circuit, placed)| Circuit { links: links::read(placed, &sources), ..circuit });
+    Outcome { sources, diagnostics, value }
 }
 
 #[derive(Default)]
@@ -567,6 +578,11 @@ fn value_at(known: &BTreeMap<VarId, f64>, exprs: &Exprs, e: ExprId, moving: &mut
 }
 
 impl Circuit {
+    /// The signal inside the model that a component receives by this name.
+    pub fn link(&self, name: &str) -> Option<&Link> {
+        self.links.iter().find(|l| l.signal.name == name)
+    }
+
     /// The number that all nodes rigidly one with that of a port share.
     pub fn rigid(&self, port: usize) -> usize {
         self.nodes[self.ports[port].node].rigid

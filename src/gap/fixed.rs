@@ -76,7 +76,7 @@ fn write(
     let annotation = experiment(&circuit.experiment);
     let form = |cut| Form { class: CLASS, cut, drifts, annotation: annotation.clone() };
     let with_breaks = written(circuit, attached, signals, form(false));
-    let (overlay, request) = request(world, nominal, folder, &with_breaks.text, CLASS);
+    let (overlay, request) = request(world, nominal, folder, &with_breaks, CLASS);
     let outcome = flatten(&overlay, &request);
     if outcome.value.is_none() {
         return Checked::failed(outcome.diagnostics);

@@ -250,10 +250,14 @@ pub fn narrow(all: &mut Vec<Hypothesis>, choice: &EffectChoice) {
     });
 }
 
-/// Leaves out what only a command suffers at inputs that a sensor shows.
-pub fn without_commands(all: &mut Vec<Hypothesis>, measured: &[&str]) {
+/// Leaves out what only a command suffers at inputs that a sensor shows, and at what follows from them alone.
+pub fn without_commands(all: &mut Vec<Hypothesis>, circuit: &Circuit, measured: &[&str]) {
+    let shown = |name: &String| {
+        let is_measured = |n: &String| measured.contains(&n.as_str());
+        is_measured(name) || circuit.link(name).is_some_and(|l| !l.inputs.is_empty() && l.inputs.iter().all(is_measured))
+    };
     let fits = |a: &Attachment| match (&a.site, &a.effect) {
-        (Site::Command(name), Some(effect)) => effect.measured || !measured.contains(&name.as_str()),
+        (Site::Command(name), Some(effect)) => effect.measured || !shown(name),
         _ => true,
     };
     all.retain(|h| h.attachments.iter().all(fits));
@@ -274,7 +278,8 @@ fn candidates(circuit: &Circuit, effect: &Arc<Effect>, all: &[Arc<Effect>], sign
         Attach::Sensor => signals.iter().map(|s| signal(effect, Site::Sensor(s.name.clone()), &s.name)).collect(),
         Attach::Command => {
             // A recorded temperature is no command.
-            let real = circuit.inputs.iter().filter(|i| i.ty == Type::Real && !same_kind(&i.unit, "K"));
+            let all = circuit.inputs.iter().chain(circuit.links.iter().map(|l| &l.signal));
+            let real = all.filter(|i| i.ty == Type::Real && !same_kind(&i.unit, "K"));
             real.map(|i| signal(effect, Site::Command(i.name.clone()), &i.name)).collect()
         }
         Attach::Drift => Vec::new(),

@@ -226,7 +226,7 @@ impl Problem<'_> {
     /// The flat model of an augmented text.
     fn flat(&self, augmented: &Augmented) -> Result<FlatModel, Vec<Diagnostic>> {
         let (overlay, request) =
-            augment::request(self.world, &self.request, self.folder.as_deref(), &augmented.text, "Augmented");
+            augment::request(self.world, &self.request, self.folder.as_deref(), augmented, "Augmented");
         let outcome = crate::compile::flatten(&overlay, &request);
         outcome.value.map(|f| f.flat).ok_or(outcome.diagnostics)
     }

@@ -170,7 +170,7 @@ fn values(shape: &Shape, site: &Site, potentials: &BTreeMap<usize, Vec<f64>>) ->
     if values.is_empty() { None } else { Some(values) }
 }
 
-/// Least and greatest size of each signal and of each input, by name.
+/// Least and greatest size of each signal, of each input, and of each signal inside the model as the nominal one has it.
 fn sizes(problem: &Problem<'_>) -> BTreeMap<String, (f64, f64)> {
     let range = |values: &mut dyn Iterator<Item = f64>| {
         let start = (f64::INFINITY, 0.0_f64);
@@ -184,6 +184,13 @@ fn sizes(problem: &Problem<'_>) -> BTreeMap<String, (f64, f64)> {
     for (i, input) in problem.circuit.inputs.iter().enumerate() {
         let mut values = problem.train.iter().filter_map(|r| r.inputs.get(i)).flat_map(|u| u.iter().copied());
         sizes.insert(input.name.clone(), range(&mut values));
+    }
+    let links = problem.circuit.links.iter().map(|l| l.signal.name.clone());
+    let inside: Vec<Signal> =
+        links.enumerate().map(|(i, variable)| Signal { name: format!("inside_{i}"), variable, scale: 1.0 }).collect();
+    let known = if inside.is_empty() { None } else { problem.observe(&inside) };
+    for (s, values) in inside.iter().zip(known.unwrap_or_default()) {
+        sizes.insert(s.variable.clone(), range(&mut values.into_iter()));
     }
     sizes.retain(|_, (least, most)| least < most);
     sizes

@@ -258,7 +258,7 @@ fn offer(world: &dyn World, study: &Study, signals: &[Signal], free: &[Free]) ->
     let mut hypotheses = hypotheses::hypotheses(&circuit, &catalogue.effects, signals, free);
     hypotheses::narrow(&mut hypotheses, &study.effects);
     let measured = study.inputs.iter().filter(|i| i.measured).map(|i| i.name.as_str()).collect::<Vec<_>>();
-    hypotheses::without_commands(&mut hypotheses, &measured);
+    hypotheses::without_commands(&mut hypotheses, &circuit, &measured);
     let (effects, sources) = (catalogue.effects, catalogue.disturbances);
     Ok(Offer { circuit, folder, hypotheses, effects, sources, diagnostics: checked.diagnostics })
 }
