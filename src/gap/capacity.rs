@@ -47,7 +47,7 @@ fn capacities(problem: &Problem<'_>) -> Option<BTreeMap<Site, f64>> {
         units: &units,
         deviations: &problem.full_scale,
     };
-    let begun = valued.begin(first, None)?;
+    let begun = valued.begin(first, None, None)?;
     let (mut local, k) = (begun.local, first.settled());
     let mut u = Inputs::new(first).from;
     first.input(k, &mut u);

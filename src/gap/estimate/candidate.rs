@@ -8,8 +8,10 @@ use super::exponential;
 use super::map::Weights;
 use super::simulation::Course;
 use super::start::Valued;
+use crate::expr::VarId;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// Something that may be chosen: a parameter in its tolerance, a coefficient or shape of an effect.
@@ -79,6 +81,9 @@ pub struct Candidate {
     pub units: Vec<String>,
     /// Per signal the deviation that counts as one where a recording begins.
     pub deviations: Vec<f64>,
+    /// How far the first state of each train recording was from the model's own start where that was found last, in sizes;
+    /// nothing where it was not.
+    pub off: Vec<Vec<f64>>,
 }
 
 /// What a model leaves of one recording: per signal measured minus simulated, of the samples behind the beginning; NaN
@@ -166,6 +171,8 @@ pub struct Evaluated {
     pub errors: Vec<Errors>,
     /// Per recording, piece and signal.
     pub products: Vec<Vec<Vec<Products>>>,
+    /// Per recording how far its first state is from the model's own start, in sizes.
+    pub off: Vec<Vec<f64>>,
 }
 
 impl Evaluated {
@@ -236,6 +243,16 @@ impl Candidate {
         Some(errors)
     }
 
+    /// Begins where a model much like it did: states of one name are the same.
+    pub fn begins_as(&mut self, other: &Candidate) {
+        let name = |c: &Candidate, v: VarId| c.model.plan.system.dae.variables[v.index()].name.clone();
+        let known: BTreeMap<String, usize> =
+            other.model.plan.state_variables().enumerate().map(|(i, v)| (name(other, v), i)).collect();
+        let places: Vec<_> = self.model.plan.state_variables().map(|v| known.get(&name(self, v)).copied()).collect();
+        let guess = |off: &Vec<f64>| places.iter().map(|p| p.map_or(0.0, |i| off[i])).collect();
+        self.off = other.off.iter().map(guess).collect();
+    }
+
     /// A step to a point of this cost, doubled as long as the cost falls, within the bounds.
     pub fn stretched(
         &self,
@@ -270,18 +287,28 @@ impl Candidate {
     pub fn evaluate(&self, x: &[f64], train: &[Recording]) -> Option<Evaluated> {
         let one = |(i, r): (usize, &Recording)| self.evaluate_one(x, r, i);
         let all: Option<Vec<_>> = train.par_iter().enumerate().map(one).collect();
-        let (errors, products) = all?.into_iter().unzip();
-        Some(Evaluated { errors, products })
+        let mut found = Evaluated { errors: Vec::new(), products: Vec::new(), off: Vec::new() };
+        for (errors, products, off) in all? {
+            found.errors.push(errors);
+            found.products.push(products);
+            found.off.push(off);
+        }
+        Some(found)
     }
 
-    /// Errors of the `number`-th train recording, and the sums of its pieces and signals.
-    fn evaluate_one(&self, x: &[f64], recording: &Recording, number: usize) -> Option<(Errors, Vec<Vec<Products>>)> {
+    /// Errors of the `number`-th train recording, the sums of its pieces and signals, and where it begins.
+    fn evaluate_one(
+        &self,
+        x: &[f64],
+        recording: &Recording,
+        number: usize,
+    ) -> Option<(Errors, Vec<Vec<Products>>, Vec<f64>)> {
         let (signals, width) = (self.deviations.len(), self.coordinates.len());
         let samples = recording.len() - recording.settled() - 1;
         let mut errors = vec![Vec::with_capacity(samples); signals];
         let mut sums = vec![vec![Products::none(width); signals]; PIECES];
         let mut sample = 0;
-        self.run(x, recording, Some(number), recording.len(), true, |errors_of, slopes| {
+        let off = self.run(x, recording, Some(number), recording.len(), true, |errors_of, slopes| {
             let into = &mut sums[piece(sample, samples)];
             sample += 1;
             for (i, e) in errors_of.iter().enumerate() {
@@ -291,7 +318,7 @@ impl Candidate {
                 }
             }
         })?;
-        Some((errors, sums))
+        Some((errors, sums, off))
     }
 
     /// Groups of coordinates that are tried one at a time beside those in front of them all: of each the sums with these,
@@ -310,6 +337,7 @@ impl Candidate {
         Some(groups.iter().enumerate().map(|(k, group)| sums.iter().map(|s| s.of(k, group)).collect()).collect())
     }
 
+    /// Goes through a recording; gives how far its first state is from the model's own start.
     fn run(
         &self,
         x: &[f64],
@@ -318,7 +346,7 @@ impl Candidate {
         end: usize,
         slopes: bool,
         mut at: impl FnMut(&[f64], Option<&DMatrix<f64>>),
-    ) -> Option<()> {
+    ) -> Option<Vec<f64>> {
         let theta = self.theta_of(x, number);
         let model = &self.model;
         let acts = |c: &Coordinate| !model.own.iter().any(|own| own.0 == c.parameter && Some(own.1) != number);
@@ -332,7 +360,8 @@ impl Candidate {
             units: &self.units,
             deviations: &self.deviations,
         };
-        let mut begun = valued.begin(recording, slopes.then_some(&moves[..]))?;
+        let guess = number.and_then(|k| self.off.get(k));
+        let mut begun = valued.begin(recording, guess.map(Vec::as_slice), slopes.then_some(&moves[..]))?;
         let from = recording.settled();
         let mut errors = vec![0.0; self.deviations.len()];
         let mut course = Course {
@@ -350,6 +379,7 @@ impl Candidate {
             let signals = recording.signals.iter().zip(&local.outputs);
             errors.iter_mut().zip(signals).for_each(|(e, (y, simulated))| *e = y[k] - simulated);
             at(&errors, slopes);
-        })
+        })?;
+        Some(begun.off)
     }
 }

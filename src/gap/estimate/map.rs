@@ -91,6 +91,7 @@ impl Fit {
         let evaluated = candidate.evaluate(&x, train)?;
         let weights = first.unwrap_or_else(|| Weights::of(&evaluated.errors, full_scale));
         let mut fit = Fit { candidate, x, evaluated, weights };
+        fit.candidate.off.clone_from(&fit.evaluated.off);
         for round in 0..rounds {
             if round > 0 {
                 fit.weights = Weights::of(&fit.evaluated.errors, full_scale);
@@ -119,6 +120,7 @@ impl Fit {
                 if let Some(found) = cost(&x).filter(|c| *c < before) {
                     let (x, _) = self.candidate.stretched(&self.x, (x, found), &cost);
                     let Some(evaluated) = self.candidate.evaluate(&x, train) else { break };
+                    self.candidate.off.clone_from(&evaluated.off);
                     (self.x, self.evaluated) = (x, evaluated);
                     damping /= EASED;
                     taken = true;

@@ -18,10 +18,11 @@ pub const TRAVEL: f64 = 0.5;
 pub const KELVIN: f64 = 10.0;
 /// And those that begin where the model says.
 const HELD: f64 = 1e-6;
-/// Gauss-Newton steps at most, halvings of one that leads nowhere, and the change of the state in its sizes that is none.
+/// Gauss-Newton steps at most, and halvings of one that leads nowhere.
 const ROUNDS: usize = 6;
 const HALVINGS: usize = 3;
-const SMALL: f64 = 1e-4;
+/// A step of the first state, in its sizes, that the linear model takes along: what it leaves out grows with the square.
+const SMALL: f64 = 1e-3;
 
 /// A model with values, and what is known of its states.
 #[derive(Clone, Copy)]
@@ -44,6 +45,8 @@ pub struct Valued<'a> {
 pub struct Begun {
     /// The model there.
     pub local: Local,
+    /// How far its first state was from the model's own start, in sizes.
+    pub off: Vec<f64>,
     /// Its state, SI.
     pub state: Vec<f64>,
     /// How the state depends on what was asked for.
@@ -51,18 +54,37 @@ pub struct Begun {
 }
 
 impl Valued<'_> {
-    /// Goes through the beginning of a recording. `moves`: the parameters whose slopes are wanted, and by how much one unit
-    /// of each moves them. `None` where the model has no value there.
-    pub fn begin(&self, recording: &Recording, moves: Option<&[(usize, f64)]>) -> Option<Begun> {
+    /// Goes through the beginning of a recording. `guess`: how far a model much like it began from its own start. `moves`: the
+    /// parameters whose slopes are wanted, and by how much one unit of each moves them. `None` where the model has no value
+    /// there.
+    pub fn begin(
+        &self,
+        recording: &Recording,
+        guess: Option<&[f64]>,
+        moves: Option<&[(usize, f64)]>,
+    ) -> Option<Begun> {
         let u = Inputs::new(recording).from;
         let mut local = Local::start(self.plan.clone(), recording.times[0], self.theta, &u).ok()?;
         let own = local.state();
         local.linearize(recording.times[0], &own, self.theta, &u).ok()?;
         let loose = self.looseness(&local);
-        let mut x = DVector::zeros(own.len());
-        let mut best = self.through(recording, &mut local, &own, &loose, &x, &[])?;
+        let nowhere = DVector::zeros(own.len());
+        let moved = moves.unwrap_or(&[]);
+        let mut first = guess.filter(|g| g.len() == own.len()).and_then(|g| {
+            let x = DVector::from_column_slice(g);
+            Some((self.through(recording, &mut local, &own, &loose, &x, moved)?, x, moved))
+        });
+        if first.is_none() {
+            first = Some((self.through(recording, &mut local, &own, &loose, &nowhere, &[])?, nowhere, &[]));
+        }
+        let (mut best, mut x, mut known) = first?;
         for _ in 0..ROUNDS {
             let Some(mut step) = best.step(&x, &loose) else { break };
+            if step.amax() < SMALL {
+                best.take_along(&step, self.sizes);
+                x += &step;
+                break;
+            }
             let mut found = None;
             for _ in 0..HALVINGS {
                 let tried = self.through(recording, &mut local, &own, &loose, &(&x + &step), &[]);
@@ -74,14 +96,14 @@ impl Valued<'_> {
             }
             let Some(found) = found else { break };
             x += &step;
-            best = found;
-            if step.amax() < SMALL {
-                break;
-            }
+            (best, known) = (found, &[]);
         }
-        let Some(moves) = moves else { return Some(Begun { local, state: best.state, slopes: None }) };
-        let last = self.through(recording, &mut local, &own, &loose, &x, moves)?;
-        Some(Begun { local, slopes: Some(last.slopes_of_choices(&loose, moves, self.units.len())), state: last.state })
+        let off = x.as_slice().to_vec();
+        let Some(moves) = moves else { return Some(Begun { local, off, state: best.state, slopes: None }) };
+        if known.len() < moves.len() {
+            best = self.through(recording, &mut local, &own, &loose, &x, moves)?;
+        }
+        Some(Begun { local, off, slopes: Some(best.slopes_of_choices(&loose, moves, self.units.len())), state: best.state })
     }
 
     /// Deviations of the states from the model's own start, in their sizes. What the model fixes and no sensor shows by
@@ -162,6 +184,12 @@ impl Beginning {
         let mut information = self.gram.view((0, 0), (n, n)).into_owned();
         (0..n).for_each(|i| information[(i, i)] += loose[i].powi(-2));
         information.cholesky()
+    }
+
+    /// Moves the last state as a step of the first one does.
+    fn take_along(&mut self, step: &DVector<f64>, sizes: &[f64]) {
+        let moved = self.slopes.columns(0, step.len()) * step;
+        self.state.iter_mut().zip(moved.iter().zip(sizes)).for_each(|(s, (m, size))| *s += m * size);
     }
 
     fn step(&self, x: &DVector<f64>, loose: &DVector<f64>) -> Option<DVector<f64>> {

@@ -4,7 +4,6 @@
 use super::super::policy::{ACCURACY, ALPHA, DELTA, NEAR, OPENS, PROMISED, SURE};
 use super::compare::{Sensors, chances, differences, loss, needed, t_statistic};
 use super::confirm::Asked;
-use super::screen::Start;
 use super::weighed::{Weighed, ahead, left_by, nats, saved};
 use std::collections::BTreeMap;
 
@@ -105,13 +104,12 @@ impl Criteria {
         (0..self.first.len()).all(|i| self.least(before, i) > left(i)) && !self.is_bent(before)
     }
 
-    /// Whether a start promises, or shows after a step, enough to be worth a fit: left-out data may see more of it.
-    pub fn may_be_worth(&self, before: &Weighed, start: &Start) -> bool {
+    /// Whether a model that leaves such mean squares of the train recordings is worth a fit: left-out data may see more of it.
+    pub fn may_be_worth(&self, before: &Weighed, squares: &[f64]) -> bool {
         let gap = |square: f64, i: usize| (square - self.sensors.noise[i].powi(2)).max(0.0).sqrt();
         let shrinks = |i: usize| {
             let now = gap(before.fit.mean_square(i), i);
-            let then = gap(start.leaves.squares[i].min(start.promised.squares[i]), i);
-            now - then >= PROMISED * self.least(before, i)
+            now - gap(squares[i], i) >= PROMISED * self.least(before, i)
         };
         (0..self.first.len()).any(shrinks) || self.is_bent(before)
     }

@@ -32,6 +32,8 @@ pub struct Ground<'a> {
     pub sensors: &'a Sensors,
     /// The model.
     pub before: &'a Fit,
+    /// Whether a model that leaves such mean squares of the signals may be worth a name.
+    pub may_be_worth: &'a (dyn Fn(&[f64]) -> bool + Sync),
 }
 
 /// A start of a model with one hypothesis more.
@@ -75,6 +77,8 @@ pub type Screened = (usize, Vec<Start>);
 pub struct Screen {
     /// Those worth a fit.
     pub best: Vec<Screened>,
+    /// Those whose linear model promises too little, with the gap that it would leave, in parts of full scale.
+    pub too_little: Vec<(usize, f64)>,
     /// Per hypothesis that vanishes where it begins: what it would gain at its usual size, nats.
     pub visible: Vec<f64>,
 }
@@ -108,11 +112,15 @@ pub fn screened(ground: &Ground<'_>, open: &[usize]) -> Screen {
         }
     }
     all.retain(|(_, models)| !models.is_empty());
+    let promises = |m: &Begun| (ground.may_be_worth)(&m.promised.squares);
+    let (all, others): (Vec<_>, Vec<_>) = all.into_iter().partition(|(_, models)| models.iter().any(promises));
+    let gap = |(i, models): &Beginnings| (*i, models.iter().map(|m| m.promised.gap).fold(f64::INFINITY, f64::min));
+    let too_little = others.iter().map(gap).collect();
     let has_own = |b: &Beginnings| b.1[0].candidate.own > ground.before.candidate.own;
     let (own, nothing): (Vec<_>, Vec<_>) = all.into_iter().partition(has_own);
     let mut best = ground.best(&own, FITTED);
     best.extend(ground.best(&nothing, FITTED_WITHOUT));
-    Screen { best, visible }
+    Screen { best, too_little, visible }
 }
 
 /// Whether the model with a hypothesis is at its first values the model without it.
@@ -210,7 +218,8 @@ impl Ground<'_> {
         }
         let mut causes = self.before.causes();
         causes.push(Chosen { hypothesis, values: values.first()?.clone() });
-        let first = candidate(self.problem, &causes, Some(&tolerances), self.before.candidate.taken)?;
+        let mut first = candidate(self.problem, &causes, Some(&tolerances), self.before.candidate.taken)?;
+        first.begins_as(&self.before.candidate);
         let with = |values: &Vec<f64>| {
             let mut candidate = first.clone();
             if let (Some(places), false) = (candidate.model.attached.last(), is_parameter) {
@@ -267,7 +276,8 @@ impl Ground<'_> {
         let shapes = causes.len();
         causes.extend(some.iter().cloned());
         let taken = self.before.candidate.taken;
-        let model = models::attached(self.problem, &causes, Some(&self.before.tolerances()), taken, shapes).ok()?;
+        let mut model = models::attached(self.problem, &causes, Some(&self.before.tolerances()), taken, shapes).ok()?;
+        model.begins_as(&self.before.candidate);
         let mut first = self.before.x.len();
         let group = |c: &Chosen| {
             let from = first;

@@ -205,14 +205,15 @@ impl Search<'_> {
         if self.visible.is_some() && self.criteria.nothing_is_worth_it(before) {
             return Vec::new();
         }
-        let ground = Ground { problem: self.problem, sensors: &self.criteria.sensors, before: &before.fit };
-        let mut screen = screened(&ground, open);
+        let may_be_worth = |squares: &[f64]| self.criteria.may_be_worth(before, squares);
+        let (problem, sensors) = (self.problem, &self.criteria.sensors);
+        let ground = Ground { problem, sensors, before: &before.fit, may_be_worth: &may_be_worth };
+        let screen = screened(&ground, open);
         let seen = |visible: &[f64]| visible.iter().filter(|v| **v > SEEN).count() as f64 / visible.len().max(1) as f64;
         self.visible.get_or_insert(seen(&screen.visible));
-        let may = |s: &Screened| s.1.iter().any(|start| self.criteria.may_be_worth(before, start));
-        let reason = |i: usize| match screen.best.iter().find(|s| s.0 == i) {
-            Some(s) if may(s) => None,
-            Some(s) => Some(Reason::TooLittle(s.1[0].leaves.gap)),
+        let reason = |i: usize| match screen.too_little.iter().find(|s| s.0 == i) {
+            _ if screen.best.iter().any(|s| s.0 == i) => None,
+            Some((_, gap)) => Some(Reason::TooLittle(*gap)),
             None => Some(Reason::Behind),
         };
         let trial = |&i: &usize| {
@@ -220,7 +221,6 @@ impl Search<'_> {
             Some(Trial { step, chosen, found: None, reason: Some(reason(i)?) })
         };
         self.passed = open.iter().filter_map(trial).collect();
-        screen.best.retain(|s| !self.passed.iter().any(|t| t.chosen.hypothesis == s.0));
         screen.best
     }
 
