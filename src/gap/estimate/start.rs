@@ -22,7 +22,7 @@ const HELD: f64 = 1e-6;
 const ROUNDS: usize = 6;
 const HALVINGS: usize = 3;
 /// A step of the first state, in its sizes, that the linear model takes along: what it leaves out grows with the square.
-const SMALL: f64 = 1e-3;
+const SMALL: f64 = 1e-2;
 
 /// A model with values, and what is known of its states.
 #[derive(Clone, Copy)]

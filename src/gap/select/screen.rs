@@ -315,8 +315,9 @@ impl Ground<'_> {
     }
 
     /// A model at a point.
-    fn at(&self, candidate: Candidate, x: Vec<f64>) -> Option<Begun> {
+    fn at(&self, mut candidate: Candidate, x: Vec<f64>) -> Option<Begun> {
         let evaluated = candidate.evaluate(&x, &self.problem.train)?;
+        candidate.off.clone_from(&evaluated.off);
         let sums = evaluated.by_signal(x.len());
         self.begin(candidate, x, &evaluated.errors, &sums)
     }
