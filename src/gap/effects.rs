@@ -1,8 +1,8 @@
 //! The catalogue of effects: read from the shipped models and from a folder of the study.
 
 use super::circuit::Quantity;
-use crate::compile::{Request, flatten};
-use crate::diag::{Checked, Code, Diagnostic, FileId};
+use crate::compile::{Outcome, Request, flatten};
+use crate::diag::{Code, Diagnostic, FileId};
 use crate::expr::{ExprId, Node};
 use crate::flat::{FlatModel, Variable};
 use crate::shipped::Shipped;
@@ -114,10 +114,10 @@ pub struct Shape {
     pub order: bool,
 }
 
-/// Parameters that take the range of a potential.
+/// Parameters that take the range of a potential, or of what flows through a Series element.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Range {
-    /// The potential, by its name in the effect.
+    /// The potential or through variable, by its name in the effect.
     pub of: String,
     /// It is the size of the potential's rate whose range is taken.
     pub rate: bool,
@@ -190,17 +190,17 @@ pub struct Catalogue {
 }
 
 /// Reads the shipped effects and those of a folder.
-pub fn catalogue(world: &dyn World, folder: Option<&Path>) -> Checked<Catalogue> {
-    let Checked { value, diagnostics } = everything(world, folder);
+pub fn catalogue(world: &dyn World, folder: Option<&Path>) -> Outcome<Catalogue> {
+    let Outcome { sources, diagnostics, value } = everything(world, folder);
     let parted = |all: Vec<Arc<Effect>>| {
         let (mut disturbances, effects): (Vec<_>, Vec<_>) = all.into_iter().partition(|e| e.family == DISTURBANCE);
         disturbances.retain(|d| d.class.starts_with("Effects."));
         Catalogue { effects, disturbances }
     };
-    Checked { value: value.map(parted), diagnostics }
+    Outcome { sources, diagnostics, value: value.map(parted) }
 }
 
-fn everything(world: &dyn World, folder: Option<&Path>) -> Checked<Vec<Arc<Effect>>> {
+fn everything(world: &dyn World, folder: Option<&Path>) -> Outcome<Vec<Arc<Effect>>> {
     let mut reader = Reader::default();
     reader.folder(&Shipped, Path::new("components/Effects"), "Effects");
     if let Some(folder) = folder {
@@ -285,7 +285,7 @@ impl Reader {
         self.classes.get(name)
     }
 
-    fn finish(mut self, world: &dyn World, folder: Option<&Path>) -> Checked<Vec<Arc<Effect>>> {
+    fn finish(mut self, world: &dyn World, folder: Option<&Path>) -> Outcome<Vec<Arc<Effect>>> {
         let wanted: Vec<(&Found, &Found)> = self
             .order
             .iter()
@@ -294,8 +294,8 @@ impl Reader {
             .filter_map(|f| Some((f, self.interface(f)?)))
             .collect();
         let names: Vec<&str> = wanted.iter().map(|(f, _)| f.class.as_str()).collect();
-        let checked = flatten_all(world, folder, &names);
-        let Some(flat) = checked.value else { return Checked::failed(checked.diagnostics) };
+        let Outcome { sources, diagnostics, value } = flatten_all(world, folder, &names);
+        let Some(flat) = value else { return Outcome { sources, diagnostics, value: None } };
         let read = Attributes::of(&flat);
         let mut effects = Vec::new();
         let mut bad = Vec::new();
@@ -306,7 +306,7 @@ impl Reader {
             }
         }
         self.diagnostics.extend(bad);
-        Checked { value: Some(effects), diagnostics: self.diagnostics }
+        Outcome { sources, diagnostics: self.diagnostics, value: Some(effects) }
     }
 }
 
@@ -329,7 +329,7 @@ fn unusable(class: &str, why: &str) -> Diagnostic {
 }
 
 /// One model that holds every effect once, named `e0`, `e1`, ...
-fn flatten_all(world: &dyn World, folder: Option<&Path>, names: &[&str]) -> Checked<FlatModel> {
+fn flatten_all(world: &dyn World, folder: Option<&Path>, names: &[&str]) -> Outcome<FlatModel> {
     let mut text = String::from("model Catalogue\n");
     for (i, name) in names.iter().enumerate() {
         text.push_str(&format!("  {name} e{i};\n"));
@@ -339,8 +339,8 @@ fn flatten_all(world: &dyn World, folder: Option<&Path>, names: &[&str]) -> Chec
     let overlay = Overlay { base: world, files: MemoryWorld::single(&source, text) };
     let mut request = Request { source, model: Some("Catalogue".into()), ..Request::default() };
     own_classes(world, folder, &mut request);
-    let outcome = flatten(&overlay, &request);
-    Checked { value: outcome.value.map(|f| f.flat), diagnostics: outcome.diagnostics }
+    let Outcome { sources, diagnostics, value } = flatten(&overlay, &request);
+    Outcome { sources, diagnostics, value: value.map(|f| f.flat) }
 }
 
 /// Makes the classes of the user's folder known.

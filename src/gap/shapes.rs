@@ -1,11 +1,13 @@
 //! Grids of shapes fitted to what the recordings can show: times to the sampling step, thresholds to the values that
 //! occur, forms over a potential to its range, frequencies to the lines that the nominal model has not.
 
+use super::circuit::same_kind;
 use super::data::Recording;
 use super::effects::{Coefficient, Shape};
 use super::hypotheses::{Attachment, Hypothesis, Signal, Site};
 use super::lines;
 use super::problem::Problem;
+use crate::units::Unit;
 use std::collections::BTreeMap;
 
 /// The sampling step for which the effects' own grids of times are made, s.
@@ -16,6 +18,13 @@ const LASTING: f64 = 1.0 / 3.0;
 const QUANTILES: [f64; 5] = [0.2, 0.4, 0.6, 0.8, 0.95];
 /// Part of the speeds that are no jumps.
 const USUAL: f64 = 0.995;
+/// A corner of friction is at most so wide, in parts of the greatest speed: slow machines would never leave it.
+const CORNER: f64 = 0.02;
+
+/// A variable of a port: its potential, or what flows through it.
+type Variable = (usize, bool);
+/// What the nominal model says of such variables over all recordings, one after the other, SI.
+type Known = BTreeMap<Variable, Vec<f64>>;
 /// A limit of a signal is tried at these parts of the way from its least to its greatest size.
 const PARTS: [f64; 4] = [0.4, 0.6, 0.8, 0.97];
 
@@ -48,6 +57,10 @@ pub fn fit(problem: &mut Problem<'_>) {
                 shape.grid.clone_from(&lines);
             } else if shape.unit == "s" {
                 time(shape, slower.max(1.0), longest);
+            } else if is_corner(shape) {
+                let fastest = fastest(&site, &potentials, &times);
+                let widest = fastest.map_or(f64::INFINITY, |v| CORNER * v);
+                shape.grid.iter_mut().for_each(|x| *x = x.min(widest));
             } else if let Some(occurs) = values(shape, &site, &potentials) {
                 shape.grid = QUANTILES.iter().map(|q| occurs[(q * (occurs.len() - 1) as f64) as usize]).collect();
                 shape.grid.retain(|x| *x > 0.0);
@@ -84,33 +97,51 @@ fn time(shape: &mut Shape, slower: f64, longest: f64) {
     shape.max = Some(shape.max.map_or(most, |m| m.min(most)));
 }
 
-fn thresholds(h: &Hypothesis) -> impl Iterator<Item = usize> {
-    let ports = match h.attachments[0].site {
+/// Ports at which an effect acts, where a potential of theirs counts.
+fn ports(site: &Site) -> Vec<usize> {
+    match *site {
         Site::Node(p) => vec![p],
         Site::Across(a, b) => vec![a, b],
         _ => Vec::new(),
-    };
-    let compared = h.shapes.iter().any(|s| s.threshold || s.level);
-    ports.into_iter().filter(move |_| compared)
+    }
 }
 
-/// The port whose range of potential an effect takes.
-fn ranged(a: &Attachment) -> Option<usize> {
+/// Whether a shape is the speed over which a friction changes sign.
+fn is_corner(shape: &Shape) -> bool {
+    shape.grid.len() == 1 && ["rad/s", "m/s"].iter().any(|u| same_kind(&shape.unit, u))
+}
+
+/// Greatest speed at a site, of one side against the other where it has two; nothing where it stands still.
+fn fastest(site: &Site, potentials: &Known, times: &[&[f64]]) -> Option<f64> {
+    let known: Option<Vec<&Vec<f64>>> = ports(site).into_iter().map(|p| potentials.get(&(p, false))).collect();
+    let moved: Vec<f64> = match known?.as_slice() {
+        [one] => one.to_vec(),
+        [a, b] => a.iter().zip(b.iter()).map(|(a, b)| a - b).collect(),
+        _ => return None,
+    };
+    speeds(&moved, times).last().copied().filter(|v| *v > 0.0)
+}
+
+fn compared(h: &Hypothesis) -> impl Iterator<Item = Variable> {
+    let compared = h.shapes.iter().any(|s| s.threshold || s.level || is_corner(s));
+    ports(&h.attachments[0].site).into_iter().filter(move |_| compared).map(|p| (p, false))
+}
+
+/// The variable whose range an effect takes.
+fn ranged(a: &Attachment) -> Option<Variable> {
     let effect = a.effect.as_ref()?;
     let range = effect.range.as_ref()?;
-    let ports = match a.site {
-        Site::Node(p) => vec![p],
-        Site::Across(x, y) => vec![x, y],
-        _ => Vec::new(),
-    };
     let i = &effect.interface;
-    let mut read = i.potential.iter().zip(ports).chain(i.sense.iter().zip(a.sense.iter().copied()));
-    read.find(|(q, _)| q.name == range.of).map(|(_, p)| p)
+    if let (Site::Into(p), Some(through)) = (&a.site, &i.through) {
+        return (through.name == range.of).then_some((*p, true));
+    }
+    let mut read = i.potential.iter().zip(ports(&a.site)).chain(i.sense.iter().zip(a.sense.iter().copied()));
+    read.find(|(q, _)| q.name == range.of).map(|(_, p)| (p, false))
 }
 
 /// The parameters that take the range of a potential, with their values; empty where it stands still or is not known,
 /// `None` for effects without.
-fn range(a: &Attachment, potentials: &BTreeMap<usize, Vec<f64>>, times: &[&[f64]]) -> Option<Vec<(String, String)>> {
+fn range(a: &Attachment, potentials: &Known, times: &[&[f64]]) -> Option<Vec<(String, String)>> {
     let names = a.effect.as_ref()?.range.as_ref()?;
     let potential = ranged(a).and_then(|p| potentials.get(&p)).map_or(&[][..], Vec::as_slice);
     let values = if names.rate { speeds(potential, times) } else { potential.to_vec() };
@@ -137,32 +168,37 @@ fn speeds(potential: &[f64], times: &[&[f64]]) -> Vec<f64> {
     speeds
 }
 
-/// Potentials of all ports that a threshold or a range needs, as the nominal model has them; empty where it has none.
-fn potentials(problem: &Problem<'_>) -> BTreeMap<usize, Vec<f64>> {
-    let mut ports: Vec<usize> = problem.hypotheses.iter().flat_map(thresholds).collect();
-    ports.extend(problem.hypotheses.iter().flat_map(|h| &h.attachments).filter_map(ranged));
-    ports.sort_unstable();
-    ports.dedup();
-    let signal = |(i, &p): (usize, &usize)| {
+/// Variables of all ports that a threshold, a corner or a range needs, as the nominal model has them; empty where it has none.
+fn potentials(problem: &Problem<'_>) -> Known {
+    let mut wanted: Vec<Variable> = problem.hypotheses.iter().flat_map(compared).collect();
+    wanted.extend(problem.hypotheses.iter().flat_map(|h| &h.attachments).filter_map(ranged));
+    wanted.sort_unstable();
+    wanted.dedup();
+    let signal = |(i, &(p, flows)): (usize, &Variable)| {
         let port = &problem.circuit.ports[p];
-        Signal {
-            name: format!("potential_{i}"),
-            variable: format!("{}.{}", port.name, port.potential.name),
-            scale: 1.0,
-        }
+        let own = if flows { &port.through } else { &port.potential };
+        Signal { name: format!("potential_{i}"), variable: format!("{}.{}", port.name, own.name), scale: 1.0 }
     };
-    let signals: Vec<Signal> = ports.iter().enumerate().map(signal).collect();
-    let found = if ports.is_empty() { None } else { problem.observe(&signals) };
-    ports.into_iter().zip(found.unwrap_or_default()).collect()
+    let signals: Vec<Signal> = wanted.iter().enumerate().map(signal).collect();
+    let found = if wanted.is_empty() { None } else { problem.observe(&signals) };
+    let in_si = |((p, flows), mut values): (Variable, Vec<f64>)| {
+        let port = &problem.circuit.ports[p];
+        let unit = Unit::parse(if flows { &port.through.unit } else { &port.potential.unit });
+        let (factor, offset) = unit.map_or((1.0, 0.0), |u| (u.factor(), u.offset));
+        values.iter_mut().for_each(|v| *v = *v * factor + offset);
+        ((p, flows), values)
+    };
+    wanted.into_iter().zip(found.unwrap_or_default()).map(in_si).collect()
 }
 
 /// What a threshold at this site is compared with, sorted.
-fn values(shape: &Shape, site: &Site, potentials: &BTreeMap<usize, Vec<f64>>) -> Option<Vec<f64>> {
+fn values(shape: &Shape, site: &Site, potentials: &Known) -> Option<Vec<f64>> {
+    let of = |p: &usize| potentials.get(&(*p, false));
     let mut values = match site {
         _ if !shape.threshold && !shape.level => return None,
-        Site::Node(p) => potentials.get(p)?.clone(),
-        Site::Across(p, _) if shape.level => potentials.get(p)?.clone(),
-        Site::Across(a, b) => potentials.get(a)?.iter().zip(potentials.get(b)?).map(|(a, b)| a - b).collect(),
+        Site::Node(p) => of(p)?.clone(),
+        Site::Across(p, _) if shape.level => of(p)?.clone(),
+        Site::Across(a, b) => of(a)?.iter().zip(of(b)?).map(|(a, b)| a - b).collect(),
         _ => return None,
     };
     values.retain(|v| v.is_finite());

@@ -253,14 +253,14 @@ fn offer(world: &dyn World, study: &Study, signals: &[Signal], free: &[Free]) ->
     let outcome = circuit::circuit(world, &study.request());
     let Some(circuit) = outcome.value else { return Err(Unusable::model(outcome)) };
     let folder = study.effects.folder.as_ref().map(|f| study.folder.join(f));
-    let checked = effects::catalogue(world, folder.as_deref());
-    let Some(catalogue) = checked.value else { return Err(Unusable::study(checked.diagnostics)) };
+    let read = effects::catalogue(world, folder.as_deref());
+    let Some(catalogue) = read.value else { return Err(Unusable::model(read)) };
     let mut hypotheses = hypotheses::hypotheses(&circuit, &catalogue.effects, signals, free);
     hypotheses::narrow(&mut hypotheses, &study.effects);
     let measured = study.inputs.iter().filter(|i| i.measured).map(|i| i.name.as_str()).collect::<Vec<_>>();
     hypotheses::without_commands(&mut hypotheses, &circuit, &measured);
     let (effects, sources) = (catalogue.effects, catalogue.disturbances);
-    Ok(Offer { circuit, folder, hypotheses, effects, sources, diagnostics: checked.diagnostics })
+    Ok(Offer { circuit, folder, hypotheses, effects, sources, diagnostics: read.diagnostics })
 }
 
 fn signals(flat: &FlatModel, bound: &Bound, ranges: &[f64]) -> Vec<Signal> {

@@ -243,6 +243,45 @@ impl Candidate {
         Some(errors)
     }
 
+    /// What the model leaves of a recording that took no part, where it has values of its own for each recording: each piece
+    /// with those that fit the other pieces best. `None` where it does not reach the end.
+    pub fn errors_elsewhere(&self, x: &[f64], recording: &Recording) -> Option<Errors> {
+        // the values of the first recording stand for those of this one
+        let is_own = |c: &Coordinate| self.model.own.contains(&(c.parameter, 0));
+        let own: Vec<usize> = (0..x.len()).filter(|&i| is_own(&self.coordinates[i])).collect();
+        let mut without = x.to_vec();
+        own.iter().for_each(|&i| without[i] = self.coordinates[i].of(0.0));
+        let (mut errors, products, _) = self.evaluate_one(&without, recording, 0)?;
+        let samples = errors.first().map_or(0, Vec::len);
+        for k in 0..PIECES {
+            let others = products.iter().enumerate().filter(|(piece, _)| *piece != k).map(|(_, signals)| signals);
+            let fitted = self.moved(&without, &own, others);
+            let found = self.errors(&fitted, recording, Some(0))?;
+            for (to, from) in errors.iter_mut().zip(&found) {
+                (0..samples).filter(|s| piece(*s, samples) == k).for_each(|s| to[s] = from[s]);
+            }
+        }
+        Some(errors)
+    }
+
+    /// Some coordinates where they fit some pieces best, the others as they are.
+    fn moved<'a>(&self, x: &[f64], own: &[usize], pieces: impl Iterator<Item = &'a Vec<Products>>) -> Vec<f64> {
+        let mut sum = Products::none(x.len());
+        for signals in pieces {
+            signals.iter().zip(&self.deviations).for_each(|(p, d)| sum.add_weighed(p, d.powi(-2)));
+        }
+        let seen: Vec<usize> = own.iter().copied().filter(|&i| sum.slopes[(i, i)] > 0.0).collect();
+        let information = DMatrix::from_fn(seen.len(), seen.len(), |a, b| sum.slopes[(seen[a], seen[b])]);
+        let mut x = x.to_vec();
+        if let Some(factor) = information.cholesky() {
+            let change = factor.solve(&DVector::from_fn(seen.len(), |a, _| sum.errors[seen[a]]));
+            for (a, &i) in seen.iter().enumerate() {
+                x[i] = (x[i] + change[a]).clamp(self.coordinates[i].low, self.coordinates[i].high);
+            }
+        }
+        x
+    }
+
     /// Begins where a model much like it did: states of one name are the same.
     pub fn begins_as(&mut self, other: &Candidate) {
         let name = |c: &Candidate, v: VarId| c.model.plan.system.dae.variables[v.index()].name.clone();

@@ -59,7 +59,12 @@ pub fn ask(before: &Fit, after: &Fit, held: &[Recording], nominal: f64, sensors:
 
 /// Errors on a recording that took no part; infinite where the simulation does not reach the end.
 fn of(candidate: &Candidate, x: &[f64], recording: &Recording) -> Errors {
-    candidate.errors(x, recording, None).unwrap_or_else(|| {
+    let found = if candidate.model.own.is_empty() {
+        candidate.errors(x, recording, None)
+    } else {
+        candidate.errors_elsewhere(x, recording)
+    };
+    found.unwrap_or_else(|| {
         let samples = recording.len() - recording.settled() - 1;
         recording.signals.iter().map(|_| vec![f64::INFINITY; samples]).collect()
     })

@@ -14,6 +14,8 @@ pub struct Rival {
     pub hypothesis: usize,
     /// At how many places it acts.
     pub places: usize,
+    /// By how many of its standard deviations its largest coefficient differs from nothing; infinite where none is free.
+    pub size: f64,
     /// The model with it.
     pub model: Weighed,
 }
@@ -33,6 +35,9 @@ pub enum Reason {
     /// It closes too little.
     #[error("closes less than is worth a name")]
     NotWorth,
+    /// Its size may as well be none, by so many of its standard deviations.
+    #[error("its size cannot be told from nothing: {0:.1} standard deviations")]
+    NoSize(f64),
     /// The gap over all signals grows, by this factor.
     #[error("the gap over all signals grows to {0:.2} times what it was")]
     Opens(f64),
@@ -63,6 +68,7 @@ pub struct Judged {
     pub gap: f64,
     sure: bool,
     worth: bool,
+    size: f64,
     opens: f64,
 }
 
@@ -74,7 +80,7 @@ impl Judged {
 
     /// Whether it may be taken where other data are sure of it.
     pub fn may(&self) -> bool {
-        self.worth && self.opens <= 1.0 + OPENS
+        self.worth && self.size > SURE && self.opens <= 1.0 + OPENS
     }
 
     /// Why it may not be taken.
@@ -82,6 +88,7 @@ impl Judged {
         match () {
             () if !self.sure => Reason::NotSure(self.chance, self.evidence, needed),
             () if !self.worth => Reason::NotWorth,
+            () if self.size <= SURE => Reason::NoSize(self.size),
             () => Reason::Opens(self.opens),
         }
     }
@@ -129,7 +136,7 @@ impl Criteria {
     /// Whether left-out data are sure of each rival, and whether it is worth a name.
     pub fn judged(&self, before: &Weighed, rivals: &[Rival]) -> Vec<Judged> {
         let (schemes, needed) = (before.left.len(), needed(self.count));
-        let mut all: Vec<Judged> = rivals.iter().map(|r| self.worth(before, &r.model)).collect();
+        let mut all: Vec<Judged> = rivals.iter().map(|r| self.worth(before, r)).collect();
         for scheme in 0..schemes {
             let d: Vec<Vec<f64>> = rivals
                 .iter()
@@ -152,7 +159,8 @@ impl Criteria {
     }
 
     /// The gap of a signal must shrink, or the parameters return to their data sheet.
-    fn worth(&self, before: &Weighed, model: &Weighed) -> Judged {
+    fn worth(&self, before: &Weighed, rival: &Rival) -> Judged {
+        let model = &rival.model;
         let closes = |i: usize| {
             let left = |w: &Weighed| left_by(&w.left[0], i, &self.sensors);
             left(before) - left(model) >= self.least(before, i)
@@ -161,7 +169,7 @@ impl Criteria {
         let worth = (0..self.first.len()).any(closes) || saved(before, model) > needed(self.count);
         let opens = gap / before.gap(&self.sensors).max(f64::MIN_POSITIVE);
         let (t, evidence) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
-        Judged { t, chance: 1.0, evidence, gap, sure: false, worth, opens }
+        Judged { t, chance: 1.0, evidence, gap, sure: false, worth, size: rival.size, opens }
     }
 
     /// Two models that are one for the user.

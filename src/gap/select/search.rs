@@ -2,6 +2,7 @@
 //! no name says more.
 
 use super::super::data::Recording;
+use super::super::effects::Coefficient;
 use super::super::estimate::Fit;
 use super::super::hypotheses::Hypothesis;
 use super::super::policy::{EFFECTS, FRONT, SEEN};
@@ -231,7 +232,7 @@ impl Search<'_> {
             let fits = starts.into_iter().filter_map(|s| as_they_are(problem, s.candidate, s.x));
             let fit = fits.min_by(|a, b| a.nats().total_cmp(&b.nats()))?;
             let places = problem.hypotheses[hypothesis].attachments.len();
-            Some(Rival { hypothesis, places, model: Weighed::new(problem, fit) })
+            Some(Rival { hypothesis, places, size: 0.0, model: Weighed::new(problem, fit) })
         };
         let mut rivals: Vec<Rival> = screened.into_par_iter().filter_map(one).collect();
         rivals.sort_by(|a, b| a.model.gap(sensors).total_cmp(&b.model.gap(sensors)));
@@ -241,6 +242,7 @@ impl Search<'_> {
                 rival.model = better;
             }
         });
+        rivals.par_iter_mut().for_each(|r| r.size = size(&problem.hypotheses[r.hypothesis], &r.model.fit));
         rivals
     }
 
@@ -298,12 +300,8 @@ impl Search<'_> {
         rivals.sort_by(|a, b| score(a).total_cmp(&score(b)));
     }
 
-    /// Why held recordings do not confirm a model; nothing where they do, or there are none, or the effect has values of its
-    /// own in each recording.
+    /// Why held recordings do not confirm a model; nothing where they do, or there are none.
     fn unconfirmed(&self, before: &Weighed, model: &Weighed) -> Option<Reason> {
-        if !model.fit.candidate.model.own.is_empty() {
-            return None;
-        }
         let asked = ask(&before.fit, &model.fit, self.held, self.nominal, &self.criteria.sensors)?;
         let confirmed = asked.confirms(saved(before, model), self.criteria.count);
         (!confirmed).then_some(Reason::NotConfirmed(asked))
@@ -360,6 +358,20 @@ impl Search<'_> {
     fn is_recording_error(&self, taken: &[Taken]) -> bool {
         taken.iter().any(|t| self.h(t.hypothesis).is_recording_error())
     }
+}
+
+/// By how many of its standard deviations the largest free coefficient of a model's last cause differs from nothing.
+fn size(h: &Hypothesis, fit: &Fit) -> f64 {
+    let Some(places) = fit.candidate.model.attached.last().filter(|_| !h.is_shape()) else { return f64::INFINITY };
+    let (theta, deviations) = (fit.candidate.theta(&fit.x), fit.deviations());
+    let coordinates = &fit.candidate.coordinates;
+    let one = |(c, &place): (&Coefficient, &usize)| {
+        let k = coordinates.iter().position(|own| own.parameter == place)?;
+        let deviation = deviations[k] * coordinates[k].slope(fit.x[k]);
+        let off = (theta[place] - c.off).abs();
+        Some(if off > 0.0 { off / deviation } else { 0.0 })
+    };
+    h.coefficients.iter().zip(places).filter_map(one).reduce(f64::max).unwrap_or(f64::INFINITY)
 }
 
 /// The cause that a model has beyond the one before.
