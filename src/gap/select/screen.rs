@@ -11,6 +11,7 @@ use super::super::policy::{DAMPINGS, FITTED, FITTED_WITHOUT, OTHER_WEIGHTING, ST
 use super::super::problem::{Chosen, Problem};
 use super::compare::{Sensors, total_gap};
 use super::models::{self, beginnings, candidate};
+use super::weighed::at_nominal;
 use nalgebra::DVector;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -162,9 +163,7 @@ impl Ground<'_> {
             return None;
         }
         let mut fit = self.before.clone();
-        for (x, (c, t)) in fit.x.iter_mut().zip(fit.candidate.coordinates.iter().zip(&self.problem.tolerances)) {
-            *x = c.of(t.nominal);
-        }
+        fit.x = at_nominal(self.problem, &fit.candidate, &fit.x);
         fit.evaluated = fit.candidate.evaluate(&fit.x, &self.problem.train)?;
         Some(fit)
     }

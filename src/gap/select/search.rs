@@ -12,7 +12,7 @@ use super::confirm::{ask, held_gap};
 use super::criteria::{Criteria, Judged, Reason, Rival};
 use super::models;
 use super::screen::{Ground, Screened, screened};
-use super::weighed::{Weighed, ahead, as_they_are, at_the_noise, left_by, saved, settled, weighed};
+use super::weighed::{Weighed, ahead, as_they_are, at_the_noise, from_nominal, left_by, saved, settled, weighed};
 use crate::diag::Diagnostic;
 use rayon::prelude::*;
 
@@ -238,8 +238,10 @@ impl Search<'_> {
         rivals.sort_by(|a, b| a.model.gap(sensors).total_cmp(&b.model.gap(sensors)));
         let front = FRONT.min(rivals.len());
         rivals[..front].par_iter_mut().for_each(|rival| {
-            if let Some(better) = at_the_noise(problem, sensors, &rival.model) {
-                rival.model = better;
+            for other in [from_nominal, at_the_noise] {
+                if let Some(better) = other(problem, sensors, &rival.model) {
+                    rival.model = better;
+                }
             }
         });
         rivals.par_iter_mut().for_each(|r| r.size = size(&problem.hypotheses[r.hypothesis], &r.model.fit));

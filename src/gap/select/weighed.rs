@@ -61,6 +61,24 @@ pub fn at_the_noise(problem: &Problem<'_>, sensors: &Sensors, one: &Weighed) -> 
     (ahead(one, &other, sensors) > OTHER_WEIGHTING).then_some(other)
 }
 
+/// The fit that begins with parameters at their data sheet, where they are bent away from it and that is better: what was
+/// missing before bent them, and from there the fit with it need not find back.
+pub fn from_nominal(problem: &Problem<'_>, sensors: &Sensors, one: &Weighed) -> Option<Weighed> {
+    let Fit { candidate, x, .. } = &one.fit;
+    if one.fit.prior() <= OTHER_WEIGHTING {
+        return None;
+    }
+    let begun = as_they_are(problem, candidate.clone(), at_nominal(problem, candidate, x))?;
+    let other = Weighed::new(problem, begun);
+    (ahead(one, &other, sensors) > 0.0).then_some(other)
+}
+
+/// A point with all parameters in their tolerances at their nominal values.
+pub fn at_nominal(problem: &Problem<'_>, candidate: &Candidate, x: &[f64]) -> Vec<f64> {
+    let nominal = candidate.coordinates.iter().zip(&problem.tolerances).map(|(c, t)| c.of(t.nominal));
+    nominal.chain(x[problem.tolerances.len()..].iter().copied()).collect()
+}
+
 /// Evidence of left-out data for the second model, nats.
 pub fn nats(a: &Weighed, b: &Weighed, scheme: usize, sensors: &Sensors) -> f64 {
     let tau = |i: usize| a.fit.weights.tau[i].max(b.fit.weights.tau[i]);
