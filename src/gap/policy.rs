@@ -48,7 +48,9 @@ pub const FITTED_WITHOUT: usize = 2;
 pub const STEPPED: usize = 2;
 /// Of those fitted, so many of the best are fitted again as if only the sensors' noise were left.
 pub const FRONT: usize = 4;
-/// Part of the least gain that is worth a name which a linear step must promise for a fit: left-out data may see more of it.
+/// Part of the least gain that is worth a name which a linear model must promise for a step: what bends comes to more.
+pub const HOPED: f64 = 0.25;
+/// Part of it which a step must show, or its linear model promise, for a fit: left-out data may see more of it.
 pub const PROMISED: f64 = 0.5;
 /// Starts from which each of them is fitted.
 pub const STARTS: usize = 2;

@@ -3,7 +3,7 @@
 
 use super::{Circuit, ModelInput};
 use crate::diag::{FileId, Sources, Span};
-use crate::expr::VarId;
+use crate::expr::{ExprId, Node as Term, VarId};
 use crate::flat::{Equation as FlatEquation, FlatModel, OriginKind, Type, Variability};
 use crate::instance::Instance;
 use crate::network::Network;
@@ -94,16 +94,13 @@ impl Links<'_> {
             return None;
         }
         let exprs = &self.flat.exprs;
-        let sides = [(e.lhs, e.rhs), (e.rhs, e.lhs)];
-        let receiver = |(side, value)| match exprs.node(side) {
-            crate::expr::Node::Var(v) => {
-                let leaves = exprs.dependencies(&[value]);
-                let apart = !leaves.vars.contains(&v) && !leaves.ders.contains(&v) && !leaves.pres.contains(&v);
-                (apart && self.is_of_component(&self.flat.variables[v.index()].name)).then_some((v, leaves))
-            }
-            _ => None,
-        };
-        let (v, leaves) = sides.into_iter().find_map(receiver)?;
+        // what is given stands on the left: `valve.u = k*e`, but `w = shaft.w` only looks
+        let Term::Var(v) = exprs.node(e.lhs) else { return None };
+        let leaves = exprs.dependencies(&[e.rhs]);
+        let apart = !leaves.vars.contains(&v) && !leaves.ders.contains(&v) && !leaves.pres.contains(&v);
+        if !apart || !self.is_of_component(&self.flat.variables[v.index()].name) {
+            return None;
+        }
         let moving: Vec<VarId> = leaves.vars.into_iter().filter(|v| self.moves(*v)).collect();
         if moving.is_empty() && leaves.ders.is_empty() && !leaves.time {
             return None;
@@ -112,8 +109,7 @@ impl Links<'_> {
         let names = moving.iter().map(|v| self.flat.variables[v.index()].name.clone());
         let inputs = if alone { names.collect() } else { Vec::new() };
         // an input that goes nowhere else is a place already
-        let same = |side| matches!(exprs.node(side), crate::expr::Node::Var(u) if self.is_input(u) && self.uses(u) == 1);
-        if same(e.lhs) || same(e.rhs) {
+        if matches!(exprs.node(e.rhs), Term::Var(u) if self.is_input(u) && self.uses(u) == 1) {
             return None;
         }
         self.placed(v, inputs, e.origin.span)
@@ -131,7 +127,7 @@ impl Links<'_> {
     fn placed(&self, receiver: VarId, inputs: Vec<String>, span: Span) -> Option<Placed> {
         let v = &self.flat.variables[receiver.index()];
         let real = v.ty == Type::Real && v.variability == Variability::Continuous && !v.flow;
-        let number = |e: Option<crate::expr::ExprId>| e.and_then(|e| self.flat.exprs.as_num(e));
+        let number = |e: Option<ExprId>| e.and_then(|e| self.flat.exprs.as_num(e));
         let (name, unit) = (v.name.clone(), v.unit.as_deref().unwrap_or("").to_string());
         let signal = ModelInput { name, ty: v.ty, unit, start: None, nominal: number(v.nominal) };
         real.then_some(Placed { signal, inputs, span })

@@ -1,7 +1,7 @@
 //! When is a hypothesis taken? When left-out data are sure of it, it is worth a name and it opens nothing; of those, the
 //! simplest among what cannot be told apart. Everything else has its reason.
 
-use super::super::policy::{ACCURACY, ALPHA, DELTA, NEAR, OPENS, PROMISED, SURE};
+use super::super::policy::{ACCURACY, ALPHA, DELTA, NEAR, OPENS, SURE};
 use super::compare::{Sensors, chances, differences, loss, needed, t_statistic};
 use super::confirm::Asked;
 use super::weighed::{Weighed, ahead, left_by, nats, saved};
@@ -111,12 +111,12 @@ impl Criteria {
         (0..self.first.len()).all(|i| self.least(before, i) > left(i)) && !self.is_bent(before)
     }
 
-    /// Whether a model that leaves such mean squares of the train recordings is worth a fit: left-out data may see more of it.
-    pub fn may_be_worth(&self, before: &Weighed, squares: &[f64]) -> bool {
+    /// Whether a model that leaves such mean squares of the train recordings closes this part of what is worth a name.
+    pub fn may_be_worth(&self, before: &Weighed, squares: &[f64], part: f64) -> bool {
         let gap = |square: f64, i: usize| (square - self.sensors.noise[i].powi(2)).max(0.0).sqrt();
         let shrinks = |i: usize| {
             let now = gap(before.fit.mean_square(i), i);
-            now - gap(squares[i], i) >= PROMISED * self.least(before, i)
+            now - gap(squares[i], i) >= part * self.least(before, i)
         };
         (0..self.first.len()).any(shrinks) || self.is_bent(before)
     }

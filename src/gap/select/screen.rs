@@ -7,7 +7,7 @@ use super::super::estimate::candidate::{Errors, Products};
 use super::super::estimate::map::squares;
 use super::super::estimate::{Candidate, Fit, System};
 use super::super::hypotheses::Hypothesis;
-use super::super::policy::{DAMPINGS, FITTED, FITTED_WITHOUT, OTHER_WEIGHTING, STARTS, STEPPED};
+use super::super::policy::{DAMPINGS, FITTED, FITTED_WITHOUT, HOPED, OTHER_WEIGHTING, PROMISED, STARTS, STEPPED};
 use super::super::problem::{Chosen, Problem};
 use super::compare::{Sensors, total_gap};
 use super::models::{self, beginnings, candidate};
@@ -33,8 +33,8 @@ pub struct Ground<'a> {
     pub sensors: &'a Sensors,
     /// The model.
     pub before: &'a Fit,
-    /// Whether a model that leaves such mean squares of the signals may be worth a name.
-    pub may_be_worth: &'a (dyn Fn(&[f64]) -> bool + Sync),
+    /// Whether a model that leaves such mean squares of the signals closes a part of what is worth a name.
+    pub may_be_worth: &'a (dyn Fn(&[f64], f64) -> bool + Sync),
 }
 
 /// A start of a model with one hypothesis more.
@@ -113,14 +113,18 @@ pub fn screened(ground: &Ground<'_>, open: &[usize]) -> Screen {
         }
     }
     all.retain(|(_, models)| !models.is_empty());
-    let promises = |m: &Begun| (ground.may_be_worth)(&m.promised.squares);
+    let promises = |m: &Begun| (ground.may_be_worth)(&m.promised.squares, HOPED);
     let (all, others): (Vec<_>, Vec<_>) = all.into_iter().partition(|(_, models)| models.iter().any(promises));
     let gap = |(i, models): &Beginnings| (*i, models.iter().map(|m| m.promised.gap).fold(f64::INFINITY, f64::min));
-    let too_little = others.iter().map(gap).collect();
+    let mut too_little: Vec<(usize, f64)> = others.iter().map(gap).collect();
     let has_own = |b: &Beginnings| b.1[0].candidate.own > ground.before.candidate.own;
     let (own, nothing): (Vec<_>, Vec<_>) = all.into_iter().partition(has_own);
     let mut best = ground.best(&own, FITTED);
     best.extend(ground.best(&nothing, FITTED_WITHOUT));
+    let shows = |l: &Leaves| (ground.may_be_worth)(&l.squares, PROMISED);
+    let (best, others): (Vec<Screened>, Vec<Screened>) =
+        best.into_iter().partition(|s| s.1.iter().any(|start| shows(&start.leaves) || shows(&start.promised)));
+    too_little.extend(others.iter().map(|s| (s.0, s.1[0].leaves.gap)));
     Screen { best, too_little, visible }
 }
 

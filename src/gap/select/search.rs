@@ -206,7 +206,7 @@ impl Search<'_> {
         if self.visible.is_some() && self.criteria.nothing_is_worth_it(before) {
             return Vec::new();
         }
-        let may_be_worth = |squares: &[f64]| self.criteria.may_be_worth(before, squares);
+        let may_be_worth = |squares: &[f64], part: f64| self.criteria.may_be_worth(before, squares, part);
         let (problem, sensors) = (self.problem, &self.criteria.sensors);
         let ground = Ground { problem, sensors, before: &before.fit, may_be_worth: &may_be_worth };
         let screen = screened(&ground, open);
