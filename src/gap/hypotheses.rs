@@ -254,7 +254,8 @@ pub fn narrow(all: &mut Vec<Hypothesis>, choice: &EffectChoice) {
 pub fn without_commands(all: &mut Vec<Hypothesis>, circuit: &Circuit, measured: &[&str]) {
     let shown = |name: &String| {
         let is_measured = |n: &String| measured.contains(&n.as_str());
-        is_measured(name) || circuit.link(name).is_some_and(|l| !l.inputs.is_empty() && l.inputs.iter().all(is_measured))
+        is_measured(name)
+            || circuit.link(name).is_some_and(|l| !l.inputs.is_empty() && l.inputs.iter().all(is_measured))
     };
     let fits = |a: &Attachment| match (&a.site, &a.effect) {
         (Site::Command(name), Some(effect)) => effect.measured || !shown(name),

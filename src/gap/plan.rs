@@ -126,7 +126,9 @@ struct Products {
 
 impl Products {
     fn new(problem: &Problem<'_>) -> Option<Self> {
-        let attachable = |h: &Hypothesis| h.family != "parameter" && !h.changes_order && !h.is_shape();
+        // what is there as a whole or not at all would change the model for all others
+        let vanishes = |h: &Hypothesis| h.coefficients.iter().all(|c| c.whole().is_none());
+        let attachable = |h: &Hypothesis| h.family != "parameter" && !h.changes_order && !h.is_shape() && vanishes(h);
         let chosen: Vec<Chosen> = (0..problem.hypotheses.len())
             .filter(|&i| attachable(&problem.hypotheses[i]))
             .flat_map(|hypothesis| {

@@ -7,10 +7,12 @@ use crate::expr::{ExprId, Node as Term, VarId};
 use crate::flat::{Equation as FlatEquation, FlatModel, OriginKind, Type, Variability};
 use crate::instance::Instance;
 use crate::network::Network;
+use crate::shipped::Shipped;
 use crate::syntax::ast::{Causality, Class, ClassBody, ElementKind, Equation, EquationKind};
+use crate::world::World;
 use std::collections::BTreeMap;
 use std::ops::Range;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// A signal that a component receives.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,6 +61,10 @@ pub fn read(placed: Vec<Placed>, sources: &Sources) -> Vec<Link> {
     let mut files: BTreeMap<FileId, Vec<Class>> = BTreeMap::new();
     let link = |p: Placed| {
         let source = sources.get(p.span.file);
+        // a class that comes with bramah is read from there, whatever lies over it
+        if Shipped.read(Path::new(&source.path)).is_ok() {
+            return None;
+        }
         let parsed = || crate::syntax::parse(p.span.file, &source.text).tree.classes;
         let classes = files.entry(p.span.file).or_insert_with(parsed);
         let equation = classes.iter().find_map(|c| statement(c, p.span))?;
@@ -120,7 +126,8 @@ impl Links<'_> {
         if self.is_input(source) && self.uses(source) == 1 || !self.moves(source) {
             return None;
         }
-        let inputs = if self.is_input(source) { vec![self.flat.variables[source.index()].name.clone()] } else { vec![] };
+        let inputs =
+            if self.is_input(source) { vec![self.flat.variables[source.index()].name.clone()] } else { vec![] };
         self.placed(receiver, inputs, span)
     }
 

@@ -57,12 +57,7 @@ impl Valued<'_> {
     /// Goes through the beginning of a recording. `guess`: how far a model much like it began from its own start. `moves`: the
     /// parameters whose slopes are wanted, and by how much one unit of each moves them. `None` where the model has no value
     /// there.
-    pub fn begin(
-        &self,
-        recording: &Recording,
-        guess: Option<&[f64]>,
-        moves: Option<&[(usize, f64)]>,
-    ) -> Option<Begun> {
+    pub fn begin(&self, recording: &Recording, guess: Option<&[f64]>, moves: Option<&[(usize, f64)]>) -> Option<Begun> {
         let u = Inputs::new(recording).from;
         let mut local = Local::start(self.plan.clone(), recording.times[0], self.theta, &u).ok()?;
         let own = local.state();
@@ -103,7 +98,12 @@ impl Valued<'_> {
         if known.len() < moves.len() {
             best = self.through(recording, &mut local, &own, &loose, &x, moves)?;
         }
-        Some(Begun { local, off, slopes: Some(best.slopes_of_choices(&loose, moves, self.units.len())), state: best.state })
+        Some(Begun {
+            local,
+            off,
+            slopes: Some(best.slopes_of_choices(&loose, moves, self.units.len())),
+            state: best.state,
+        })
     }
 
     /// Deviations of the states from the model's own start, in their sizes. What the model fixes and no sensor shows by
