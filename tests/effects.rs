@@ -397,3 +397,54 @@ fn own_effects() {
     let text = augment(&places, &attached, &[]);
     value(compile(&world, &request, Some(folder), &text, &lower::Options::default()));
 }
+
+/// What a connection or an equation of the model gives to a component may suffer what commands suffer; what only looks may
+/// not. The corrected model has the effect in place of the statement.
+#[test]
+fn signals_inside_the_model_are_places() {
+    let text = "
+model Loop
+  block Control
+    input Real e(unit = \"1\");
+    output Real y(unit = \"1\");
+    parameter Real k = 20;
+  equation
+    y = k*e;
+  end Control;
+  model Axis
+    input Real u(unit = \"1\");
+    Real s(unit = \"m\", start = 0, fixed = true);
+  equation
+    der(s) = 0.1*u;
+  end Axis;
+  input Real ref(unit = \"m\");
+  output Real s(unit = \"m\");
+  Control control;
+  Axis axis;
+equation
+  control.e = ref - axis.s; // closes the loop
+  connect(control.y, axis.u);
+  s = axis.s;
+end Loop;
+";
+    let world = MemoryWorld::single("Loop.mo", text);
+    let request = Request { source: "Loop.mo".into(), ..Request::default() };
+    let signals = [signal("s", "s", 0.1)];
+    let places = value(circuit(&world, &request));
+    let names: Vec<&str> = places.links.iter().map(|l| l.signal.name.as_str()).collect();
+    assert_eq!(names, ["control.e", "axis.u"]);
+    let listed = check(&world, &request, &signals);
+    assert!(listed.contains("dead_zone Effects.CommandDeadZone at axis.u x4"), "{listed}");
+    assert!(!listed.contains("at axis.s"), "{listed}");
+
+    let effects = catalogue(&world, None).value.expect("a catalogue").effects;
+    let all = hypotheses(&places, &effects, &signals, &[]);
+    let zone = |h: &&Hypothesis| h.effect == "Effects.CommandDeadZone" && h.places()[0].place == "axis.u";
+    let values = vec![("k".to_string(), 1.0), ("d".to_string(), 0.5)];
+    let attached = [Attached { name: "e0".into(), hypothesis: all.iter().find(zone).expect("a place"), values }];
+    let file = fixed(&world, &request, None, &places, &attached, &signals).value.expect("a corrected model");
+    assert!(!file.contains("connect(control.y, axis.u)"), "{file}");
+    let alone = MemoryWorld::single("Fixed.mo", file);
+    let request = Request { source: "Fixed.mo".into(), model: Some("Fixed".into()), ..Request::default() };
+    value(bramah::compile(&alone, &request, &lower::Options::default()));
+}

@@ -15,6 +15,7 @@ use crate::units::Unit;
 use crate::world::{MemoryWorld, Overlay, World};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// The instance of the nominal model inside the augmented one: `pump.w` becomes `plant.pump.w`.
@@ -110,11 +111,11 @@ pub(super) fn request<'a>(
     let mut files = MemoryWorld::single(&source, &augmented.text);
     for link in &augmented.replaced {
         let Ok(mut text) = files.read(&link.file).or_else(|_| world.read(&link.file)) else { continue };
-        let Some(statement) = text.get(link.statement.clone()) else { continue };
-        let blank: String = statement.chars().map(|c| if c == '\n' { '\n' } else { ' ' }).collect();
-        // the semicolon behind it would stand alone
-        let end = link.statement.end + text[link.statement.end..].find(';').map_or(0, |i| i + 1);
-        text.replace_range(link.statement.start..end, &blank);
+        let Range { start, end } = link.statement;
+        // the semicolon behind it would stand alone; every other statement keeps its place
+        let Some(end) = text.get(end..).and_then(|rest| rest.find(';')).map(|i| end + i + 1) else { continue };
+        let blank: String = text[start..end].bytes().map(|b| if b == b'\n' { '\n' } else { ' ' }).collect();
+        text.replace_range(start..end, &blank);
         files.add(&link.file, text);
     }
     let overlay = Overlay { base: world, files };
