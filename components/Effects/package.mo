@@ -19,8 +19,8 @@ scales of the signal; shapes in <code>threshold</code> are compared with the pot
 those in <code>level</code> with the first potential alone, and neither is tried where values lie beyond <code>min</code> or <code>max</code>;
 shapes in <code>limit</code> are compared with the size of the signal; an effect with a shape in <code>order</code> may come again with another one. A coefficient in <code>part</code> is at most what its node has already: the flow
 over the rate of the potential that it causes at once. A coefficient in <code>own</code> has another value in each recording (where in its period what
-follows nothing begins). <code>range</code> names a potential and the two parameters that take the least and greatest value
-that it has in the recordings. Times are written for samples a millisecond apart and grow with slower ones.
+follows nothing begins). <code>range</code> names a potential, or what flows through a Series element, and the two parameters that take the least and greatest value
+that it has in the recordings. A shape in m/s or rad/s with one value is a corner of friction: it is at most 2 % of the greatest speed. Times are written for samples a millisecond apart and grow with slower ones.
 <code>temperature</code> is given an input in kelvin. Effects of one <code>group</code> are also tried together with one set of coefficients; those of one
 <code>law</code> are forms of it, of which a place has one. What the package names first is the more usual on machines: it stands first where data do not decide. A Bridge
 with free ends is not tried towards a fixed potential, a directed one both ways round; an effect of a command that is <code>measured</code> is also tried where a sensor shows the input; <code>without</code> an interface: only where no effect of the family
