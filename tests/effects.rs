@@ -448,3 +448,21 @@ end Loop;
     let request = Request { source: "Fixed.mo".into(), model: Some("Fixed".into()), ..Request::default() };
     value(bramah::compile(&alone, &request, &lower::Options::default()));
 }
+
+/// A mistake in an effect of the user's own is shown in its file.
+#[test]
+fn a_mistake_in_an_own_effect_is_shown_where_it_is() {
+    let text = "
+model Leak
+  extends Effects.Interfaces.HydraulicShunt;
+  parameter Nowhere.Conductance G = 0;
+equation
+  q = G*p;
+  annotation(__bramah(family = \"external_leak\", coefficients = {\"G\"}));
+end Leak;
+";
+    let outcome = catalogue(&MemoryWorld::single("fx/Leak.mo", text), Some(Path::new("fx")));
+    assert!(outcome.value.is_none());
+    let said = render(&outcome.sources, &outcome.diagnostics, Format::Short, 160, false);
+    assert!(said.starts_with("fx/Leak.mo:4:13: error[E010]"), "{said}");
+}
