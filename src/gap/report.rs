@@ -7,8 +7,9 @@ use super::estimate::candidate::Errors;
 use super::hypotheses::Signal;
 use super::problem::Problem;
 use super::select::search::Found;
+use super::select::weighed::at_nominal;
 use super::study::Held;
-use super::verdict::{Columns, Effect, Maybe, Side, SignalGap, Verdict, Weighed, nominal};
+use super::verdict::{Columns, Effect, Maybe, Side, SignalGap, Verdict, Weighed};
 use super::whiteness::{Whiteness, whiteness};
 use super::words::{distance, estimate, findings, gap_row, number, percent, rest};
 use crate::compile::flatten;
@@ -271,7 +272,7 @@ fn curves(
     what: &str,
 ) -> Vec<Panel> {
     let (base, last) = (&found.base.fit, &found.last.fit);
-    let of_nominal = base.candidate.errors(&nominal(problem, &base.candidate), recording, number);
+    let of_nominal = base.candidate.errors(&at_nominal(problem, &base.candidate, &base.x), recording, number);
     let of_last = last.candidate.errors(&last.x, recording, number);
     let behind = |errors: &Errors| recording.len() - errors.first().map_or(0, Vec::len);
     let panel = |(i, signal): (usize, &Signal)| {

@@ -113,13 +113,17 @@ fn is_corner(shape: &Shape) -> bool {
 
 /// Greatest speed at a site, of one side against the other where it has two; nothing where it stands still.
 fn fastest(site: &Site, potentials: &Known, times: &[&[f64]]) -> Option<f64> {
-    let known: Option<Vec<&Vec<f64>>> = ports(site).into_iter().map(|p| potentials.get(&(p, false))).collect();
-    let moved: Vec<f64> = match known?.as_slice() {
-        [one] => one.to_vec(),
-        [a, b] => a.iter().zip(b.iter()).map(|(a, b)| a - b).collect(),
-        _ => return None,
-    };
-    speeds(&moved, times).last().copied().filter(|v| *v > 0.0)
+    speeds(&acting(site, potentials)?, times).last().copied().filter(|v| *v > 0.0)
+}
+
+/// The potential of a site, of one side against the other where it has two.
+fn acting(site: &Site, potentials: &Known) -> Option<Vec<f64>> {
+    let of = |p: usize| potentials.get(&(p, false));
+    match *site {
+        Site::Node(p) => of(p).cloned(),
+        Site::Across(a, b) => Some(of(a)?.iter().zip(of(b)?).map(|(a, b)| a - b).collect()),
+        _ => None,
+    }
 }
 
 fn compared(h: &Hypothesis) -> impl Iterator<Item = Variable> {
@@ -193,13 +197,10 @@ fn potentials(problem: &Problem<'_>) -> Known {
 
 /// What a threshold at this site is compared with, sorted.
 fn values(shape: &Shape, site: &Site, potentials: &Known) -> Option<Vec<f64>> {
-    let of = |p: &usize| potentials.get(&(*p, false));
-    let mut values = match site {
+    let mut values = match *site {
         _ if !shape.threshold && !shape.level => return None,
-        Site::Node(p) => of(p)?.clone(),
-        Site::Across(p, _) if shape.level => of(p)?.clone(),
-        Site::Across(a, b) => of(a)?.iter().zip(of(b)?).map(|(a, b)| a - b).collect(),
-        _ => return None,
+        Site::Across(p, _) if shape.level => acting(&Site::Node(p), potentials)?,
+        _ => acting(site, potentials)?,
     };
     values.retain(|v| v.is_finite());
     values.sort_by(f64::total_cmp);

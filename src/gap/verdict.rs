@@ -2,7 +2,7 @@
 
 mod conclude;
 
-pub use conclude::{conclude, nominal};
+pub use conclude::conclude;
 
 use super::hypotheses::Hypothesis;
 use serde::Serialize;

@@ -10,7 +10,7 @@ use super::super::policy::VISIBLE;
 use super::super::problem::{Chosen, Problem, Tolerance};
 use super::super::select::models;
 use super::super::select::search::{Found, Taken, Trial};
-use super::super::select::weighed::{Weighed, weighed};
+use super::super::select::weighed::{Weighed, at_nominal, weighed};
 use super::{
     Drift, EXCITING, Effect, Estimate, Gaps, Located, Maybe, PARTING, RecordingError, Term, Unexplained, Verdict,
 };
@@ -37,7 +37,7 @@ impl Conclusion<'_> {
     fn verdict(&self, seconds: f64) -> Verdict {
         let (problem, found) = (self.problem, self.found);
         let base = &found.base.fit;
-        let nominal = nominal(problem, &base.candidate);
+        let nominal = at_nominal(problem, &base.candidate, &base.x);
         let last = &found.last.fit;
         let models = [(&base.candidate, &nominal), (&base.candidate, &base.x), (&last.candidate, &last.x)];
         let on_held = models.map(|(c, x)| self.left(c, x));
@@ -223,11 +223,6 @@ impl Conclusion<'_> {
         all.iter_mut().for_each(|l| l.share = l.evidence / total);
         all
     }
-}
-
-/// Where the tolerances are at their nominal values.
-pub fn nominal(problem: &Problem<'_>, candidate: &Candidate) -> Vec<f64> {
-    candidate.coordinates.iter().zip(&problem.tolerances).map(|(c, t)| c.of(t.nominal)).collect()
 }
 
 fn errors(candidate: &Candidate, x: &[f64], recordings: &[Recording], own: bool) -> Vec<Option<Errors>> {
