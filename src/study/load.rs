@@ -90,6 +90,9 @@ pub fn full_scales(bound: &Bound, train: &[Recording]) -> Vec<f64> {
     bound.signals.iter().enumerate().map(|(k, s)| s.full_scale.unwrap_or_else(|| range(k))).collect()
 }
 
+/// Largest value of a column, in SI units: sums of its squares must be numbers.
+const LARGEST: f64 = 1e100;
+
 /// From so many jumps on an input is taken for one that steps.
 const MANY_JUMPS: usize = 4;
 
@@ -158,7 +161,7 @@ impl Loader<'_> {
     }
 
     fn in_unit(&mut self, values: Vec<f64>, from: &str, to: &str, sign: f64, column: &str, head: Span) -> Vec<f64> {
-        match conversion(from, to) {
+        let converted: Vec<f64> = match conversion(from, to) {
             Ok(None) => values.into_iter().map(|v| sign * v).collect(),
             Ok(Some((own, wanted))) => {
                 values.into_iter().map(|v| sign * own.convert(v, &wanted).unwrap_or(f64::NAN)).collect()
@@ -166,9 +169,15 @@ impl Loader<'_> {
             Err(()) => {
                 let text = format!("the column `{column}` is in `{from}`, which cannot be converted to `{to}`");
                 self.diagnostics.push(Diagnostic::new(Code::BadData, text).at(head, "in this file"));
-                values
+                return values;
             }
+        };
+        if let Some(value) = converted.iter().find(|v| v.abs() > LARGEST) {
+            let text = format!("the column `{column}` holds {}, which nothing measures", number::text(*value));
+            let d = Diagnostic::new(Code::BadData, text).at(head, "in this file");
+            self.diagnostics.push(d.help("is it a mark for a missing value? Leave the cell empty, or write `NaN`"));
         }
+        converted
     }
 
     /// An input that is to be joined by straight lines but jumps between values that last: its source holds it.

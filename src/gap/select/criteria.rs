@@ -1,7 +1,7 @@
 //! When is a hypothesis taken? When left-out data are sure of it, it is worth a name and it opens nothing; of those, the
 //! simplest among what cannot be told apart. Everything else has its reason.
 
-use super::super::policy::{ACCURACY, ALPHA, DELTA, NEAR, OPENS, SURE};
+use super::super::policy::{ACCURACY, ALPHA, DELTA, NEAR, SURE};
 use super::compare::{Sensors, chances, differences, loss, needed, t_statistic};
 use super::confirm::Asked;
 use super::weighed::{Weighed, ahead, left_by, nats, saved};
@@ -69,7 +69,9 @@ pub struct Judged {
     sure: bool,
     worth: bool,
     size: f64,
-    opens: f64,
+    /// What it was before.
+    before: f64,
+    opens: bool,
 }
 
 impl Judged {
@@ -80,7 +82,7 @@ impl Judged {
 
     /// Whether it may be taken where other data are sure of it.
     pub fn may(&self) -> bool {
-        self.worth && self.size > SURE && self.opens <= 1.0 + OPENS
+        self.worth && self.size > SURE && !self.opens
     }
 
     /// Why it may not be taken.
@@ -89,7 +91,7 @@ impl Judged {
             () if !self.sure => Reason::NotSure(self.chance, self.evidence, needed),
             () if !self.worth => Reason::NotWorth,
             () if self.size <= SURE => Reason::NoSize(self.size),
-            () => Reason::Opens(self.opens),
+            () => Reason::Opens(self.gap / self.before),
         }
     }
 }
@@ -167,9 +169,10 @@ impl Criteria {
         };
         let gap = model.gap(&self.sensors);
         let worth = (0..self.first.len()).any(closes) || saved(before, model) > needed(self.count);
-        let opens = gap / before.gap(&self.sensors).max(f64::MIN_POSITIVE);
+        let before = before.gap(&self.sensors).max(f64::MIN_POSITIVE);
+        let opens = !self.alike(gap, before);
         let (t, evidence) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
-        Judged { t, chance: 1.0, evidence, gap, sure: false, worth, size: rival.size, opens }
+        Judged { t, chance: 1.0, evidence, gap, sure: false, worth, size: rival.size, before, opens }
     }
 
     /// Two models that are one for the user.

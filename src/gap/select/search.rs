@@ -244,7 +244,7 @@ impl Search<'_> {
                 }
             }
         });
-        rivals.par_iter_mut().for_each(|r| r.size = size(&problem.hypotheses[r.hypothesis], &r.model.fit));
+        rivals.par_iter_mut().for_each(|r| r.size = size(problem, &problem.hypotheses[r.hypothesis], &r.model.fit));
         rivals
     }
 
@@ -362,10 +362,15 @@ impl Search<'_> {
     }
 }
 
-/// By how many of its standard deviations the largest free coefficient of a model's last cause differs from nothing.
-fn size(h: &Hypothesis, fit: &Fit) -> f64 {
+/// By how many of its standard deviations the largest free coefficient of a model's last cause differs from nothing; a
+/// parameter that is said to be out of tolerance from its data sheet, what is known of both counted.
+fn size(problem: &Problem<'_>, h: &Hypothesis, fit: &Fit) -> f64 {
     let Some(places) = fit.candidate.model.attached.last().filter(|_| !h.is_shape()) else { return f64::INFINITY };
     let (theta, deviations) = (fit.candidate.theta(&fit.x), fit.deviations());
+    if let ("parameter", Some(&k)) = (h.family.as_str(), places.first()) {
+        let t = &problem.tolerances[k];
+        return (theta[k] - t.nominal).abs() / t.sigma.hypot(deviations[k] * t.sigma);
+    }
     let coordinates = &fit.candidate.coordinates;
     let one = |(c, &place): (&Coefficient, &usize)| {
         let k = coordinates.iter().position(|own| own.parameter == place)?;

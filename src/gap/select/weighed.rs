@@ -1,9 +1,9 @@
 //! Models with what they leave of left-out data, by both weightings.
 
 use super::super::estimate::{Candidate, Fit, Weights};
-use super::super::policy::{LEAST, OTHER_WEIGHTING, SETTLING};
+use super::super::policy::{LEAST, OTHER_WEIGHTING, SETTLING, SURE};
 use super::super::problem::Problem;
-use super::compare::{Sensors, evidence, gap, signal_gap};
+use super::compare::{Sensors, differences, evidence, gap, signal_gap, t_statistic};
 use super::folds::{LeftOut, left_out};
 
 /// A fit with what it leaves of left-out data.
@@ -39,7 +39,7 @@ pub fn weighed(problem: &Problem<'_>, sensors: &Sensors, candidate: &Candidate, 
 pub fn settled(problem: &Problem<'_>, sensors: &Sensors, mut model: Weighed) -> Weighed {
     for _ in 0..SETTLING {
         let Some(next) = weighed(problem, sensors, &model.fit.candidate, &model.fit.x) else { break };
-        if ahead(&model, &next, sensors) <= OTHER_WEIGHTING {
+        if !better(&model, &next, sensors) {
             break;
         }
         model = next;
@@ -58,7 +58,14 @@ pub fn at_the_noise(problem: &Problem<'_>, sensors: &Sensors, one: &Weighed) -> 
     let (candidate, x) = (one.fit.candidate.clone(), one.fit.x.clone());
     let begun = Fit::of(candidate, x, &problem.train, &problem.full_scale, Some(white), 1)?;
     let other = Weighed::new(problem, as_they_are(problem, begun.candidate, begun.x)?);
-    (ahead(one, &other, sensors) > OTHER_WEIGHTING).then_some(other)
+    better(one, &other, sensors).then_some(other)
+}
+
+/// Whether left-out data prefer the second of two fits of one model: by their evidence, or block by block.
+fn better(one: &Weighed, other: &Weighed, sensors: &Sensors) -> bool {
+    let ahead = ahead(one, other, sensors);
+    let surely = || t_statistic(&differences(&one.left[0], &other.left[0], sensors)) > SURE;
+    ahead > OTHER_WEIGHTING || ahead > 0.0 && surely()
 }
 
 /// The fit that begins with parameters at their data sheet, where they are bent away from it and that is better: what was

@@ -1,0 +1,278 @@
+//! Whatever a study and its recordings hold, a diagnosis ends with a verdict or a message: circuits of the library beside
+//! random columns (constant, stepped, noisy, huge, with gaps, three samples long, times that go back).
+//!
+//! `PROPTEST_CASES=10000 cargo test --release --test recordings` searches longer.
+
+#![allow(clippy::disallowed_methods, reason = "reads its cases")]
+
+use bramah::diag::Sources;
+use bramah::gap::fixed::corrected;
+use bramah::gap::report::report;
+use bramah::gap::select::search::search;
+use bramah::gap::study::question;
+use bramah::gap::verdict::conclude;
+use bramah::gap::words::words;
+use bramah::study::Study;
+use bramah::world::MemoryWorld;
+use proptest::prelude::*;
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::path::Path;
+use std::sync::LazyLock;
+
+/// Circuits with inputs: a cylinder's volume behind a valve, a shaft with friction, an orifice without states.
+const CIRCUITS: &str = "
+package Circuits
+  model Volume
+    inner Oil.ISOVG46 oil;
+    Interfaces.RealInput p(unit = \"Pa\", nominal = 1e6);
+    Hydraulic.PressureSource supply(useInput = true);
+    Hydraulic.Orifice into(A = 1e-6);
+    Hydraulic.Volume volume(V = 1e-3);
+    Hydraulic.Orifice out(A = 1e-6);
+    Hydraulic.Tank tank;
+    Real y1(unit = \"Pa\", nominal = 1e6) = volume.p;
+    Real y2(unit = \"m3/s\", nominal = 1e-4) = into.q;
+  equation
+    connect(p, supply.p_in);
+    connect(supply.port, into.port_a);
+    connect(into.port_b, volume.port);
+    connect(volume.port, out.port_a);
+    connect(out.port_b, tank.port);
+  end Volume;
+  model Shaft
+    Interfaces.RealInput u(unit = \"N.m\", nominal = 1);
+    Mechanical.Rotational.Torque torque;
+    Mechanical.Rotational.Inertia rotor(J = 1e-2);
+    Mechanical.Rotational.Damper friction(d = 1e-2);
+    Mechanical.Rotational.Fixed ground;
+    Real y1(unit = \"rad/s\", nominal = 10) = rotor.w;
+    Real y2(unit = \"rad\", nominal = 10) = rotor.phi;
+  equation
+    connect(u, torque.tau);
+    connect(torque.flange, rotor.flange_a);
+    connect(rotor.flange_b, friction.flange_a);
+    connect(friction.flange_b, ground.flange);
+  end Shaft;
+  model Static
+    inner Oil.ISOVG46 oil;
+    Interfaces.RealInput p(unit = \"Pa\", nominal = 1e6);
+    Hydraulic.PressureSource supply(useInput = true);
+    Hydraulic.Orifice orifice(A = 1e-5);
+    Hydraulic.Tank tank;
+    Real y1(unit = \"m3/s\", nominal = 1e-4) = orifice.q;
+    Real y2(unit = \"Pa\", nominal = 1e6) = supply.port.p;
+  equation
+    connect(p, supply.p_in);
+    connect(supply.port, orifice.port_a);
+    connect(orifice.port_b, tank.port);
+  end Static;
+end Circuits;";
+
+/// A model that a study may name: source, class, whether it has the input `u` or `p`, signals.
+type Nominal = (Option<&'static str>, String, Option<&'static str>, Vec<String>);
+
+/// The circuits above, and every example of the library with the signals that its golden figures speak of.
+static NOMINAL: LazyLock<Vec<Nominal>> = LazyLock::new(|| {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(root.join("tests/examples.csv")).expect("the list of examples");
+    let mut examples: BTreeMap<&str, Vec<String>> = BTreeMap::new();
+    for line in text.lines().skip(1) {
+        let mut cells = line.split(',');
+        let (class, signal) = (cells.next().expect("a class"), cells.nth(1).expect("a signal"));
+        examples.entry(class).or_default().push(signal.to_string());
+    }
+    let signals = || vec!["y1".to_string(), "y2".to_string()];
+    let own = [("Volume", "p"), ("Shaft", "u"), ("Static", "p")];
+    let own = own.map(|(name, input)| (Some("Circuits.mo"), format!("Circuits.{name}"), Some(input), signals()));
+    own.into_iter().chain(examples.into_iter().map(|(c, s)| (None, c.to_string(), None, s))).collect()
+});
+
+/// What a column holds.
+#[derive(Clone, Copy, Debug)]
+enum Column {
+    Constant,
+    Steps,
+    Noise,
+    Ramp,
+    Sine,
+    Huge,
+    Tiny,
+    Gaps,
+    Words,
+}
+
+/// How its times go.
+#[derive(Clone, Copy, Debug)]
+enum Clock {
+    Even,
+    Uneven,
+    Twice,
+    Back,
+    Still,
+}
+
+#[derive(Clone, Debug)]
+struct Case {
+    nominal: usize,
+    columns: Vec<Column>,
+    clock: Clock,
+    step: f64,
+    samples: Vec<usize>,
+    held: bool,
+    measured: bool,
+    full_scale: Option<f64>,
+    seed: u64,
+}
+
+fn case() -> impl Strategy<Value = Case> {
+    use Column::{Constant, Gaps, Huge, Noise, Ramp, Sine, Steps, Tiny, Words};
+    let plain = || prop::sample::select(vec![Constant, Steps, Noise, Ramp, Sine]);
+    let odd = prop::sample::select(vec![Huge, Tiny, Gaps, Words]);
+    let column = prop_oneof![12 => plain(), 1 => odd];
+    let clock = prop_oneof![12 => Just(Clock::Even), 2 => Just(Clock::Uneven), 1 => Just(Clock::Twice),
+        1 => Just(Clock::Back), 1 => Just(Clock::Still)];
+    let samples = prop::collection::vec(prop_oneof![1 => 0_usize..5, 4 => 5_usize..120], 1..4);
+    let full_scale = prop_oneof![3 => Just(None), 1 => prop::sample::select(vec![1e-9, 1.0, 1e12]).prop_map(Some)];
+    let nominal = prop_oneof![3 => 0..3_usize, 1 => 3..NOMINAL.len()];
+    (
+        (nominal, prop::collection::vec(column, 6), clock, prop::sample::select(vec![1e-5, 1e-3, 0.05, 10.0])),
+        (samples, any::<bool>(), any::<bool>(), full_scale, any::<u64>()),
+    )
+        .prop_map(|((nominal, columns, clock, step), (samples, held, measured, full_scale, seed))| Case {
+            nominal,
+            columns,
+            clock,
+            step,
+            samples,
+            held,
+            measured,
+            full_scale,
+            seed,
+        })
+}
+
+/// Random numbers between -1 and 1.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+}
+
+fn cell(column: Column, k: usize, size: f64, random: &mut Random, last: &mut f64) -> String {
+    let x = k as f64;
+    let value = match column {
+        Column::Constant => 0.5,
+        Column::Steps => {
+            if k.is_multiple_of(20) {
+                *last = random.next();
+            }
+            *last
+        }
+        Column::Noise => random.next(),
+        Column::Ramp => 0.01 * x,
+        Column::Sine => (0.3 * x).sin(),
+        Column::Huge => 1e300 * random.next(),
+        Column::Tiny => 1e-300 * random.next(),
+        Column::Gaps if k % 7 == 3 => return String::new(),
+        Column::Gaps => random.next(),
+        Column::Words => return "n/a".into(),
+    };
+    format!("{}", size * value)
+}
+
+fn recording(case: &Case, nominal: &Nominal, samples: usize, random: &mut Random) -> String {
+    let (.., input, signals) = nominal;
+    let names = input.iter().map(ToString::to_string).chain((0..signals.len()).map(|i| format!("y{i}")));
+    let mut text = String::from("t");
+    let names: Vec<String> = names.collect();
+    names.iter().for_each(|name| write!(text, ",{name}").expect("a text"));
+    text.push('\n');
+    let sizes: Vec<f64> = names.iter().map(|_| 10.0_f64.powf(4.0 * random.next() + 2.0)).collect();
+    let mut last = vec![0.0; names.len()];
+    for k in 0..samples {
+        let x = k as f64;
+        let t = match case.clock {
+            Clock::Even => x,
+            Clock::Uneven => x + 0.4 * random.next(),
+            Clock::Twice => (k / 2) as f64,
+            Clock::Back => -x,
+            Clock::Still => 1.0,
+        };
+        write!(text, "{}", case.step * t).expect("a text");
+        for (i, last) in last.iter_mut().enumerate() {
+            let column = case.columns[i % case.columns.len()];
+            write!(text, ",{}", cell(column, k, sizes[i], random, last)).expect("a text");
+        }
+        text.push('\n');
+    }
+    text
+}
+
+fn study(case: &Case, nominal: &Nominal) -> String {
+    let (source, class, input, signals) = nominal;
+    let mut text = String::from("version = 1\n");
+    if let Some(source) = source {
+        writeln!(text, "model = \"{source}\"").expect("a text");
+    }
+    writeln!(text, "class = \"{class}\"").expect("a text");
+    if let Some(input) = input {
+        let kind = if case.measured { "measured" } else { "command" };
+        writeln!(text, "[inputs]\n{input} = {{ column = \"{input}\", kind = \"{kind}\" }}").expect("a text");
+    }
+    text.push_str("[signals]\n");
+    for (i, signal) in signals.iter().enumerate() {
+        let scale = case.full_scale.map_or(String::new(), |s| format!(", full_scale = {s:e}"));
+        writeln!(text, "y{i} = {{ variable = \"{signal}\", column = \"y{i}\"{scale} }}").expect("a text");
+    }
+    for r in 0..case.samples.len() {
+        let role = if case.held && r > 0 && r + 1 == case.samples.len() { "held" } else { "train" };
+        writeln!(text, "[[recordings]]\nfile = \"r{r}.csv\"\nrole = \"{role}\"\ntime = \"t\"").expect("a text");
+    }
+    text
+}
+
+/// The whole command but its files; whether there was a verdict.
+fn diagnosed(case: &Case) -> bool {
+    let nominal = &NOMINAL[case.nominal];
+    let mut world = MemoryWorld::single("Circuits.mo", CIRCUITS);
+    let mut random = Random(case.seed);
+    for (r, samples) in case.samples.iter().enumerate() {
+        world.add(format!("r{r}.csv"), recording(case, nominal, *samples, &mut random));
+    }
+    world.add("study.toml", study(case, nominal));
+    let mut sources = Sources::default();
+    let Some(study) = Study::read(&world, Path::new("study.toml"), &mut sources).value else { return false };
+    let Ok(question) = question(&world, &study, None, &mut sources) else { return false };
+    let Ok(held) = question.held(None, &mut sources) else { return false };
+    let Ok(found) = search(&question.problem, &held.recordings, &mut |_| ()) else { return false };
+    let verdict = conclude(&question.problem, &found, &held.recordings, 0.0);
+    assert!(!words(&verdict).contains("NaN"), "{}", words(&verdict));
+    serde_json::to_string(&verdict).expect("a verdict is JSON");
+    report(&question.problem, &found, &verdict, &held);
+    corrected(&question.problem, &found.last.fit);
+    true
+}
+
+/// Few cases every day: each is a whole diagnosis.
+fn config() -> ProptestConfig {
+    let cases = std::env::var("PROPTEST_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(12);
+    ProptestConfig { cases, max_shrink_iters: 30, failure_persistence: None, ..ProptestConfig::default() }
+}
+
+proptest! {
+    #![proptest_config(config())]
+    #[test]
+    fn any_recording_ends(case in case()) {
+        let begun = std::time::Instant::now();
+        let ended = std::panic::catch_unwind(|| diagnosed(&case));
+        if std::env::var("BRAMAH_SHOW").is_ok() {
+            let class = &NOMINAL[case.nominal].1;
+            println!("{:?} {class} {:?} {:.1} s", ended.as_ref().ok(), case.samples, begun.elapsed().as_secs_f64());
+        }
+        prop_assert!(ended.is_ok(), "panics");
+    }
+}
