@@ -56,6 +56,10 @@ pub fn factor(h: &Hypothesis) -> f64 {
 }
 
 fn factors(unit: &str) -> Vec<f64> {
+    // a temperature has no sign, and scales of it differ by their zero
+    if same_kind("K", unit) {
+        return Vec::new();
+    }
     let own = UNITS.iter().filter(|(u, _)| same_kind(u, unit)).flat_map(|(_, f)| f.iter());
     let mut all = vec![-1.0];
     for f in own.chain(ANY).flat_map(|f| [*f, 1.0 / f]) {
@@ -93,6 +97,7 @@ mod tests {
         let has = |f: f64| all.iter().any(|x| (x / f - 1.0).abs() < 1e-9);
         assert!(has(-1.0) && has(30.0 / std::f64::consts::PI) && has(std::f64::consts::PI / 30.0) && has(0.1));
         assert!(!has(1e5));
+        assert!(factors("degC").is_empty());
         assert!(factors("Pa").iter().filter(|f| (**f - 1e-3).abs() < 1e-9).count() == 1);
     }
 }

@@ -30,12 +30,8 @@ impl Weights {
     /// As large and as correlated as errors are.
     pub fn of(errors: &[Errors], full_scale: &[f64]) -> Self {
         let one = |(i, scale): (usize, &f64)| {
-            let count = |e: &Errors| e[i].iter().filter(|v| v.is_finite()).count() as f64;
-            let all: f64 = errors.iter().map(count).sum::<f64>().max(1.0);
-            let sum: f64 = squares(errors, i);
-            let tau: f64 = errors.iter().map(|e| count(e) * correlation::time(&e[i])).sum::<f64>() / all;
-            let least = (0.01 * LEAST * scale).powi(2);
-            ((sum / all).max(least), tau.max(1.0))
+            let square = squares(errors, i) / samples(errors, i).max(1.0);
+            (square.max((0.01 * LEAST * scale).powi(2)), independent(errors, i))
         };
         let (square, tau) = full_scale.iter().enumerate().map(one).unzip();
         Weights { square, tau }
@@ -56,6 +52,20 @@ impl Weights {
     pub fn cost(&self, errors: &[Errors]) -> f64 {
         (0..self.square.len()).map(|i| self.weight(i) * squares(errors, i)).sum()
     }
+}
+
+/// How many samples of a signal in a row say the same.
+fn independent(errors: &[Errors], signal: usize) -> f64 {
+    let weighed = |e: &Errors| finite(&e[signal]) * correlation::time(&e[signal]);
+    (errors.iter().map(weighed).sum::<f64>() / samples(errors, signal).max(1.0)).max(1.0)
+}
+
+fn samples(errors: &[Errors], signal: usize) -> f64 {
+    errors.iter().map(|e| finite(&e[signal])).sum()
+}
+
+fn finite(errors: &[f64]) -> f64 {
+    errors.iter().filter(|v| v.is_finite()).count() as f64
 }
 
 /// Sum of a signal's squared errors over all recordings.
@@ -92,13 +102,30 @@ impl Fit {
         let weights = first.unwrap_or_else(|| Weights::of(&evaluated.errors, full_scale));
         let mut fit = Fit { candidate, x, evaluated, weights };
         fit.candidate.off.clone_from(&fit.evaluated.off);
-        for round in 0..rounds {
-            if round > 0 {
-                fit.weights = Weights::of(&fit.evaluated.errors, full_scale);
+        fit.descend(train);
+        for _ in 1..rounds {
+            let mut next = fit.clone();
+            next.weights = Weights::of(&fit.evaluated.errors, full_scale);
+            next.descend(train);
+            // a weaker weight of the data may lead away from them for good
+            if fit.ahead(&next) < 0.0 {
+                break;
             }
-            fit.descend(train);
+            fit = next;
         }
         Some(fit)
+    }
+
+    /// Nats by which the data that were fitted and the prior prefer another fit to them, each signal with the variance that
+    /// a fit leaves, and as correlated as the more correlated errors are.
+    pub fn ahead(&self, other: &Fit) -> f64 {
+        let one = |i: usize| {
+            let tau = |f: &Fit| independent(&f.evaluated.errors, i);
+            let independent = self.samples(i) / tau(self).max(tau(other));
+            let square = |f: &Fit| f.mean_square(i).max(f64::MIN_POSITIVE);
+            0.5 * independent * (square(self) / square(other)).ln()
+        };
+        (0..self.weights.tau.len()).map(one).sum::<f64>() + self.prior() - other.prior()
     }
 
     /// Levenberg-Marquardt with these weights.
@@ -151,20 +178,12 @@ impl Fit {
 
     /// Samples of a signal with a value.
     pub fn samples(&self, signal: usize) -> f64 {
-        let count = |e: &Errors| e[signal].iter().filter(|v| v.is_finite()).count();
-        self.evaluated.errors.iter().map(count).sum::<usize>() as f64
+        samples(&self.evaluated.errors, signal)
     }
 
     /// Mean square of a signal's errors.
     pub fn mean_square(&self, signal: usize) -> f64 {
         squares(&self.evaluated.errors, signal) / self.samples(signal).max(1.0)
-    }
-
-    /// Minus the log posterior with each signal's variance at its optimum, nats: what orders fits of one model.
-    pub fn nats(&self) -> f64 {
-        let one =
-            |i: usize| 0.5 * self.samples(i) / self.weights.tau[i] * self.mean_square(i).max(f64::MIN_POSITIVE).ln();
-        (0..self.weights.tau.len()).map(one).sum::<f64>() + self.prior()
     }
 
     /// Nats that the distance of parameters from their data sheet costs.

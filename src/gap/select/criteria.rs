@@ -201,8 +201,9 @@ impl Criteria {
         sum
     }
 
-    /// The set of what cannot be told apart: those that leave hardly more than the best first, of these the simplest (fewest coefficients, fewest places), then
-    /// what leaves parameters where they are known to be, then what the data prefer, then what is usual on machines.
+    /// The set of what cannot be told apart: those that leave hardly more than the best first, of these what leaves parameters
+    /// where they are known to be, then the simplest (fewest coefficients, fewest places), then what the data prefer, then what
+    /// is usual on machines.
     pub fn order(&self, accepted: &[usize], rivals: &[Rival], reasons: &mut [Option<Reason>]) -> Vec<usize> {
         let Some(&best) = accepted.first() else { return Vec::new() };
         let of = |i: usize| rivals[i].model.gap(&self.sensors);
@@ -215,17 +216,18 @@ impl Criteria {
                 set.push(i);
             }
         }
-        let prior = |i: usize| rivals[i].model.fit.prior();
-        let least = set.iter().filter(|&&i| near(i)).map(|&i| prior(i)).fold(f64::INFINITY, f64::min);
-        let bent = |i: usize| prior(i) - least > (1.0 / ALPHA).ln();
+        // each coefficient costs as much as a bent parameter may
+        let once = (1.0 / ALPHA).ln();
+        let cost = |i: usize| rivals[i].model.fit.prior() + once * rivals[i].model.fit.candidate.own as f64;
+        let least = set.iter().filter(|&&i| near(i)).map(|&i| cost(i)).fold(f64::INFINITY, f64::min);
+        let bent = |i: usize| cost(i) - least > once;
         let simple = |i: usize| (rivals[i].model.fit.candidate.own, rivals[i].places);
         let behind = |i: usize| {
             let as_simple = set.iter().filter(|&&k| k != i && near(k) && simple(k) == simple(i));
-            as_simple.map(|&k| ahead(&rivals[i].model, &rivals[k].model, &self.sensors)).fold(0.0, f64::max)
-                > (1.0 / ALPHA).ln()
+            as_simple.map(|&k| ahead(&rivals[i].model, &rivals[k].model, &self.sensors)).fold(0.0, f64::max) > once
         };
         let keys: BTreeMap<usize, _> =
-            set.iter().map(|&i| (i, (!near(i), simple(i), bent(i), behind(i), rivals[i].hypothesis))).collect();
+            set.iter().map(|&i| (i, (!near(i), bent(i), simple(i), behind(i), rivals[i].hypothesis))).collect();
         set.sort_by_key(|i| keys[i]);
         set
     }

@@ -12,7 +12,7 @@ use super::confirm::{ask, held_gap};
 use super::criteria::{Criteria, Judged, Reason, Rival};
 use super::models;
 use super::screen::{Ground, Screened, screened};
-use super::weighed::{Weighed, ahead, as_they_are, at_the_noise, from_nominal, left_by, saved, settled, weighed};
+use super::weighed::{Weighed, ahead, at_the_noise, from_nominal, left_by, no_worse, saved, settled, weighed};
 use crate::diag::Diagnostic;
 use rayon::prelude::*;
 
@@ -150,14 +150,14 @@ impl Search<'_> {
         let open = self.open(&before.fit);
         let screened = self.screened(step, before, &open);
         progress(Stage::Fit(step));
-        let rivals = self.fitted(screened);
+        let rivals = self.fitted(&before.fit, screened);
         self.choose(step, before, rivals)
     }
 
     /// The best of some hypotheses beside a model.
     fn beside(&mut self, step: usize, before: &Weighed, open: &[usize]) -> Option<(Weighed, Taken)> {
         let screened = self.screened(step, before, open);
-        let rivals = self.fitted(screened);
+        let rivals = self.fitted(&before.fit, screened);
         self.choose(step, before, rivals)
     }
 
@@ -171,7 +171,7 @@ impl Search<'_> {
             self.trials.append(&mut self.passed);
             return None;
         }
-        let rivals = self.fitted(screened);
+        let rivals = self.fitted(&last.fit, screened);
         let beside = self.choose(step, last, rivals);
         if taken.len() == 1
             && let Some((model, shape)) = self.beside(step, base, &shapes)
@@ -226,11 +226,11 @@ impl Search<'_> {
     }
 
     /// Fits from all starts; the front by both weightings.
-    fn fitted(&self, screened: Vec<Screened>) -> Vec<Rival> {
+    fn fitted(&self, before: &Fit, screened: Vec<Screened>) -> Vec<Rival> {
         let (problem, sensors) = (self.problem, &self.criteria.sensors);
         let one = |(hypothesis, starts): Screened| {
-            let fits = starts.into_iter().filter_map(|s| as_they_are(problem, s.candidate, s.x));
-            let fit = fits.min_by(|a, b| a.nats().total_cmp(&b.nats()))?;
+            let fits = starts.into_iter().filter_map(|s| no_worse(problem, before, s.candidate, s.x));
+            let fit = fits.reduce(|a, b| if a.ahead(&b) > 0.0 { b } else { a })?;
             let places = problem.hypotheses[hypothesis].attachments.len();
             Some(Rival { hypothesis, places, size: 0.0, model: Weighed::new(problem, fit) })
         };

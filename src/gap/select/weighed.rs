@@ -52,6 +52,17 @@ pub fn as_they_are(problem: &Problem<'_>, candidate: Candidate, x: Vec<f64>) -> 
     Fit::of(candidate, x, &problem.train, &problem.full_scale, None, 2)
 }
 
+/// The same of a model that holds the one before: where it comes out behind, it begins with the weights of that one.
+pub fn no_worse(problem: &Problem<'_>, before: &Fit, candidate: Candidate, x: Vec<f64>) -> Option<Fit> {
+    let fit = as_they_are(problem, candidate.clone(), x.clone());
+    if fit.as_ref().is_some_and(|f| before.ahead(f) >= 0.0) {
+        return fit;
+    }
+    let weights = Some(before.weights.clone());
+    let other = Fit::of(candidate, x, &problem.train, &problem.full_scale, weights, 2);
+    fit.into_iter().chain(other).reduce(|a, b| if a.ahead(&b) > 0.0 { b } else { a })
+}
+
 /// The fit that begins where only the sensors' noise is left, where it is better.
 pub fn at_the_noise(problem: &Problem<'_>, sensors: &Sensors, one: &Weighed) -> Option<Weighed> {
     let white = Weights::sensors(&sensors.noise, &problem.full_scale);
