@@ -1,7 +1,7 @@
 //! Whatever a study and its recordings hold, a diagnosis ends with a verdict or a message: circuits of the library beside
 //! random columns (constant, stepped, noisy, huge, with gaps, three samples long, times that go back).
 //!
-//! `PROPTEST_CASES=10000 cargo test --release --test recordings` searches longer.
+//! `./x fuzz` looks at other cases, `PROPTEST_CASES=10000 cargo test --release --test recordings` at many.
 
 #![allow(clippy::disallowed_methods, reason = "reads its cases")]
 

@@ -26,7 +26,7 @@ pub const FLIPS: usize = 2000;
 pub const UNCORRELATED: f64 = 0.05;
 /// Left-out evidence by which the fit at the sensors' noise must beat the fit at the errors as they are, nats.
 pub const OTHER_WEIGHTING: f64 = 3.0;
-/// Part by which the gap over all signals may grow with an effect that closes another one's.
+/// Part by which a corrected model may leave more of the held recordings than the nominal one.
 pub const OPENS: f64 = 0.02;
 /// Least mean square of a signal that counts, as part of full scale, squared: what is below is rounding.
 pub const LEAST: f64 = 1e-4;

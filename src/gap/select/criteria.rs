@@ -16,6 +16,8 @@ pub struct Rival {
     pub places: usize,
     /// By how many of its standard deviations its largest coefficient differs from nothing; infinite where none is free.
     pub size: f64,
+    /// A parameter: it has to be out of its tolerance, whatever it gains.
+    pub is_parameter: bool,
     /// The model with it.
     pub model: Weighed,
 }
@@ -67,6 +69,8 @@ pub struct Judged {
     /// Gap that it leaves, in parts of full scale.
     pub gap: f64,
     sure: bool,
+    /// Evidence alone is, of what had no size before.
+    plain: bool,
     worth: bool,
     size: f64,
     /// What it was before.
@@ -82,7 +86,13 @@ impl Judged {
 
     /// Whether it may be taken where other data are sure of it.
     pub fn may(&self) -> bool {
-        self.worth && self.size > SURE && !self.opens
+        self.worth && self.has_size() && !self.opens
+    }
+
+    /// Whether it is not nothing: by its standard deviation, or by evidence that is plain, for a deviation is that of a model
+    /// which is linear in it.
+    fn has_size(&self) -> bool {
+        self.size > SURE || self.plain
     }
 
     /// Why it may not be taken.
@@ -90,7 +100,7 @@ impl Judged {
         match () {
             () if !self.sure => Reason::NotSure(self.chance, self.evidence, needed),
             () if !self.worth => Reason::NotWorth,
-            () if self.size <= SURE => Reason::NoSize(self.size),
+            () if !self.has_size() => Reason::NoSize(self.size),
             () => Reason::Opens(self.gap / self.before),
         }
     }
@@ -152,10 +162,12 @@ impl Criteria {
                 judged.evidence = judged.evidence.max(found + saved(before, &rivals[i].model));
             }
         }
-        for j in &mut all {
+        for (j, rival) in all.iter_mut().zip(rivals) {
             // blocks do not see what a model costs of the prior
             let by_blocks = j.chance <= ALPHA / schemes as f64 && j.evidence > 0.0;
-            j.sure = by_blocks || j.evidence > needed + (schemes as f64).ln();
+            let by_evidence = j.evidence > needed + (schemes as f64).ln();
+            j.sure = by_blocks || by_evidence;
+            j.plain = by_evidence && !rival.is_parameter;
         }
         all
     }
@@ -172,7 +184,7 @@ impl Criteria {
         let before = before.gap(&self.sensors).max(f64::MIN_POSITIVE);
         let opens = !self.alike(gap, before);
         let (t, evidence) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
-        Judged { t, chance: 1.0, evidence, gap, sure: false, worth, size: rival.size, before, opens }
+        Judged { t, chance: 1.0, evidence, gap, sure: false, plain: false, worth, size: rival.size, before, opens }
     }
 
     /// Two models that are one for the user.

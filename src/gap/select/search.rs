@@ -231,8 +231,9 @@ impl Search<'_> {
         let one = |(hypothesis, starts): Screened| {
             let fits = starts.into_iter().filter_map(|s| no_worse(problem, before, s.candidate, s.x));
             let fit = fits.reduce(|a, b| if a.ahead(&b) > 0.0 { b } else { a })?;
-            let places = problem.hypotheses[hypothesis].attachments.len();
-            Some(Rival { hypothesis, places, size: 0.0, model: Weighed::new(problem, fit) })
+            let h = &problem.hypotheses[hypothesis];
+            let (places, is_parameter) = (h.attachments.len(), h.family == "parameter");
+            Some(Rival { hypothesis, places, size: 0.0, is_parameter, model: Weighed::new(problem, fit) })
         };
         let mut rivals: Vec<Rival> = screened.into_par_iter().filter_map(one).collect();
         rivals.sort_by(|a, b| a.model.gap(sensors).total_cmp(&b.model.gap(sensors)));
@@ -366,17 +367,16 @@ impl Search<'_> {
 /// parameter that is said to be out of tolerance from its data sheet, what is known of both counted.
 fn size(problem: &Problem<'_>, h: &Hypothesis, fit: &Fit) -> f64 {
     let Some(places) = fit.candidate.model.attached.last().filter(|_| !h.is_shape()) else { return f64::INFINITY };
-    let (theta, deviations) = (fit.candidate.theta(&fit.x), fit.deviations());
+    let deviations = fit.deviations();
     if let ("parameter", Some(&k)) = (h.family.as_str(), places.first()) {
         let t = &problem.tolerances[k];
-        return (theta[k] - t.nominal).abs() / t.sigma.hypot(deviations[k] * t.sigma);
+        return (fit.x[k] - t.nominal / t.sigma).abs() / deviations[k].hypot(1.0);
     }
     let coordinates = &fit.candidate.coordinates;
     let one = |(c, &place): (&Coefficient, &usize)| {
         let k = coordinates.iter().position(|own| own.parameter == place)?;
-        let deviation = deviations[k] * coordinates[k].slope(fit.x[k]);
-        let off = (theta[place] - c.off).abs();
-        Some(if off > 0.0 { off / deviation } else { 0.0 })
+        let off = (fit.x[k] - coordinates[k].of(c.off)).abs();
+        Some(if off > 0.0 { off / deviations[k] } else { 0.0 })
     };
     h.coefficients.iter().zip(places).filter_map(one).reduce(f64::max).unwrap_or(f64::INFINITY)
 }
