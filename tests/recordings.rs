@@ -267,12 +267,6 @@ proptest! {
     #![proptest_config(config())]
     #[test]
     fn any_recording_ends(case in case()) {
-        let begun = std::time::Instant::now();
-        let ended = std::panic::catch_unwind(|| diagnosed(&case));
-        if std::env::var("BRAMAH_SHOW").is_ok() {
-            let class = &NOMINAL[case.nominal].1;
-            println!("{:?} {class} {:?} {:.1} s", ended.as_ref().ok(), case.samples, begun.elapsed().as_secs_f64());
-        }
-        prop_assert!(ended.is_ok(), "panics");
+        prop_assert!(std::panic::catch_unwind(|| diagnosed(&case)).is_ok(), "panics");
     }
 }
