@@ -321,6 +321,15 @@ fn a_parameter_far_beyond_its_tolerance_is_named() {
     assert_eq!(found.effects[0].family, "parameter", "{found:?}");
 }
 
+/// What lies within its tolerance is not out of it, however surely the data tell its value.
+#[test]
+fn a_parameter_within_its_tolerance_is_no_finding() {
+    // two tolerances off
+    let found = diagnosed(("spring.c", 416.0), 2);
+    assert!(found.effects.is_empty(), "{:?}", found.effects);
+    assert_eq!(found.verdict, "nothing_found");
+}
+
 /// A recording without friction of which one column was taken so many samples later, or earlier where it is negative.
 fn shifted(world: &MemoryWorld, column: usize, samples: isize, seed: u64) -> String {
     let text = recording(world, ("rub.F", 0.0), seed);

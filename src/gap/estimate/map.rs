@@ -31,7 +31,7 @@ impl Weights {
     pub fn of(errors: &[Errors], full_scale: &[f64]) -> Self {
         let one = |(i, scale): (usize, &f64)| {
             let square = squares(errors, i) / samples(errors, i).max(1.0);
-            (square.max((0.01 * LEAST * scale).powi(2)), independent(errors, i))
+            (square.max((0.01 * LEAST * scale).powi(2)), tau(errors, i))
         };
         let (square, tau) = full_scale.iter().enumerate().map(one).unzip();
         Weights { square, tau }
@@ -55,7 +55,7 @@ impl Weights {
 }
 
 /// How many samples of a signal in a row say the same.
-fn independent(errors: &[Errors], signal: usize) -> f64 {
+fn tau(errors: &[Errors], signal: usize) -> f64 {
     let weighed = |e: &Errors| finite(&e[signal]) * correlation::time(&e[signal]);
     (errors.iter().map(weighed).sum::<f64>() / samples(errors, signal).max(1.0)).max(1.0)
 }
@@ -120,12 +120,17 @@ impl Fit {
     /// a fit leaves, and as correlated as the more correlated errors are.
     pub fn ahead(&self, other: &Fit) -> f64 {
         let one = |i: usize| {
-            let tau = |f: &Fit| independent(&f.evaluated.errors, i);
-            let independent = self.samples(i) / tau(self).max(tau(other));
+            let correlated = |f: &Fit| tau(&f.evaluated.errors, i);
+            let independent = self.samples(i) / correlated(self).max(correlated(other));
             let square = |f: &Fit| f.mean_square(i).max(f64::MIN_POSITIVE);
             0.5 * independent * (square(self) / square(other)).ln()
         };
         (0..self.weights.tau.len()).map(one).sum::<f64>() + self.prior() - other.prior()
+    }
+
+    /// The one of two fits that [`Fit::ahead`] prefers.
+    pub fn better_of(self, other: Fit) -> Fit {
+        if self.ahead(&other) > 0.0 { other } else { self }
     }
 
     /// Levenberg-Marquardt with these weights.

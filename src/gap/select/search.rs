@@ -230,7 +230,7 @@ impl Search<'_> {
         let (problem, sensors) = (self.problem, &self.criteria.sensors);
         let one = |(hypothesis, starts): Screened| {
             let fits = starts.into_iter().filter_map(|s| no_worse(problem, before, s.candidate, s.x));
-            let fit = fits.reduce(|a, b| if a.ahead(&b) > 0.0 { b } else { a })?;
+            let fit = fits.reduce(Fit::better_of)?;
             let h = &problem.hypotheses[hypothesis];
             let (places, is_parameter) = (h.attachments.len(), h.family == "parameter");
             Some(Rival { hypothesis, places, size: 0.0, is_parameter, model: Weighed::new(problem, fit) })

@@ -48,7 +48,7 @@ pub fn settled(problem: &Problem<'_>, sensors: &Sensors, mut model: Weighed) -> 
 }
 
 /// A fit that weighs errors as large and as correlated as it leaves them.
-pub fn as_they_are(problem: &Problem<'_>, candidate: Candidate, x: Vec<f64>) -> Option<Fit> {
+fn as_they_are(problem: &Problem<'_>, candidate: Candidate, x: Vec<f64>) -> Option<Fit> {
     Fit::of(candidate, x, &problem.train, &problem.full_scale, None, 2)
 }
 
@@ -60,7 +60,7 @@ pub fn no_worse(problem: &Problem<'_>, before: &Fit, candidate: Candidate, x: Ve
     }
     let weights = Some(before.weights.clone());
     let other = Fit::of(candidate, x, &problem.train, &problem.full_scale, weights, 2);
-    fit.into_iter().chain(other).reduce(|a, b| if a.ahead(&b) > 0.0 { b } else { a })
+    fit.into_iter().chain(other).reduce(Fit::better_of)
 }
 
 /// The fit that begins where only the sensors' noise is left, where it is better.
