@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+mod rig;
+
 use bramah::diag::Sources;
 use bramah::gap::estimate::simulation::from_start;
 use bramah::gap::fixed::corrected;
@@ -15,6 +17,7 @@ use bramah::solve::Interpolation;
 use bramah::study::Study;
 use bramah::world::MemoryWorld;
 use bramah::{Request, Simulation};
+use rig::{Numbers, ORIFICE};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -94,15 +97,11 @@ time = \"t\"
 ";
 
 /// Numbers of a normal distribution, the same for the same seed.
-struct Normal(u64);
+struct Normal(Numbers);
 
 impl Normal {
     fn next(&mut self) -> f64 {
-        let mut uniform = || {
-            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (self.0 >> 11) as f64 / (1u64 << 53) as f64
-        };
-        (0..12).map(|_| uniform()).sum::<f64>() - 6.0
+        (0..12).map(|_| self.0.next()).sum::<f64>() - 6.0
     }
 }
 
@@ -132,7 +131,7 @@ fn stepped(
     for (name, value) in changed {
         plant.set(name, *value).unwrap();
     }
-    let mut random = Normal(seed);
+    let mut random = Normal(Numbers(seed));
     let count = 1500;
     let times: Vec<f64> = (0..count).map(|k| f64::from(k) * h).collect();
     let mut u = 0.0;
@@ -504,7 +503,7 @@ fn a_start_far_from_the_models_is_found_through_an_output_that_bends() {
         let request = Request { source: "Vessel.mo".into(), model: Some("Vessel".into()), ..Request::default() };
         let mut vessel = Simulation::compile(&world, &request).unwrap();
         vessel.set("h_0", 1.5).unwrap();
-        let mut random = Normal(seed);
+        let mut random = Normal(Numbers(seed));
         let times: Vec<f64> = (0..400).map(|k| f64::from(k) * 0.05).collect();
         let u: Vec<f64> = (0..400).map(|k| if k / 80 % 2 == 0 { 0.2 } else { 0.4 }).collect();
         vessel.input("u", &times, &u, Interpolation::Held).unwrap();
@@ -558,7 +557,7 @@ fn soft_oil_behind_a_check_valve_does_not_lead_the_simulation_astray() {
     (settings.interval, settings.event_rows) = (0.1, false);
     let run = plant.run().unwrap().trajectory;
     let columns = ["p_A", "p_B", "T_sh"].map(|name| run.column(name).unwrap());
-    let mut random = Normal(3);
+    let mut random = Normal(Numbers(3));
     let mut text = String::from("t,w_ref,p_A,p_B,T_sh\n");
     for k in 0..120 {
         let mut shown = [3e5, 5e4, 0.03].map(|deviation| deviation * random.next());
@@ -590,25 +589,12 @@ fn soft_oil_behind_a_check_valve_does_not_lead_the_simulation_astray() {
     assert!(most < 10.0, "{most}");
 }
 
-/// A network without states, an orifice between a source and a tank, whose bench has a sensor with an offset.
+/// The bench of a network without states has a sensor with an offset.
 #[test]
 fn a_model_without_states_is_diagnosed() {
-    let model = "
-        model Static
-          inner Oil.ISOVG46 oil;
-          Interfaces.RealInput p(unit = \"Pa\", nominal = 1e6);
-          Hydraulic.PressureSource supply(useInput = true);
-          Hydraulic.Orifice orifice(A = 1e-5);
-          Hydraulic.Tank tank;
-          Real q(unit = \"m3/s\", nominal = 1e-4) = orifice.q;
-        equation
-          connect(p, supply.p_in);
-          connect(supply.port, orifice.port_a);
-          connect(orifice.port_b, tank.port);
-        end Static;";
-    let world = MemoryWorld::single("Static.mo", model);
+    let world = MemoryWorld::single("Static.mo", ORIFICE);
     let recorded = |seed: u64| {
-        let mut random = Normal(seed);
+        let mut random = Normal(Numbers(seed));
         let mut text = String::from("t,p,q\n");
         for k in 0..600 {
             let t = f64::from(k) * 0.01;

@@ -20,6 +20,22 @@ pub fn shipped(name: &str) -> Simulation {
     shipped_with(name, &[])
 }
 
+/// A network without states: an orifice between a source of pressure and a tank.
+pub const ORIFICE: &str = "
+model Static
+  inner Oil.ISOVG46 oil;
+  Interfaces.RealInput p(unit = \"Pa\", nominal = 1e6);
+  Hydraulic.PressureSource supply(useInput = true);
+  Hydraulic.Orifice orifice(A = 1e-5);
+  Hydraulic.Tank tank;
+  Real q(unit = \"m3/s\", nominal = 1e-4) = orifice.q;
+equation
+  connect(p, supply.p_in);
+  connect(supply.port, orifice.port_a);
+  connect(orifice.port_b, tank.port);
+end Static;
+";
+
 /// A model in the text of its components and equations.
 pub fn circuit(components: &str, equations: &str) -> Simulation {
     let text = format!("model Rig\n{components}\nequation\n{equations}\nend Rig;\n");
