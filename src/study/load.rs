@@ -162,9 +162,9 @@ impl Loader<'_> {
 
     fn in_unit(&mut self, values: Vec<f64>, from: &str, to: &str, sign: f64, column: &str, head: Span) -> Vec<f64> {
         let converted: Vec<f64> = match conversion(from, to) {
-            Ok(None) => values.into_iter().map(|v| sign * v).collect(),
+            Ok(None) => values.iter().map(|v| sign * v).collect(),
             Ok(Some((own, wanted))) => {
-                values.into_iter().map(|v| sign * own.convert(v, &wanted).unwrap_or(f64::NAN)).collect()
+                values.iter().map(|v| sign * own.convert(*v, &wanted).unwrap_or(f64::NAN)).collect()
             }
             Err(()) => {
                 let text = format!("the column `{column}` is in `{from}`, which cannot be converted to `{to}`");
@@ -172,8 +172,8 @@ impl Loader<'_> {
                 return values;
             }
         };
-        if let Some(value) = converted.iter().find(|v| v.abs() > LARGEST) {
-            let text = format!("the column `{column}` holds {}, which nothing measures", number::text(*value));
+        if let Some(i) = converted.iter().position(|v| v.abs() > LARGEST) {
+            let text = format!("the column `{column}` holds {}, which nothing measures", number::text(values[i]));
             let d = Diagnostic::new(Code::BadData, text).at(head, "in this file");
             self.diagnostics.push(d.help("is it a mark for a missing value? Leave the cell empty, or write `NaN`"));
         }

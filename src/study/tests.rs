@@ -183,6 +183,15 @@ fn an_input_that_steps_is_not_joined_by_straight_lines() {
 }
 
 #[test]
+fn a_value_whose_square_is_no_number_is_refused() {
+    let mut world = world(STUDY);
+    world.add("lab/a.csv", "t_s,q,level\n0,1,2\n1,2,1e200\n2,3,3\n");
+    let (value, said) = load(&world);
+    // as it is written, not in the units of the model
+    assert!(value.is_none() && said.contains("E601") && said.contains("the column `level` holds 1e200"), "{said}");
+}
+
+#[test]
 fn an_input_that_stands_still_in_all_recordings_is_told() {
     let said = |first: &str, second: &str| {
         let mut world = world(&STUDY.replace("\"held\"", "\"train\"\ntime = \"t_s\""));
