@@ -466,3 +466,48 @@ end Leak;
     let said = render(&outcome.sources, &outcome.diagnostics, Format::Short, 160, false);
     assert!(said.starts_with("fx/Leak.mo:4:13: error[E010]"), "{said}");
 }
+
+/// The law of a play holds beyond the edges of the gap, which a step of a solver may well leave, and from either side: the
+/// force of a motion, the motion of a force. Odd and growing, it makes no energy.
+#[test]
+fn a_play_has_a_force_beyond_its_gap() {
+    let play = "Effects.RodBacklash play(b = 0.01, F_min = -1000, F_max = 1000)";
+    let text = format!(
+        "model Moved {play}; Real f = play.f; Real s; equation s = 0.006*sin(time); play.s_rel = s; end Moved;
+         model Loaded {play}; Real f; Real s = play.s_rel; equation f = 4000*sin(time); play.f = f; end Loaded;"
+    );
+    let world = MemoryWorld::single("play.mo", text);
+    let run = |class: &str| {
+        let request = Request { source: "play.mo".into(), model: Some(class.into()), ..Request::default() };
+        let mut simulation = Simulation::compile(&world, &request).unwrap_or_else(|e| panic!("{e}"));
+        simulation.stop_time(7.0);
+        let trajectory = simulation.run().unwrap_or_else(|e| panic!("{e}")).trajectory;
+        let column = |name: &str| trajectory.column(name).expect("a column").to_vec();
+        column("f").into_iter().zip(column("s")).collect::<Vec<(f64, f64)>>()
+    };
+    // at a fifth beyond the gap: a hundredth of 1000 N per half gap, and 1000 N per twentieth of it
+    let most = run("Moved").iter().fold(0.0_f64, |m, p| m.max(p.0));
+    assert!((most - (12.0 + 0.2 / 0.05 * 1000.0)).abs() < 5.0, "{most}");
+    let far = run("Loaded").iter().fold(0.0_f64, |m, p| m.max(p.1));
+    assert!((far - 0.005 * (1.0 + 4.0 * 0.05)).abs() < 1e-5, "{far}");
+    for (f, s) in run("Moved").into_iter().chain(run("Loaded")) {
+        assert!(f * s >= 0.0, "{f} N at {s} m");
+        assert!(s.abs() > 0.0049 || f.abs() < 10.5, "{f} N within the gap, at {s} m");
+    }
+}
+
+/// Heat needs no component between two bodies.
+#[test]
+fn heat_passes_between_bodies_that_nothing_joins() {
+    let text = "model Two
+      Thermal.HeatCapacitor a(C = 5, T_start = 300); Thermal.HeatCapacitor b(C = 5, T_start = 290);
+      Thermal.ThermalConductor air(G = 0.1); Thermal.FixedTemperature room(T = 290);
+      equation connect(a.port, air.port_a); connect(air.port_b, room.port); end Two;";
+    let world = MemoryWorld::single("two.mo", text.to_string());
+    let request = Request { source: "two.mo".into(), ..Request::default() };
+    let effects = catalogue(&world, None).value.expect("a catalogue").effects;
+    let all = hypotheses(&value(circuit(&world, &request)), &effects, &[], &[]);
+    let bridges = all.iter().filter(|h| h.effect == "Effects.HeatBridge");
+    let places: Vec<&str> = bridges.map(|h| h.places()[0].place.as_str()).collect();
+    assert_eq!(places, ["air.port_a|air.port_b", "a.port|b.port", "b.port|air.port_b"]);
+}

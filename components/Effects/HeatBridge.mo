@@ -1,5 +1,5 @@
 within Effects;
-model HeatBridge "Heat past a component"
+model HeatBridge "Heat from one place to another, past or without a component between them"
   extends Interfaces.ThermalBridge;
   parameter SI.ThermalConductance G(min = 0, nominal = 1) = 0 "Conductance";
 equation

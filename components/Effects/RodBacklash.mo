@@ -4,11 +4,17 @@ model RodBacklash "Play in a connection: the first side moves against the second
   parameter SI.Length b(min = 0, nominal = 1e-3) = 0 "Width of the gap";
   parameter SI.Force F_min(nominal = 100) = 0 "Least force that occurs";
   parameter SI.Force F_max(nominal = 100) = 1 "Greatest force that occurs";
-  parameter Real w(unit = "1", min = 1e-6) = 0.01 "Load that closes the gap over half the range of the force";
-  SI.Force F_s(nominal = 1) "Load that closes it";
+  parameter Real w(unit = "1", min = 1e-6) = 0.01 "Load within the gap over half the range of the force";
+  SI.Force F_r(nominal = 100) "Half the range";
+  Real rho(unit = "1", start = 0) "Part of half the gap that is used; beyond 1 the sides press on each other";
+protected
+  constant Real e = 0.05 "Part of half the gap by which half the range presses the sides together";
+  final parameter Real d = 2*w*e "Width of the corners: there the load is twice that within the gap";
 equation
-  F_s = 0.5*w*(F_max - F_min);
-  // no tanh: under load it would be flat to the last digit, and no force would follow from the gap
-  s_rel = 0.5*b*f/sqrt(f^2 + F_s^2);
+  F_r = 0.5*(F_max - F_min);
+  s_rel = 0.5*b*rho;
+  // a law that ended at the edge of the gap would have no solution where a step goes beyond it; one of the load over rho is
+  // found from either side by Newton's method, for it bends one way only
+  f = F_r*(w*rho + (rho + 0.5*(sqrt((rho - 1)^2 + d^2) - sqrt((rho + 1)^2 + d^2)))/e);
   annotation(__bramah(family = "backlash", id = "E37", coefficients = {"b"}, shapes(w = {0.01}), range = {"f", "F_min", "F_max"}));
 end RodBacklash;

@@ -7,8 +7,8 @@ the same units. Which variable is what is said by the interface:</p>
 <pre>__bramah(attach = \"Shunt|Bridge|Drain|Series|Sensor|Command\", potential = {...}, through = \"...\", drop = \"...\", sense = {...})</pre>
 <p>A Shunt draws <code>through</code> from a node; a Bridge lets it pass from the first to the second port of a component; a Drain from a node to
 one of constant potential; a Series element cuts a connection, gets the flow and gives the fall of the potential. A Series
-element is given <code>through</code> and gives <code>drop</code>. <code>sense</code> names potentials of further ports of the same component, or of
-any other with <code>anywhere = \"yes\"</code>.</p>
+element is given <code>through</code> and gives <code>drop</code>. <code>sense</code> names potentials of further ports of the same component. With
+<code>anywhere = \"yes\"</code> they are those of any other; a Bridge that senses nothing lies between any two places with it.</p>
 <p>An effect adds</p>
 <pre>__bramah(family = \"...\", id = \"E27\", coefficients = {\"F_c\"}, shapes(v_s = {0.002, 0.02}), base = {\"d\"}, relative = {\"b\"},
   threshold = {\"p_o\"}, level = {\"p_o\"}, limit = {\"m\"}, order = {\"n\"}, part = {\"C\"}, own = {\"a_s\"}, range = {\"s\", \"s_min\", \"s_max\"}, temperature = \"T\", group = \"...\", law = \"...\", ends = \"free\", directed = \"yes\", measured = \"yes\", without = \"Drain\")</pre>

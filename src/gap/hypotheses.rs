@@ -65,8 +65,8 @@ impl Kind {
 
     /// By the unit of a through variable.
     fn of(unit: &str) -> Kind {
-        let known =
-            [("N", Kind::Force), ("N.m", Kind::Torque), ("m3/s", Kind::Flow), ("A", Kind::Current), ("W", Kind::Heat)];
+        let flows = [("m3/s", Kind::Flow), ("kg/s", Kind::Flow), ("A", Kind::Current), ("W", Kind::Heat)];
+        let known = [("N", Kind::Force), ("N.m", Kind::Torque)].into_iter().chain(flows);
         known.into_iter().find(|(u, _)| same_kind(u, unit)).map_or(Kind::Signal, |(_, k)| k)
     }
 }
@@ -288,6 +288,7 @@ fn candidates(circuit: &Circuit, effect: &Arc<Effect>, all: &[Arc<Effect>], sign
             let components = 0..circuit.components.len();
             components
                 .flat_map(|c| at_component(circuit, effect, c))
+                .chain(without_component(circuit, effect))
                 .flat_map(|c| completed(circuit, effect, c))
                 .collect()
         }
@@ -331,6 +332,19 @@ fn at_component(circuit: &Circuit, effect: &Arc<Effect>, component: usize) -> Ve
         _ => Vec::new(),
     };
     sites.into_iter().flat_map(|(site, used)| at_site(circuit, effect, component, &site, &used)).collect()
+}
+
+/// Sites of a bridge that needs no component between its ends, as heat does not: any two places.
+fn without_component(circuit: &Circuit, effect: &Arc<Effect>) -> Vec<Candidate> {
+    let interface = &effect.interface;
+    if interface.attach != Attach::Bridge || !interface.anywhere || !interface.sense.is_empty() {
+        return Vec::new();
+    }
+    let mut places = BTreeSet::new();
+    let first = |p: &usize| fits(effect, &circuit.ports[*p]) && places.insert(circuit.rigid(*p));
+    let ports: Vec<usize> = (0..circuit.ports.len()).filter(first).collect();
+    let all = pairs(circuit, effect, &ports).into_iter();
+    all.flat_map(|(site, used)| at_site(circuit, effect, 0, &site, &used)).collect()
 }
 
 fn fits(effect: &Effect, port: &Port) -> bool {
@@ -389,7 +403,7 @@ fn at_site(circuit: &Circuit, effect: &Arc<Effect>, component: usize, site: &Sit
 
 /// Further ports, one for each sensed potential: of the component, or any other for effects that reach so far.
 fn sensed(circuit: &Circuit, effect: &Effect, component: usize, used: &[usize]) -> Vec<Vec<usize>> {
-    if effect.interface.anywhere {
+    if effect.interface.anywhere && !effect.interface.sense.is_empty() {
         return effect.interface.sense.first().map_or_else(Vec::new, |q| moving(circuit, q));
     }
     let mut taken: Vec<usize> = used.to_vec();

@@ -26,6 +26,8 @@ const UNITS: &[(&str, &[f64])] = &[
     ("A", &[1e-3]),
     ("V", &[1e-3]),
     ("W", &[1e3]),
+    // a part, written in per cent
+    ("1", &[1e-2]),
 ];
 /// Factors of a column of any unit: a shifted point.
 const ANY: &[f64] = &[10.0, 1e3];
@@ -98,6 +100,7 @@ mod tests {
         assert!(has(-1.0) && has(30.0 / std::f64::consts::PI) && has(std::f64::consts::PI / 30.0) && has(0.1));
         assert!(!has(1e5));
         assert!(factors("degC").is_empty());
+        assert!(factors("1").contains(&100.0) && factors("1").contains(&0.01), "per cent");
         assert!(factors("Pa").iter().filter(|f| (**f - 1e-3).abs() < 1e-9).count() == 1);
     }
 }

@@ -182,8 +182,8 @@ fn gaps(v: &Verdict) -> Vec<Vec<String>> {
 
 fn drifts(v: &Verdict) -> Vec<Vec<String>> {
     let row = |d: &super::verdict::Drift| {
-        let deviation = format!("{:+.2}", d.tolerances);
-        let far = d.tolerances.abs() >= FAR;
+        let deviation = d.tolerances.map_or_else(|| "free".to_string(), |t| format!("{t:+.2}"));
+        let far = d.tolerances.is_some_and(|t| t.abs() >= FAR);
         let deviation = if far { format!("<b class=\"far\">{deviation}</b>") } else { deviation };
         vec![escape(&d.parameter), number(d.nominal), number(d.value), number(d.std), deviation]
     };

@@ -168,8 +168,8 @@ pub struct Drift {
     pub value: f64,
     /// One standard deviation.
     pub std: f64,
-    /// Deviation in tolerances.
-    pub tolerances: f64,
+    /// Deviation in tolerances; nothing where it has none.
+    pub tolerances: Maybe,
 }
 
 /// Gaps on held and train recordings.

@@ -1,7 +1,7 @@
 //! The verdict in words, one screen of them.
 
 use super::policy::SEEN;
-use super::verdict::{Effect, Estimate, Located, Maybe, OpenGap, SignalGap, Verdict};
+use super::verdict::{Drift, Effect, Estimate, Located, Maybe, OpenGap, SignalGap, Verdict};
 use std::fmt::Write;
 
 /// What the diagnosis found, for people: findings, the gap as a table, what is left.
@@ -20,7 +20,7 @@ pub(super) fn findings(v: &Verdict) -> String {
         let _ = writeln!(text, "The recording `{}` is wrong: `{}` {what}.", r.file, r.signal);
     }
     for (i, e) in v.effects.iter().enumerate() {
-        text.push_str(&effect(i, e));
+        text.push_str(&effect(i, e, v.effects.len()));
     }
     text.push_str(&found_nothing(v));
     text
@@ -43,15 +43,10 @@ pub(super) fn rest(v: &Verdict) -> String {
             percent(t.closes)
         );
     }
-    for d in v.drifts.iter().filter(|d| d.tolerances.abs() >= 2.0) {
-        let _ = writeln!(
-            text,
-            "`{}` is {} instead of {} ({:+.1} tolerances).",
-            d.parameter,
-            number(d.value),
-            number(d.nominal),
-            d.tolerances
-        );
+    let far = |d: &Drift| d.tolerances.filter(|t| t.abs() >= 2.0);
+    for (d, tolerances) in v.drifts.iter().filter_map(|d| Some((d, far(d)?))) {
+        let (name, value, nominal) = (&d.parameter, number(d.value), number(d.nominal));
+        let _ = writeln!(text, "`{name}` is {value} instead of {nominal} ({tolerances:+.1} tolerances).");
     }
     if !v.assumed.is_empty() {
         let _ = writeln!(text, "{} parameters without a stated tolerance were taken as known to 5 %.", v.assumed.len());
@@ -143,7 +138,7 @@ fn quantity(v: f64, unit: &str) -> String {
     format!("{} {unit}", significant(v)).trim_end().to_string()
 }
 
-fn effect(i: usize, e: &Effect) -> String {
+fn effect(i: usize, e: &Effect, count: usize) -> String {
     let places: Vec<String> = e.places.iter().map(|p| format!("`{}`", p.place)).collect();
     let values: Vec<String> = e.parameters.iter().map(|(n, p)| format!("{n} = {}", estimate(p, "+-"))).collect();
     let mut text = format!(
@@ -157,8 +152,10 @@ fn effect(i: usize, e: &Effect) -> String {
         e.t
     );
     if let Some(alone) = e.closes_alone {
-        let _ =
-            writeln!(text, "   It closes {} of the gap that tolerances leave on the held recordings.", percent(alone));
+        let beside = e.closes_last.filter(|_| count > 1).map(percent);
+        let beside = beside.map_or(String::new(), |p| format!(" by itself, {p} beside the other effects"));
+        let gap = "of the gap that tolerances leave on the held recordings";
+        let _ = writeln!(text, "   It closes {} {gap}{beside}.", percent(alone));
     }
     if !e.indistinguishable.is_empty() {
         let others: Vec<String> = e

@@ -260,6 +260,13 @@ impl Search<'_> {
         if accepted.is_empty() {
             accepted.extend(self.with_held(before, &rivals, &judged, &mut reasons));
         }
+        if !accepted.is_empty() {
+            // that something is missing is sure: those that are worth it are compared with each other now
+            let others = (0..rivals.len()).filter(|i| judged[*i].may() && !accepted.contains(i));
+            let others: Vec<usize> = others.collect();
+            others.iter().for_each(|&i| reasons[i] = None);
+            accepted.extend(others);
+        }
         let order = self.criteria.order(&accepted, &rivals, &mut reasons);
         let taken = order.iter().copied().find(|&i| {
             reasons[i] = self.unconfirmed(before, &rivals[i].model);

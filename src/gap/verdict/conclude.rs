@@ -184,7 +184,7 @@ impl Conclusion<'_> {
             nominal: t.nominal,
             value: theta[i],
             std: deviations[i] * t.sigma,
-            tolerances: (theta[i] - t.nominal) / t.sigma,
+            tolerances: (!t.free).then(|| (theta[i] - t.nominal) / t.sigma),
         };
         self.problem.tolerances.iter().enumerate().map(drift).collect()
     }
