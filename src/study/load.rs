@@ -110,7 +110,8 @@ impl Loader<'_> {
             Err(_) if file.optional => return None,
             Err(why) => {
                 let text = format!("the recording `{}` cannot be read: {why}", path.display());
-                self.diagnostics.push(at(file.span, text, "named here"));
+                let help = "a path is relative to the folder of the study, or to the one given with `--data`";
+                self.diagnostics.push(at(file.span, text, "named here").help(help));
                 return None;
             }
         };
