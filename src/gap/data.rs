@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
-/// The start of a recording from which the initial state is estimated: this part of it, and at most so many seconds, or
-/// samples where they are slower, so that one sample's noise is not the state's.
-const START: (f64, f64, usize) = (0.05, 0.2, 20);
+/// The start of a recording from which the initial state is estimated: this part of it, and at most so many seconds.
+const START: (f64, f64) = (0.05, 0.2);
+/// But so many samples at least, so that the noise of a few is not the state's, up to this part of the recording.
+const ENOUGH: (usize, f64) = (20, 0.2);
 
 /// One recording in SI units.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,9 +38,10 @@ impl Recording {
 
     /// The first sample behind the start, from which the state is estimated and which counts for nothing else.
     pub fn settled(&self) -> usize {
-        let enough = self.times[START.2.min(self.len() - 1)] - self.times[0];
-        let until = self.times[0] + (START.0 * self.duration()).min(START.1.max(enough));
-        self.times.iter().position(|t| *t >= until).unwrap_or(0).min(self.len() - 1)
+        let until = self.times[0] + (START.0 * self.duration()).min(START.1);
+        let short = self.times.iter().position(|t| *t >= until).unwrap_or(0);
+        let enough = ENOUGH.0.min((ENOUGH.1 * self.len() as f64) as usize);
+        short.max(enough).min(self.len() - 1)
     }
 
     /// Inputs at a sample.

@@ -3,6 +3,7 @@
 
 use super::super::circuit::same_kind;
 use super::super::data::{Inputs, Recording};
+use super::super::policy::SURE;
 use super::exponential;
 use super::simulation::{Course, Slopes};
 use crate::analysis::local::{Local, Plan};
@@ -62,7 +63,7 @@ impl Valued<'_> {
         let mut local = Local::start(self.plan.clone(), recording.times[0], self.theta, &u).ok()?;
         let own = local.state();
         local.linearize(recording.times[0], &own, self.theta, &u).ok()?;
-        let loose = self.looseness(&local);
+        let loose = self.looseness(&local, recording);
         let nowhere = DVector::zeros(own.len());
         let moved = moves.unwrap_or(&[]);
         let mut first = guess.filter(|g| g.len() == own.len()).and_then(|g| {
@@ -107,19 +108,24 @@ impl Valued<'_> {
     }
 
     /// Deviations of the states from the model's own start, in their sizes. What the model fixes and no sensor shows by
-    /// itself begins where the model says: a wrong law would find any other start for it.
-    fn looseness(&self, local: &Local) -> DVector<f64> {
+    /// itself begins where the model says, for a wrong law would find any other start for it; but not in a recording that
+    /// begins elsewhere with what is shown.
+    fn looseness(&self, local: &Local, recording: &Recording) -> DVector<f64> {
         let c = &local.linear.c;
-        let shown = |i: usize| {
-            (0..c.nrows()).any(|y| {
-                let alone = (0..c.ncols()).all(|j| (c[(y, j)] != 0.0) == (j == i));
-                alone && self.units.get(y).is_some_and(|u| self.plan.state_unit(i).is_some_and(|own| same_kind(u, own)))
-            })
+        let shows = |y: usize, i: usize| {
+            let alone = (0..c.ncols()).all(|j| (c[(y, j)] != 0.0) == (j == i));
+            alone && self.units.get(y).is_some_and(|u| self.plan.state_unit(i).is_some_and(|own| same_kind(u, own)))
         };
+        let shown = |i: usize| (0..c.nrows()).find(|&y| shows(y, i));
+        let begins_elsewhere = |y: usize| {
+            let first = recording.signals[y][..=recording.settled()].iter().find(|v| v.is_finite());
+            first.is_some_and(|v| (v - local.outputs[y]).abs() > SURE * self.deviations[y])
+        };
+        let elsewhere = (0..self.sizes.len()).filter_map(shown).any(begins_elsewhere);
         DVector::from_fn(self.sizes.len(), |i, _| {
             let measured = c.column(i).iter().any(|c| *c != 0.0);
             match self.plan.state_unit(i) {
-                _ if self.plan.state_is_fixed(i) && !shown(i) => HELD,
+                _ if self.plan.state_is_fixed(i) && !elsewhere && shown(i).is_none() => HELD,
                 Some("K") => KELVIN / self.sizes[i],
                 _ if measured => 1.0,
                 _ => UNMEASURED.max(TRAVEL * self.travel[i] / self.sizes[i]),
