@@ -1,7 +1,6 @@
 //! Where a recording begins: the state that its first samples lead to, by least squares between what they show and the
 //! model's own start. A recording rarely begins where the model does, and no study says where.
 
-use super::super::circuit::same_kind;
 use super::super::data::{Inputs, Recording};
 use super::super::policy::SURE;
 use super::exponential;
@@ -111,10 +110,11 @@ impl Valued<'_> {
     /// itself begins where the model says, for a wrong law would find any other start for it; but not in a recording that
     /// begins elsewhere with what is shown.
     fn looseness(&self, local: &Local, recording: &Recording) -> DVector<f64> {
-        let c = &local.linear.c;
+        let (c, d) = (&local.linear.c, &local.linear.d);
         let shows = |y: usize, i: usize| {
             let alone = (0..c.ncols()).all(|j| (c[(y, j)] != 0.0) == (j == i));
-            alone && self.units.get(y).is_some_and(|u| self.plan.state_unit(i).is_some_and(|own| same_kind(u, own)))
+            // what follows an input too is a balance, of which the state is a part that may be wrong
+            alone && (self.plan.parameters()..d.ncols()).all(|j| d[(y, j)] == 0.0)
         };
         let shown = |i: usize| (0..c.nrows()).find(|&y| shows(y, i));
         let begins_elsewhere = |y: usize| {

@@ -8,7 +8,7 @@ use super::super::hypotheses::Hypothesis;
 use super::super::policy::{EFFECTS, FRONT, SEEN};
 use super::super::problem::{Chosen, Problem, Tolerance};
 use super::compare::{closed, needed};
-use super::confirm::{ask, held_gap};
+use super::confirm::{Asked, ask, held_gap};
 use super::criteria::{Criteria, Judged, Reason, Rival};
 use super::models;
 use super::screen::{Ground, Screened, screened};
@@ -96,6 +96,10 @@ struct Search<'a> {
     trials: Vec<Trial>,
     /// What the screen left aside in this step.
     passed: Vec<Trial>,
+    /// What is worth it in the last step, where left-out data were sure of nothing.
+    undecided: Vec<Rival>,
+    /// Shapes were worth a fit beside the last model.
+    shape_says_more: bool,
 }
 
 /// Searches; held recordings only confirm.
@@ -112,10 +116,30 @@ pub fn search(problem: &Problem<'_>, held: &[Recording], progress: &mut dyn FnMu
     let first = (0..sensors.noise.len()).map(|i| left_by(&base.left[0], i, &sensors)).collect();
     let criteria = Criteria { sensors, first, count: problem.hypotheses.len() };
     let nominal = held_gap(&nominal, &x, held, &criteria.sensors);
-    let mut search = Search { problem, held, nominal, criteria, visible: None, trials: Vec::new(), passed: Vec::new() };
+    let mut search = Search {
+        problem,
+        held,
+        nominal,
+        criteria,
+        visible: None,
+        trials: Vec::new(),
+        passed: Vec::new(),
+        undecided: Vec::new(),
+        shape_says_more: false,
+    };
     let (mut last, mut taken) = (base.clone(), Vec::new());
-    for step in 1..=EFFECTS {
-        let Some((chosen, effect)) = search.step(step, &last, progress) else { break };
+    let mut shape = None;
+    for step in 1..=EFFECTS + 1 {
+        let found = if step <= EFFECTS { search.step(step, &last, progress) } else { None };
+        let found = found.or_else(|| {
+            progress(Stage::Shapes);
+            search.shape(step, &last)
+        });
+        let Some((chosen, effect)) = found else { break };
+        if search.h(effect.hypothesis).is_shape() {
+            shape = Some(effect);
+            break;
+        }
         last = settled(problem, &search.criteria.sensors, search.widened(chosen));
         taken.push(effect);
         search.drop_needless(&mut last, &mut taken);
@@ -123,10 +147,12 @@ pub fn search(problem: &Problem<'_>, held: &[Recording], progress: &mut dyn FnMu
             break;
         }
     }
-    let mut shape = None;
-    if !search.is_recording_error(&taken) {
-        progress(Stage::Shapes);
-        shape = search.shape(&base, &mut last, &mut taken);
+    if let [only] = taken.as_slice()
+        && !search.h(only.hypothesis).is_recording_error()
+        && let Some(instead) = search.shape_instead(&base, &last)
+    {
+        (shape, last) = (Some(instead), base.clone());
+        taken.clear();
     }
     let visible = search.visible.unwrap_or(0.0);
     Ok(Found { base, last, taken, shape, visible, trials: search.trials })
@@ -161,27 +187,33 @@ impl Search<'_> {
         self.choose(step, before, rivals)
     }
 
-    /// A shape beside the last model; or, where one may say something beside the only effect, in the place of that effect, if
-    /// it surely leaves less: then the effect is named for want of a better one.
-    fn shape(&mut self, base: &Weighed, last: &mut Weighed, taken: &mut Vec<Taken>) -> Option<Taken> {
-        let step = taken.len() + 1;
-        let shapes: Vec<usize> = (0..self.problem.hypotheses.len()).filter(|&i| self.h(i).is_shape()).collect();
-        let screened = self.screened(step, last, &shapes);
+    fn shapes(&self) -> Vec<usize> {
+        (0..self.problem.hypotheses.len()).filter(|&i| self.h(i).is_shape()).collect()
+    }
+
+    /// A shape beside a model to which no effect could be added; or an effect after all, if with a shape it is sure that
+    /// something is missing.
+    fn shape(&mut self, step: usize, last: &Weighed) -> Option<(Weighed, Taken)> {
+        let screened = self.screened(step, last, &self.shapes());
+        self.shape_says_more = !screened.is_empty();
         if screened.is_empty() {
             self.trials.append(&mut self.passed);
             return None;
         }
-        let rivals = self.fitted(&last.fit, screened);
-        let beside = self.choose(step, last, rivals);
-        if taken.len() == 1
-            && let Some((model, shape)) = self.beside(step, base, &shapes)
-            && self.criteria.worse(&model, last)
-        {
-            taken.clear();
-            *last = base.clone();
-            return Some(shape);
+        let mut rivals = self.fitted(&last.fit, screened);
+        rivals.append(&mut self.undecided);
+        self.choose(step, last, rivals)
+    }
+
+    /// A shape in the place of the only effect, where one may say something beside it, if it surely leaves less: then the
+    /// effect is named for want of a better one.
+    fn shape_instead(&mut self, base: &Weighed, last: &Weighed) -> Option<Taken> {
+        if !self.shape_says_more {
+            return None;
         }
-        beside.map(|b| b.1)
+        self.undecided.clear();
+        let (model, shape) = self.beside(2, base, &self.shapes())?;
+        self.criteria.worse(&model, last).then_some(shape)
     }
 
     /// Hypotheses with a name that may be tried beside what was taken.
@@ -256,18 +288,27 @@ impl Search<'_> {
         let needed = needed(self.criteria.count);
         let mut reasons: Vec<Option<Reason>> =
             judged.iter().map(|j| (!j.accepted()).then(|| j.refused(needed))).collect();
-        let mut accepted: Vec<usize> = (0..rivals.len()).filter(|&i| judged[i].accepted()).collect();
+        // of what was weighed before, among more hypotheses, nothing is sure now
+        let is_shape = |i: usize| self.h(rivals[i].hypothesis).is_shape();
+        let fresh: Vec<usize> = match (0..rivals.len()).filter(|&i| is_shape(i)).collect::<Vec<_>>() {
+            shapes if shapes.is_empty() => (0..rivals.len()).collect(),
+            shapes => shapes,
+        };
+        let mut accepted: Vec<usize> = fresh.iter().copied().filter(|&i| judged[i].accepted()).collect();
         if accepted.is_empty() {
-            accepted.extend(self.with_held(before, &rivals, &judged, &mut reasons));
+            accepted = fresh.into_iter().filter(|&i| self.sure_with_held(before, &rivals[i], &judged[i])).collect();
         }
         if !accepted.is_empty() {
             // that something is missing is sure: those that are worth it are compared with each other now
             let others = (0..rivals.len()).filter(|i| judged[*i].may() && !accepted.contains(i));
-            let others: Vec<usize> = others.collect();
-            others.iter().for_each(|&i| reasons[i] = None);
-            accepted.extend(others);
+            accepted.extend(others.collect::<Vec<usize>>());
+            accepted.iter().for_each(|&i| reasons[i] = None);
         }
-        let order = self.criteria.order(&accepted, &rivals, &mut reasons);
+        let mut order = self.criteria.order(&accepted, &rivals, &mut reasons);
+        // a shape has a coefficient for every bump: it counts where it surely leaves less than what has a name
+        if !order.iter().all(|&i| is_shape(i)) {
+            order.retain(|&i| !is_shape(i));
+        }
         let taken = order.iter().copied().find(|&i| {
             reasons[i] = self.unconfirmed(before, &rivals[i].model);
             reasons[i].is_none()
@@ -281,7 +322,11 @@ impl Search<'_> {
         };
         self.trials.extend(reasons.into_iter().enumerate().map(trial));
         self.trials.append(&mut self.passed);
-        let first = taken?;
+        let Some(first) = taken else {
+            let worth = rivals.into_iter().zip(&judged).filter(|(_, j)| accepted.is_empty() && j.may());
+            self.undecided = worth.map(|(r, _)| r).collect();
+            return None;
+        };
         let (best, sensors) = (&rivals[first].model, &self.criteria.sensors);
         let behind = |i: usize| {
             let other = &rivals[i].model;
@@ -317,23 +362,15 @@ impl Search<'_> {
         (!confirmed).then_some(Reason::NotConfirmed(asked))
     }
 
-    /// Few recordings, few blocks: the one that leaves least is asked of the held recordings too. They are fresh, and a
-    /// product of e-values of independent data is one.
-    fn with_held(
-        &self,
-        before: &Weighed,
-        rivals: &[Rival],
-        judged: &[Judged],
-        reasons: &mut [Option<Reason>],
-    ) -> Option<usize> {
-        let best = (0..rivals.len()).find(|&i| judged[i].may())?;
-        let asked = ask(&before.fit, &rivals[best].model.fit, self.held, self.nominal, &self.criteria.sensors)?;
-        let sum = judged[best].evidence + asked.evidence;
-        if sum > needed(self.criteria.count) && asked.evidence > 0.0 {
-            reasons[best] = None;
-            return Some(best);
+    /// Few recordings, few blocks: what is worth it is asked of the held recordings too. They are fresh, and a product of
+    /// e-values of independent data is one; the bound on it is one for all hypotheses together.
+    fn sure_with_held(&self, before: &Weighed, rival: &Rival, judged: &Judged) -> bool {
+        if !judged.may() || judged.evidence <= 0.0 {
+            return false;
         }
-        None
+        let asked = ask(&before.fit, &rival.model.fit, self.held, self.nominal, &self.criteria.sensors);
+        let shown = |a: Asked| a.evidence > 0.0 && judged.evidence + a.evidence > needed(self.criteria.count);
+        asked.is_some_and(shown)
     }
 
     /// The model with the widths of everything that was taken free, where that is better.
