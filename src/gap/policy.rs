@@ -61,12 +61,14 @@ pub const DAMPINGS: [f64; 3] = [0.0, 0.3, 3.0];
 /// Times that a model is fitted again with the weights that it left, at most.
 pub const SETTLING: usize = 3;
 /// Iterations of a fit at most.
-pub const ITERATIONS: usize = 12;
+pub const ITERATIONS: usize = 24;
 /// Trials of a step, each more damped.
 pub const TRIALS: usize = 6;
-/// Gain, in squared deviations, below which a fit ends: no test asks for as little.
+/// A fit ends with a step that gains less than so many squared deviations ...
 pub const SETTLED: f64 = 0.5;
-/// Or part of the cost.
+/// ... or than this part of the cost ...
 pub const SETTLED_PART: f64 = 1e-4;
+/// ... and lowers no signal's mean square by more than this part: no test asks for as little, of evidence or of a gap.
+pub const SETTLED_SQUARE: f64 = 0.02;
 /// Times that a step which gained is doubled at most: where a sensitivity falls as an effect grows, linear steps are short.
 pub const DOUBLINGS: usize = 4;

@@ -3,7 +3,7 @@
 //! small and independent, and the data speak about parameters too.
 
 use super::super::data::Recording;
-use super::super::policy::{ITERATIONS, LEAST, SETTLED, SETTLED_PART, TRIALS};
+use super::super::policy::{ITERATIONS, LEAST, SETTLED, SETTLED_PART, SETTLED_SQUARE, TRIALS};
 use super::super::problem::Chosen;
 use super::candidate::{Candidate, Coordinate, Errors, Evaluated, Products};
 use super::correlation;
@@ -138,6 +138,7 @@ impl Fit {
         let mut damping = DAMPING;
         for _ in 0..ITERATIONS {
             let before = self.cost();
+            let squares = self.mean_squares();
             let system = self.system(|_, _| true);
             let mut taken = false;
             for _ in 0..TRIALS {
@@ -160,7 +161,9 @@ impl Fit {
                 }
                 damping = damping.max(LEAST_DAMPING) * STIFFENED;
             }
-            if !taken || before - self.cost() < SETTLED.max(SETTLED_PART * before) {
+            let fell = |(now, before): (f64, &f64)| now < (1.0 - SETTLED_SQUARE) * before;
+            let closes = self.mean_squares().into_iter().zip(&squares).any(fell);
+            if !taken || !closes && before - self.cost() < SETTLED.max(SETTLED_PART * before) {
                 break;
             }
         }
@@ -189,6 +192,10 @@ impl Fit {
     /// Mean square of a signal's errors.
     pub fn mean_square(&self, signal: usize) -> f64 {
         squares(&self.evaluated.errors, signal) / self.samples(signal).max(1.0)
+    }
+
+    fn mean_squares(&self) -> Vec<f64> {
+        (0..self.weights.tau.len()).map(|i| self.mean_square(i)).collect()
     }
 
     /// Nats that the distance of parameters from their data sheet costs.

@@ -4,7 +4,7 @@ use super::super::data::Recording;
 use super::super::estimate::candidate::Errors;
 use super::super::estimate::{Candidate, Fit, Weights};
 use super::super::policy::{ACCURACY, ALPHA, DELTA, OPENS};
-use super::compare::{Sensors, evidence, gap, needed};
+use super::compare::{Sensors, evidence, gap, needed, signal_gap};
 use super::folds::LeftOut;
 
 /// What held recordings say of a model against the one before, nothing refitted.
@@ -18,6 +18,8 @@ pub struct Asked {
     pub after: f64,
     /// That of the nominal model.
     pub nominal: f64,
+    /// The gap of some signal falls by half of what is worth a name.
+    pub closes: bool,
 }
 
 impl Asked {
@@ -31,8 +33,7 @@ impl Asked {
         if saved > needed(hypotheses) && self.evidence > -1.0 {
             return true;
         }
-        let closes = self.before - self.after >= (0.5 * DELTA * self.before).max(0.5 * ACCURACY);
-        self.evidence > 0.0 && (closes || self.evidence > (1.0 / ALPHA).ln())
+        self.evidence > 0.0 && (self.closes || self.evidence > (1.0 / ALPHA).ln())
     }
 }
 
@@ -54,7 +55,13 @@ pub fn ask(before: &Fit, after: &Fit, held: &[Recording], nominal: f64, sensors:
     let independent: Vec<f64> = (0..sensors.noise.len()).map(|i| samples(i) / tau_a[i].max(tau_b[i])).collect();
     let (a, b) = (LeftOut::of(&a), LeftOut::of(&b));
     let evidence = evidence(&a, &b, &independent, sensors);
-    Some(Asked { evidence, before: gap(&a, sensors), after: gap(&b, sensors), nominal })
+    let falls = |i: usize| {
+        let before = signal_gap(&a, i, sensors);
+        let worth = (0.5 * DELTA * before).max(0.5 * ACCURACY * sensors.full_scale[i]);
+        before - signal_gap(&b, i, sensors) >= worth
+    };
+    let closes = (0..sensors.noise.len()).any(falls);
+    Some(Asked { evidence, before: gap(&a, sensors), after: gap(&b, sensors), nominal, closes })
 }
 
 /// Errors on a recording that took no part; infinite where the simulation does not reach the end.
