@@ -535,6 +535,52 @@ fn a_start_far_from_the_models_is_found_through_an_output_that_bends() {
     assert!(left * left - noise * noise < 3e-3_f64.powi(2), "{left}");
 }
 
+/// A motor that runs down, cut into windows that begin at speeds far from the model's own start, which the model fixes. Its
+/// voltage follows the speed alone, in another unit.
+#[test]
+fn windows_of_a_run_down_begin_where_their_signal_says() {
+    let model = "
+        model Rundown
+          Mechanical.Rotational.Inertia rotor(J = 2e-5, phi(start = 0, fixed = true), w(start = 300, fixed = true));
+          Mechanical.Rotational.Damper bearing(d = 2e-5);
+          Mechanical.Rotational.Fixed stand;
+          parameter Real k(unit = \"V.s/rad\") = 0.01;
+          Real U(unit = \"V\") = k*rotor.w;
+        equation
+          connect(rotor.flange_b, bearing.flange_a);
+          connect(bearing.flange_b, stand.flange);
+        end Rundown;";
+    // J w' = -d w - tau has an exponential towards -tau/d
+    let (lag, below) = (1.0, 70.0);
+    let mut random = Normal(Numbers(5));
+    let mut row = |k: u32| {
+        let t = 0.005 * f64::from(k);
+        let w = (400.0 + below) * (-t / lag).exp() - below;
+        format!("{t},{}\n", 0.01 * w + 5e-3 * random.next())
+    };
+    let text = (0..320).fold(String::from("t,U\n"), |text, k| text + &row(k));
+    let window = |from: f64, to: f64, role: &str| {
+        format!("[[recordings]]\nfile = \"train.csv\"\nrole = \"{role}\"\nwindow = [{from}, {to}]\n")
+    };
+    let windows = [
+        window(0.0, 0.4, "train"),
+        window(0.405, 0.8, "train"),
+        window(1.2, 1.6, "train"),
+        window(0.805, 1.195, "held"),
+    ];
+    let study = format!(
+        "version = 1\nmodel = \"Rundown.mo\"\nclass = \"Rundown\"\n[signals]\nU = {{ unit = \"V\" }}\n{}\
+        [parameters]\n\"rotor.J\" = {{ sigma = \"5 %\" }}\n\"bearing.d\" = {{ sigma = \"10 %\" }}\n\"k\" = \"exact\"\n",
+        windows.concat()
+    );
+    let world = MemoryWorld::single("Rundown.mo", model);
+    let verdict = verdict(world, &study, text.clone(), text);
+    let families: Vec<&str> = verdict.effects.iter().map(|e| e.family.as_str()).collect();
+    assert_eq!(families, ["dry_friction"], "{:?}", verdict.weighed);
+    let tau = verdict.effects[0].parameters["tau_c"].value;
+    assert!((tau - below * 2e-5).abs() < 2e-4, "{tau}");
+}
+
 /// A pump that presses oil with air against a closed port: below the pressure at which its check valve closes the oil is so
 /// soft that its pressure runs away from any linear model. A coarse first reading leads there, and no further.
 #[test]

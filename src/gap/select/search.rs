@@ -281,6 +281,24 @@ impl Search<'_> {
         rivals
     }
 
+    /// Once it is sure that something is missing, all that is worth it, what is sure first: they are compared with each other
+    /// then, not with nothing. Beside shapes, what was weighed before among more hypotheses is not sure now.
+    fn contenders(&self, before: &Weighed, rivals: &[Rival], judged: &[Judged]) -> Vec<usize> {
+        let is_shape = |i: &usize| self.h(rivals[*i].hypothesis).is_shape();
+        let all = 0..rivals.len();
+        let any_shape = all.clone().any(|i| is_shape(&i));
+        let fresh: Vec<usize> = all.clone().filter(|i| !any_shape || is_shape(i)).collect();
+        let mut sure: Vec<usize> = fresh.iter().copied().filter(|&i| judged[i].accepted()).collect();
+        if sure.is_empty() {
+            sure = fresh.into_iter().filter(|&i| self.sure_with_held(before, &rivals[i], &judged[i])).collect();
+        }
+        if sure.is_empty() {
+            return sure;
+        }
+        let others: Vec<usize> = all.filter(|i| judged[*i].may() && !sure.contains(i)).collect();
+        [sure, others].concat()
+    }
+
     /// The rival that is taken, with what cannot be told from it.
     fn choose(&mut self, step: usize, before: &Weighed, mut rivals: Vec<Rival>) -> Option<(Weighed, Taken)> {
         self.sort(before, &mut rivals);
@@ -288,23 +306,10 @@ impl Search<'_> {
         let needed = needed(self.criteria.count);
         let mut reasons: Vec<Option<Reason>> =
             judged.iter().map(|j| (!j.accepted()).then(|| j.refused(needed))).collect();
-        // of what was weighed before, among more hypotheses, nothing is sure now
+        let contenders = self.contenders(before, &rivals, &judged);
+        contenders.iter().for_each(|&i| reasons[i] = None);
         let is_shape = |i: usize| self.h(rivals[i].hypothesis).is_shape();
-        let fresh: Vec<usize> = match (0..rivals.len()).filter(|&i| is_shape(i)).collect::<Vec<_>>() {
-            shapes if shapes.is_empty() => (0..rivals.len()).collect(),
-            shapes => shapes,
-        };
-        let mut accepted: Vec<usize> = fresh.iter().copied().filter(|&i| judged[i].accepted()).collect();
-        if accepted.is_empty() {
-            accepted = fresh.into_iter().filter(|&i| self.sure_with_held(before, &rivals[i], &judged[i])).collect();
-        }
-        if !accepted.is_empty() {
-            // that something is missing is sure: those that are worth it are compared with each other now
-            let others = (0..rivals.len()).filter(|i| judged[*i].may() && !accepted.contains(i));
-            accepted.extend(others.collect::<Vec<usize>>());
-            accepted.iter().for_each(|&i| reasons[i] = None);
-        }
-        let mut order = self.criteria.order(&accepted, &rivals, &mut reasons);
+        let mut order = self.criteria.order(&contenders, &rivals, &mut reasons);
         // a shape has a coefficient for every bump: it counts where it surely leaves less than what has a name
         if !order.iter().all(|&i| is_shape(i)) {
             order.retain(|&i| !is_shape(i));
@@ -323,7 +328,7 @@ impl Search<'_> {
         self.trials.extend(reasons.into_iter().enumerate().map(trial));
         self.trials.append(&mut self.passed);
         let Some(first) = taken else {
-            let worth = rivals.into_iter().zip(&judged).filter(|(_, j)| accepted.is_empty() && j.may());
+            let worth = rivals.into_iter().zip(&judged).filter(|(_, j)| contenders.is_empty() && j.may());
             self.undecided = worth.map(|(r, _)| r).collect();
             return None;
         };
