@@ -7,12 +7,12 @@ use super::super::estimate::Fit;
 use super::super::hypotheses::Hypothesis;
 use super::super::policy::{EFFECTS, FRONT, SEEN};
 use super::super::problem::{Chosen, Problem, Tolerance};
-use super::compare::{closed, needed};
-use super::confirm::{Asked, ask, held_gap};
-use super::criteria::{Criteria, Judged, Reason, Rival};
+use super::choose::{Chooser, Taken, Trial};
+use super::confirm::held_gap;
+use super::criteria::{Criteria, Reason, Rival};
 use super::models;
 use super::screen::{Ground, Screened, screened};
-use super::weighed::{Weighed, ahead, at_the_noise, from_nominal, left_by, no_worse, saved, settled, weighed};
+use super::weighed::{Weighed, ahead, at_the_noise, from_nominal, left_by, no_worse, settled, weighed};
 use crate::diag::Diagnostic;
 use rayon::prelude::*;
 
@@ -40,34 +40,6 @@ pub enum Trouble {
     Stops(String, f64),
 }
 
-/// A hypothesis that was weighed in a step.
-#[derive(Clone, Debug)]
-pub struct Trial {
-    /// The step: 1, 2, ...
-    pub step: usize,
-    /// What, with fitted values.
-    pub chosen: Chosen,
-    /// What left-out data say of it, where it was fitted.
-    pub found: Option<Judged>,
-    /// Nothing for the one that was taken.
-    pub reason: Option<Reason>,
-}
-
-/// An effect that was taken.
-#[derive(Clone, Debug)]
-pub struct Taken {
-    /// Index into [`Problem::hypotheses`].
-    pub hypothesis: usize,
-    /// Evidence of left-out data and prior when it was taken, nats.
-    pub evidence: f64,
-    /// t statistic over the blocks.
-    pub t: f64,
-    /// Part of the left-out gap that it closes.
-    pub closes: f64,
-    /// What cannot be told from it, with how far it is behind, nats.
-    pub set: Vec<(Chosen, f64)>,
-}
-
 /// What a search came to.
 pub struct Found {
     /// The model within its tolerances.
@@ -87,10 +59,7 @@ pub struct Found {
 /// A search on its way.
 struct Search<'a> {
     problem: &'a Problem<'a>,
-    held: &'a [Recording],
-    /// Noise-free gap of the nominal model on the held recordings.
-    nominal: f64,
-    criteria: Criteria,
+    chooser: Chooser<'a>,
     /// Share of the hypotheses of the first step that would be seen.
     visible: Option<f64>,
     trials: Vec<Trial>,
@@ -118,9 +87,7 @@ pub fn search(problem: &Problem<'_>, held: &[Recording], progress: &mut dyn FnMu
     let nominal = held_gap(&nominal, &x, held, &criteria.sensors);
     let mut search = Search {
         problem,
-        held,
-        nominal,
-        criteria,
+        chooser: Chooser { problem, held, nominal, criteria },
         visible: None,
         trials: Vec::new(),
         passed: Vec::new(),
@@ -140,7 +107,7 @@ pub fn search(problem: &Problem<'_>, held: &[Recording], progress: &mut dyn FnMu
             shape = Some(effect);
             break;
         }
-        last = settled(problem, &search.criteria.sensors, search.widened(chosen));
+        last = settled(problem, &search.chooser.criteria.sensors, search.widened(chosen));
         taken.push(effect);
         search.drop_needless(&mut last, &mut taken);
         if search.is_recording_error(&taken) {
@@ -168,6 +135,15 @@ fn stops(problem: &Problem<'_>, nominal: &super::super::estimate::Candidate, x: 
 impl Search<'_> {
     fn h(&self, index: usize) -> &Hypothesis {
         &self.problem.hypotheses[index]
+    }
+
+    /// The rival that is taken.
+    fn choose(&mut self, step: usize, before: &Weighed, rivals: Vec<Rival>) -> Option<(Weighed, Taken)> {
+        let mut choice = self.chooser.choose(step, before, rivals);
+        self.trials.append(&mut choice.trials);
+        self.trials.append(&mut self.passed);
+        self.undecided = choice.undecided;
+        choice.taken
     }
 
     /// Looks for one more effect.
@@ -213,7 +189,7 @@ impl Search<'_> {
         }
         self.undecided.clear();
         let (model, shape) = self.beside(2, base, &self.shapes())?;
-        self.criteria.worse(&model, last).then_some(shape)
+        self.chooser.criteria.worse(&model, last).then_some(shape)
     }
 
     /// Hypotheses with a name that may be tried beside what was taken.
@@ -235,11 +211,11 @@ impl Search<'_> {
 
     /// The starts of the hypotheses that are worth a fit.
     fn screened(&mut self, step: usize, before: &Weighed, open: &[usize]) -> Vec<Screened> {
-        if self.visible.is_some() && self.criteria.nothing_is_worth_it(before) {
+        if self.visible.is_some() && self.chooser.criteria.nothing_is_worth_it(before) {
             return Vec::new();
         }
-        let may_be_worth = |squares: &[f64], part: f64| self.criteria.may_be_worth(before, squares, part);
-        let (problem, sensors) = (self.problem, &self.criteria.sensors);
+        let may_be_worth = |squares: &[f64], part: f64| self.chooser.criteria.may_be_worth(before, squares, part);
+        let (problem, sensors) = (self.problem, &self.chooser.criteria.sensors);
         let ground = Ground { problem, sensors, before: &before.fit, may_be_worth: &may_be_worth };
         let screen = screened(&ground, open);
         let seen = |visible: &[f64]| visible.iter().filter(|v| **v > SEEN).count() as f64 / visible.len().max(1) as f64;
@@ -259,7 +235,7 @@ impl Search<'_> {
 
     /// Fits from all starts; the front by both weightings.
     fn fitted(&self, before: &Fit, screened: Vec<Screened>) -> Vec<Rival> {
-        let (problem, sensors) = (self.problem, &self.criteria.sensors);
+        let (problem, sensors) = (self.problem, &self.chooser.criteria.sensors);
         let one = |(hypothesis, starts): Screened| {
             let fits = starts.into_iter().filter_map(|s| no_worse(problem, before, s.candidate, s.x));
             let fit = fits.reduce(Fit::better_of)?;
@@ -281,111 +257,14 @@ impl Search<'_> {
         rivals
     }
 
-    /// Once it is sure that something is missing, all that is worth it, what is sure first: they are compared with each other
-    /// then, not with nothing. Beside shapes, what was weighed before among more hypotheses is not sure now.
-    fn contenders(&self, before: &Weighed, rivals: &[Rival], judged: &[Judged]) -> Vec<usize> {
-        let is_shape = |i: &usize| self.h(rivals[*i].hypothesis).is_shape();
-        let all = 0..rivals.len();
-        let any_shape = all.clone().any(|i| is_shape(&i));
-        let fresh: Vec<usize> = all.clone().filter(|i| !any_shape || is_shape(i)).collect();
-        let mut sure: Vec<usize> = fresh.iter().copied().filter(|&i| judged[i].accepted()).collect();
-        if sure.is_empty() {
-            sure = fresh.into_iter().filter(|&i| self.sure_with_held(before, &rivals[i], &judged[i])).collect();
-        }
-        if sure.is_empty() {
-            return sure;
-        }
-        let others: Vec<usize> = all.filter(|i| judged[*i].may() && !sure.contains(i)).collect();
-        [sure, others].concat()
-    }
-
-    /// The rival that is taken, with what cannot be told from it.
-    fn choose(&mut self, step: usize, before: &Weighed, mut rivals: Vec<Rival>) -> Option<(Weighed, Taken)> {
-        self.sort(before, &mut rivals);
-        let judged = self.criteria.judged(before, &rivals);
-        let needed = needed(self.criteria.count);
-        let mut reasons: Vec<Option<Reason>> =
-            judged.iter().map(|j| (!j.accepted()).then(|| j.refused(needed))).collect();
-        let contenders = self.contenders(before, &rivals, &judged);
-        contenders.iter().for_each(|&i| reasons[i] = None);
-        let is_shape = |i: usize| self.h(rivals[i].hypothesis).is_shape();
-        let mut order = self.criteria.order(&contenders, &rivals, &mut reasons);
-        // a shape has a coefficient for every bump: it counts where it surely leaves less than what has a name
-        if !order.iter().all(|&i| is_shape(i)) {
-            order.retain(|&i| !is_shape(i));
-        }
-        let taken = order.iter().copied().find(|&i| {
-            reasons[i] = self.unconfirmed(before, &rivals[i].model);
-            reasons[i].is_none()
-        });
-        for &i in order.iter().filter(|i| Some(**i) != taken) {
-            reasons[i].get_or_insert(Reason::Alike);
-        }
-        let trial = |(i, reason): (usize, Option<Reason>)| {
-            let chosen = last_cause(&rivals[i].model.fit);
-            Trial { step, chosen, found: Some(judged[i]), reason }
-        };
-        self.trials.extend(reasons.into_iter().enumerate().map(trial));
-        self.trials.append(&mut self.passed);
-        let Some(first) = taken else {
-            let worth = rivals.into_iter().zip(&judged).filter(|(_, j)| contenders.is_empty() && j.may());
-            self.undecided = worth.map(|(r, _)| r).collect();
-            return None;
-        };
-        let (best, sensors) = (&rivals[first].model, &self.criteria.sensors);
-        let behind = |i: usize| {
-            let other = &rivals[i].model;
-            (last_cause(&other.fit), ahead(other, best, sensors))
-        };
-        let Judged { evidence, t, .. } = judged[first];
-        let effect = Taken {
-            hypothesis: rivals[first].hypothesis,
-            evidence,
-            t,
-            closes: 1.0 - best.gap(sensors) / before.gap(sensors).max(f64::MIN_POSITIVE),
-            set: order.iter().filter(|i| **i != first).map(|&i| behind(i)).collect(),
-        };
-        Some((best.clone(), effect))
-    }
-
-    /// Best first.
-    fn sort(&self, before: &Weighed, rivals: &mut [Rival]) {
-        let sensors = &self.criteria.sensors;
-        let least = |i: usize| {
-            let all = rivals.iter().map(|r| &r.model).chain([before]).map(|w| w.left[0].mean(i));
-            closed(sensors, i, all.fold(f64::INFINITY, f64::min))
-        };
-        let closed: Vec<f64> = (0..sensors.noise.len()).map(least).collect();
-        let score = |r: &Rival| self.criteria.score(&r.model, &closed);
-        rivals.sort_by(|a, b| score(a).total_cmp(&score(b)));
-    }
-
-    /// Why held recordings do not confirm a model; nothing where they do, or there are none.
-    fn unconfirmed(&self, before: &Weighed, model: &Weighed) -> Option<Reason> {
-        let asked = ask(&before.fit, &model.fit, self.held, self.nominal, &self.criteria.sensors)?;
-        let confirmed = asked.confirms(saved(before, model), self.criteria.count);
-        (!confirmed).then_some(Reason::NotConfirmed(asked))
-    }
-
-    /// Few recordings, few blocks: what is worth it is asked of the held recordings too. They are fresh, and a product of
-    /// e-values of independent data is one; the bound on it is one for all hypotheses together.
-    fn sure_with_held(&self, before: &Weighed, rival: &Rival, judged: &Judged) -> bool {
-        if !judged.may() || judged.evidence <= 0.0 {
-            return false;
-        }
-        let asked = ask(&before.fit, &rival.model.fit, self.held, self.nominal, &self.criteria.sensors);
-        let shown = |a: Asked| a.evidence > 0.0 && judged.evidence + a.evidence > needed(self.criteria.count);
-        asked.is_some_and(shown)
-    }
-
     /// The model with the widths of everything that was taken free, where that is better.
     fn widened(&self, chosen: Weighed) -> Weighed {
         let causes = chosen.fit.causes();
         let wider = models::candidate(self.problem, &causes, Some(&chosen.fit.tolerances()), causes.len());
         let fitted = wider
             .filter(|c| c.coordinates.len() > chosen.fit.x.len())
-            .and_then(|c| weighed(self.problem, &self.criteria.sensors, &c, &c.present()));
-        let better = |f: &Weighed| ahead(&chosen, f, &self.criteria.sensors) > 0.0;
+            .and_then(|c| weighed(self.problem, &self.chooser.criteria.sensors, &c, &c.present()));
+        let better = |f: &Weighed| ahead(&chosen, f, &self.chooser.criteria.sensors) > 0.0;
         fitted.filter(better).unwrap_or(chosen)
     }
 
@@ -396,8 +275,8 @@ impl Search<'_> {
             let mut causes = last.fit.causes();
             causes.remove(i);
             let without = models::candidate(self.problem, &causes, Some(&last.fit.tolerances()), causes.len());
-            let fitted = without.and_then(|c| weighed(self.problem, &self.criteria.sensors, &c, &c.present()));
-            match fitted.filter(|f| !self.criteria.worse(last, f)) {
+            let fitted = without.and_then(|c| weighed(self.problem, &self.chooser.criteria.sensors, &c, &c.present()));
+            match fitted.filter(|f| !self.chooser.criteria.worse(last, f)) {
                 Some(fitted) => {
                     *last = fitted;
                     taken.remove(i);
@@ -428,9 +307,4 @@ fn size(problem: &Problem<'_>, h: &Hypothesis, fit: &Fit) -> f64 {
         Some(if off > 0.0 { off / deviations[k] } else { 0.0 })
     };
     h.coefficients.iter().zip(places).filter_map(one).reduce(f64::max).unwrap_or(f64::INFINITY)
-}
-
-/// The cause that a model has beyond the one before.
-fn last_cause(fit: &Fit) -> Chosen {
-    fit.causes().pop().unwrap_or(Chosen { hypothesis: 0, values: Vec::new() })
 }

@@ -8,8 +8,9 @@ use super::super::hypotheses::Hypothesis;
 use super::super::mistakes;
 use super::super::policy::VISIBLE;
 use super::super::problem::{Chosen, Problem, Tolerance};
+use super::super::select::choose::{Taken, Trial};
 use super::super::select::models;
-use super::super::select::search::{Found, Taken, Trial};
+use super::super::select::search::Found;
 use super::super::select::weighed::{Weighed, at_nominal, weighed};
 use super::{
     Drift, EXCITING, Effect, Estimate, Gaps, Located, Maybe, PARTING, RecordingError, Term, Unexplained, Verdict,

@@ -1,0 +1,162 @@
+//! Which of the rivals of one step is taken: once it is sure that something is missing, all that is worth it contends, and
+//! held recordings confirm.
+
+use super::super::data::Recording;
+use super::super::estimate::Fit;
+use super::super::problem::{Chosen, Problem};
+use super::compare::{closed, needed};
+use super::confirm::{Asked, ask};
+use super::criteria::{Criteria, Judged, Reason, Rival};
+use super::weighed::{Weighed, ahead, saved};
+
+/// A hypothesis that was weighed in a step.
+#[derive(Clone, Debug)]
+pub struct Trial {
+    /// The step: 1, 2, ...
+    pub step: usize,
+    /// What, with fitted values.
+    pub chosen: Chosen,
+    /// What left-out data say of it, where it was fitted.
+    pub found: Option<Judged>,
+    /// Nothing for the one that was taken.
+    pub reason: Option<Reason>,
+}
+
+/// An effect that was taken.
+#[derive(Clone, Debug)]
+pub struct Taken {
+    /// Index into [`Problem::hypotheses`].
+    pub hypothesis: usize,
+    /// Evidence of left-out data and prior when it was taken, nats.
+    pub evidence: f64,
+    /// t statistic over the blocks.
+    pub t: f64,
+    /// Part of the left-out gap that it closes.
+    pub closes: f64,
+    /// What cannot be told from it, with how far it is behind, nats.
+    pub set: Vec<(Chosen, f64)>,
+}
+
+/// What one step came to.
+pub struct Choice {
+    /// Every rival with its reason, best first.
+    pub trials: Vec<Trial>,
+    /// The model that is taken, with its effect.
+    pub taken: Option<(Weighed, Taken)>,
+    /// What is worth it, where left-out data were sure of nothing.
+    pub undecided: Vec<Rival>,
+}
+
+/// What rivals are judged by, and on which recordings.
+pub struct Chooser<'a> {
+    /// What is diagnosed.
+    pub problem: &'a Problem<'a>,
+    /// Recordings that only confirm.
+    pub held: &'a [Recording],
+    /// Noise-free gap of the nominal model on them.
+    pub nominal: f64,
+    /// The tests.
+    pub criteria: Criteria,
+}
+
+impl Chooser<'_> {
+    /// Once it is sure that something is missing, all that is worth it, what is sure first: they are compared with each other
+    /// then, not with nothing. Beside shapes, what was weighed before among more hypotheses is not sure now.
+    fn contenders(&self, before: &Weighed, rivals: &[Rival], judged: &[Judged]) -> Vec<usize> {
+        let is_shape = |i: &usize| self.problem.hypotheses[rivals[*i].hypothesis].is_shape();
+        let all = 0..rivals.len();
+        let any_shape = all.clone().any(|i| is_shape(&i));
+        let fresh: Vec<usize> = all.clone().filter(|i| !any_shape || is_shape(i)).collect();
+        let mut sure: Vec<usize> = fresh.iter().copied().filter(|&i| judged[i].accepted()).collect();
+        if sure.is_empty() {
+            sure = fresh.into_iter().filter(|&i| self.sure_with_held(before, &rivals[i], &judged[i])).collect();
+        }
+        if sure.is_empty() {
+            return sure;
+        }
+        let others: Vec<usize> = all.filter(|i| judged[*i].may() && !sure.contains(i)).collect();
+        [sure, others].concat()
+    }
+
+    /// The rival that is taken, with what cannot be told from it.
+    pub fn choose(&self, step: usize, before: &Weighed, mut rivals: Vec<Rival>) -> Choice {
+        self.sort(before, &mut rivals);
+        let judged = self.criteria.judged(before, &rivals);
+        let needed = needed(self.criteria.count);
+        let mut reasons: Vec<Option<Reason>> =
+            judged.iter().map(|j| (!j.accepted()).then(|| j.refused(needed))).collect();
+        let contenders = self.contenders(before, &rivals, &judged);
+        contenders.iter().for_each(|&i| reasons[i] = None);
+        let is_shape = |i: usize| self.problem.hypotheses[rivals[i].hypothesis].is_shape();
+        let mut order = self.criteria.order(&contenders, &rivals, &mut reasons);
+        // a shape has a coefficient for every bump: it counts where it surely leaves less than what has a name
+        if !order.iter().all(|&i| is_shape(i)) {
+            order.retain(|&i| !is_shape(i));
+        }
+        let taken = order.iter().copied().find(|&i| {
+            reasons[i] = self.unconfirmed(before, &rivals[i].model);
+            reasons[i].is_none()
+        });
+        for &i in order.iter().filter(|i| Some(**i) != taken) {
+            reasons[i].get_or_insert(Reason::Alike);
+        }
+        let trial = |(i, reason): (usize, Option<Reason>)| {
+            let chosen = last_cause(&rivals[i].model.fit);
+            Trial { step, chosen, found: Some(judged[i]), reason }
+        };
+        let trials = reasons.into_iter().enumerate().map(trial).collect();
+        let Some(first) = taken else {
+            let worth = rivals.into_iter().zip(&judged).filter(|(_, j)| contenders.is_empty() && j.may());
+            return Choice { trials, taken: None, undecided: worth.map(|(r, _)| r).collect() };
+        };
+        let (best, sensors) = (&rivals[first].model, &self.criteria.sensors);
+        let behind = |i: usize| {
+            let other = &rivals[i].model;
+            (last_cause(&other.fit), ahead(other, best, sensors))
+        };
+        let Judged { evidence, t, .. } = judged[first];
+        let effect = Taken {
+            hypothesis: rivals[first].hypothesis,
+            evidence,
+            t,
+            closes: 1.0 - best.gap(sensors) / before.gap(sensors).max(f64::MIN_POSITIVE),
+            set: order.iter().filter(|i| **i != first).map(|&i| behind(i)).collect(),
+        };
+        Choice { trials, taken: Some((best.clone(), effect)), undecided: Vec::new() }
+    }
+
+    /// Best first.
+    fn sort(&self, before: &Weighed, rivals: &mut [Rival]) {
+        let sensors = &self.criteria.sensors;
+        let least = |i: usize| {
+            let all = rivals.iter().map(|r| &r.model).chain([before]).map(|w| w.left[0].mean(i));
+            closed(sensors, i, all.fold(f64::INFINITY, f64::min))
+        };
+        let closed: Vec<f64> = (0..sensors.noise.len()).map(least).collect();
+        let score = |r: &Rival| self.criteria.score(&r.model, &closed);
+        rivals.sort_by(|a, b| score(a).total_cmp(&score(b)));
+    }
+
+    /// Why held recordings do not confirm a model; nothing where they do, or there are none.
+    fn unconfirmed(&self, before: &Weighed, model: &Weighed) -> Option<Reason> {
+        let asked = ask(&before.fit, &model.fit, self.held, self.nominal, &self.criteria.sensors)?;
+        let confirmed = asked.confirms(saved(before, model), self.criteria.count);
+        (!confirmed).then_some(Reason::NotConfirmed(asked))
+    }
+
+    /// Few recordings, few blocks: what is worth it is asked of the held recordings too. They are fresh, and a product of
+    /// e-values of independent data is one; the bound on it is one for all hypotheses together.
+    fn sure_with_held(&self, before: &Weighed, rival: &Rival, judged: &Judged) -> bool {
+        if !judged.may() || judged.evidence <= 0.0 {
+            return false;
+        }
+        let asked = ask(&before.fit, &rival.model.fit, self.held, self.nominal, &self.criteria.sensors);
+        let shown = |a: Asked| a.evidence > 0.0 && judged.evidence + a.evidence > needed(self.criteria.count);
+        asked.is_some_and(shown)
+    }
+}
+
+/// The cause that a model has beyond the one before.
+fn last_cause(fit: &Fit) -> Chosen {
+    fit.causes().pop().unwrap_or(Chosen { hypothesis: 0, values: Vec::new() })
+}
