@@ -10,7 +10,7 @@ use bramah::gap::fixed::corrected;
 use bramah::gap::plan::{Pair, plan};
 use bramah::gap::report::report;
 use bramah::gap::select::models;
-use bramah::gap::select::search::search;
+use bramah::gap::select::search::{explained, search};
 use bramah::gap::study::{planned, question};
 use bramah::gap::verdict::{Verdict, conclude};
 use bramah::solve::Interpolation;
@@ -167,7 +167,12 @@ fn diagnosed(friction: (&str, f64), held_seed: u64) -> Verdict {
     verdict(world, STUDY, train, held)
 }
 
-fn verdict(mut world: MemoryWorld, study: &str, train: String, held: String) -> Verdict {
+fn verdict(world: MemoryWorld, study: &str, train: String, held: String) -> Verdict {
+    judged(world, study, train, held, None)
+}
+
+/// The verdict; with an effect by its class, what it does beside the model within its tolerances.
+fn judged(mut world: MemoryWorld, study: &str, train: String, held: String, asked: Option<&str>) -> Verdict {
     world.add("train.csv", train);
     world.add("held.csv", held);
     world.add("study.toml", study);
@@ -175,8 +180,26 @@ fn verdict(mut world: MemoryWorld, study: &str, train: String, held: String) -> 
     let study = Study::read(&world, Path::new("study.toml"), &mut sources).value.unwrap();
     let question = question(&world, &study, None, &mut sources).ok().unwrap();
     let held = question.held(None, &mut sources).unwrap().recordings;
-    let found = search(&question.problem, &held, &mut |_| ()).unwrap_or_else(|trouble| panic!("{trouble:?}"));
-    conclude(&question.problem, &found, &held, 0.0)
+    let problem = &question.problem;
+    let found = match asked {
+        None => search(problem, &held, &mut |_| ()),
+        Some(class) => {
+            let hypothesis = problem.hypotheses.iter().position(|h| h.effect == class).unwrap();
+            explained(problem, &held, hypothesis, &mut |_| ()).map(Option::unwrap)
+        }
+    };
+    conclude(problem, &found.unwrap_or_else(|trouble| panic!("{trouble:?}")), &held, 0.0)
+}
+
+/// What a refused effect would do is shown, with the reason against it.
+#[test]
+fn a_refused_effect_is_shown_on_request() {
+    let world = MemoryWorld::single("Slide.mo", MODEL);
+    let (train, held) = (recording(&world, ("rub.F", 6.0), 11), recording(&world, ("rub.F", 6.0), 12));
+    let verdict = judged(world, STUDY, train, held, Some("Effects.SensorLag"));
+    let families: Vec<&str> = verdict.effects.iter().map(|e| e.family.as_str()).collect();
+    assert_eq!(families, ["sensor_lag"]);
+    assert!(verdict.asked.unwrap().starts_with("it would be refused: "), "{:?}", verdict.weighed);
 }
 
 #[test]

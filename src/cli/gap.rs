@@ -8,10 +8,10 @@ use super::recorder::write_text;
 use super::{DiskWorld, Ending, Failure, files};
 use crate::diag::{Checked, Code, Diagnostic};
 use crate::gap::fixed::corrected;
-use crate::gap::hypotheses::Hypothesis;
+use crate::gap::hypotheses::{Hypothesis, Place};
 use crate::gap::plan::plan;
 use crate::gap::report::report;
-use crate::gap::select::search::{Stage, Trouble, search};
+use crate::gap::select::search::{Stage, Trouble, explained, search};
 use crate::gap::study::{Unusable, planned, proposed, question};
 use crate::gap::verdict::conclude;
 use crate::gap::words::words;
@@ -28,6 +28,7 @@ Examples:
   bramah gap study.toml --data bench/ -o verdict.json
   bramah gap study.toml --data bench/ --write-model fixed.mo --report report.html
   bramah gap study.toml --plan      before measuring: what the planned inputs would show, and what they could not tell apart
+  bramah gap study.toml --explain-rejected 'Effects.SensorLag@p' --report lag.html    what a refused effect would do
   bramah gap study.toml --list      what the network of the study's model could lack, and where
 
 Exit status: 0 whatever the verdict, 1 the nominal model is wrong, 2 a study, file or column that cannot be used.")]
@@ -47,6 +48,9 @@ pub(super) struct GapArgs {
     /// What was found as one HTML page, `-` for stdout
     #[arg(long, value_name = "FILE")]
     report: Option<String>,
+    /// Fit one effect at one place, as `weighed` and `--list` name them, and show it even where the diagnosis refuses it
+    #[arg(long, value_name = "EFFECT@PLACE", conflicts_with_all = ["list", "plan"])]
+    explain_rejected: Option<String>,
     /// List every effect at every place where it fits, and stop
     #[arg(long)]
     list: bool,
@@ -101,7 +105,15 @@ fn diagnose(args: &GapArgs, study: &Study, messages: &mut Messages) -> Result<En
     let held = question.held(data, &mut messages.sources).map_err(|diagnostics| Failure { diagnostics })?;
     let problem = &question.problem;
     let stages = Stages::new();
-    let found = search(problem, &held.recordings, &mut |stage| stages.show(stage)).map_err(trouble)?;
+    let mut show = |stage| stages.show(stage);
+    let found = match &args.explain_rejected {
+        None => search(problem, &held.recordings, &mut show).map_err(trouble)?,
+        Some(asked) => {
+            let hypothesis = at(&problem.hypotheses, asked)?;
+            let found = explained(problem, &held.recordings, hypothesis, &mut show).map_err(trouble)?;
+            found.ok_or_else(|| Diagnostic::new(Code::BadData, format!("the model has no values with `{asked}`")))?
+        }
+    };
     stages.show(Stage::Figures);
     let verdict = conclude(problem, &found, &held.recordings, begun.elapsed().as_secs_f64());
     stages.clear();
@@ -118,6 +130,22 @@ fn diagnose(args: &GapArgs, study: &Study, messages: &mut Messages) -> Result<En
         write_text(file, &report(problem, &found, &verdict, &held))?;
     }
     Ok(Ending::Fine)
+}
+
+/// The hypothesis `EFFECT@PLACE`; a mistake of a recording is none.
+fn at(all: &[Hypothesis], asked: &str) -> Result<usize, Failure> {
+    let is_asked = |h: &Hypothesis| {
+        let (effect, place) = asked.split_once('@').unwrap_or((asked, ""));
+        let of_effect = h.effect == effect || h.effect.strip_prefix("Effects.") == Some(effect);
+        let here = |p: &&Place| p.place == place || p.node.iter().any(|n| n == place);
+        of_effect && !h.is_recording_error() && h.places().iter().any(here)
+    };
+    let found = all.iter().position(is_asked);
+    found.ok_or_else(|| {
+        let text = format!("there is no effect at a place that is called `{asked}`");
+        let help = "`--list` shows all: `Effects.SensorOffset@p`, for example";
+        Diagnostic::new(Code::BadStudy, text).help(help).into()
+    })
 }
 
 /// What stops a diagnosis: the nominal model does not compile, or cannot follow the recordings.

@@ -29,6 +29,9 @@ pub struct Verdict {
     pub places: Vec<Located>,
     /// Effects in the order of acceptance.
     pub effects: Vec<Effect>,
+    /// What the judge says of the effect, if it is shown because it was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub asked: Option<String>,
     /// Every free parameter.
     pub drifts: Vec<Drift>,
     /// The gap, raw.

@@ -22,6 +22,9 @@ pub(super) fn findings(v: &Verdict) -> String {
     for (i, e) in v.effects.iter().enumerate() {
         text.push_str(&effect(i, e, v.effects.len()));
     }
+    if let Some(said) = &v.asked {
+        let _ = writeln!(text, "   It is shown because it was asked for; {said}.");
+    }
     text.push_str(&found_nothing(v));
     text
 }

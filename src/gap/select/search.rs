@@ -9,7 +9,7 @@ use super::super::policy::{EFFECTS, FRONT, SEEN};
 use super::super::problem::{Chosen, Problem, Tolerance};
 use super::choose::{Chooser, Taken, Trial};
 use super::confirm::held_gap;
-use super::criteria::{Criteria, Reason, Rival};
+use super::criteria::{Criteria, Judged, Reason, Rival};
 use super::models;
 use super::screen::{Ground, Screened, screened};
 use super::weighed::{Weighed, ahead, at_the_noise, from_nominal, left_by, no_worse, settled, weighed};
@@ -52,6 +52,8 @@ pub struct Found {
     pub shape: Option<Taken>,
     /// Share of the hypotheses that these recordings would show at their usual size.
     pub visible: f64,
+    /// What the judge says of an effect that was asked for.
+    pub asked: Option<String>,
     /// Everything that was weighed, best of each step first.
     pub trials: Vec<Trial>,
 }
@@ -76,24 +78,7 @@ struct Search<'a> {
 /// # Errors
 /// [`Trouble`].
 pub fn search(problem: &Problem<'_>, held: &[Recording], progress: &mut dyn FnMut(Stage)) -> Result<Found, Trouble> {
-    progress(Stage::Tolerances);
-    let sensors = models::sensors(problem);
-    let nominal = models::nominal(problem).map_err(Trouble::Model)?;
-    let x = nominal.present();
-    let base = weighed(problem, &sensors, &nominal, &x).ok_or_else(|| stops(problem, &nominal, &x))?;
-    let base = settled(problem, &sensors, base);
-    let first = (0..sensors.noise.len()).map(|i| left_by(&base.left[0], i, &sensors)).collect();
-    let criteria = Criteria { sensors, first, count: problem.hypotheses.len() };
-    let nominal = held_gap(&nominal, &x, held, &criteria.sensors);
-    let mut search = Search {
-        problem,
-        chooser: Chooser { problem, held, nominal, criteria },
-        visible: None,
-        trials: Vec::new(),
-        passed: Vec::new(),
-        undecided: Vec::new(),
-        shape_says_more: false,
-    };
+    let (mut search, base) = begun(problem, held, progress)?;
     let (mut last, mut taken) = (base.clone(), Vec::new());
     let mut shape = None;
     for step in 1..=EFFECTS + 1 {
@@ -122,7 +107,61 @@ pub fn search(problem: &Problem<'_>, held: &[Recording], progress: &mut dyn FnMu
         taken.clear();
     }
     let visible = search.visible.unwrap_or(0.0);
-    Ok(Found { base, last, taken, shape, visible, trials: search.trials })
+    Ok(Found { base, last, taken, shape, visible, asked: None, trials: search.trials })
+}
+
+/// One hypothesis beside the model within its tolerances, taken whether it may be or not, with the reason why not; `None`
+/// where the model has no values with it.
+///
+/// # Errors
+/// [`Trouble`].
+pub fn explained(
+    problem: &Problem<'_>,
+    held: &[Recording],
+    hypothesis: usize,
+    progress: &mut dyn FnMut(Stage),
+) -> Result<Option<Found>, Trouble> {
+    let (search, base) = begun(problem, held, progress)?;
+    progress(Stage::Fit(1));
+    let sensors = &search.chooser.criteria.sensors;
+    let ground = Ground { problem, sensors, before: &base.fit, may_be_worth: &|_, _| true };
+    let rivals = search.fitted(&base.fit, screened(&ground, &[hypothesis]).best);
+    let Some(last) = rivals.first().map(|r| r.model.clone()) else { return Ok(None) };
+    let closes = 1.0 - last.gap(sensors) / base.gap(sensors).max(f64::MIN_POSITIVE);
+    let trials = search.chooser.choose(1, &base, rivals).trials;
+    let Some(Trial { found: Some(Judged { evidence, t, .. }), reason, .. }) = trials.first() else { return Ok(None) };
+    let taken = vec![Taken { hypothesis, evidence: *evidence, t: *t, closes, set: Vec::new() }];
+    let said = reason
+        .as_ref()
+        .map_or_else(|| "among no others it would be taken".to_string(), |why| format!("it would be refused: {why}"));
+    Ok(Some(Found { base, last, taken, shape: None, visible: 1.0, asked: Some(said), trials }))
+}
+
+/// The model within its tolerances, and what a search needs.
+fn begun<'a>(
+    problem: &'a Problem<'a>,
+    held: &'a [Recording],
+    progress: &mut dyn FnMut(Stage),
+) -> Result<(Search<'a>, Weighed), Trouble> {
+    progress(Stage::Tolerances);
+    let sensors = models::sensors(problem);
+    let nominal = models::nominal(problem).map_err(Trouble::Model)?;
+    let x = nominal.present();
+    let base = weighed(problem, &sensors, &nominal, &x).ok_or_else(|| stops(problem, &nominal, &x))?;
+    let base = settled(problem, &sensors, base);
+    let first = (0..sensors.noise.len()).map(|i| left_by(&base.left[0], i, &sensors)).collect();
+    let criteria = Criteria { sensors, first, count: problem.hypotheses.len() };
+    let nominal = held_gap(&nominal, &x, held, &criteria.sensors);
+    let search = Search {
+        problem,
+        chooser: Chooser { problem, held, nominal, criteria },
+        visible: None,
+        trials: Vec::new(),
+        passed: Vec::new(),
+        undecided: Vec::new(),
+        shape_says_more: false,
+    };
+    Ok((search, base))
 }
 
 /// Where the nominal model stops.

@@ -65,6 +65,7 @@ impl Conclusion<'_> {
             recording,
             places: self.places(),
             effects: named,
+            asked: found.asked.clone(),
             drifts: self.drifts(),
             gap: Gaps {
                 held: figures::side(problem, on_held.each_ref(), self.held),
