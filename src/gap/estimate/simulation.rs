@@ -1,6 +1,6 @@
-//! A model from its inputs alone, from a state at one sample of a recording: exponential steps (Rosenbrock-Euler;
-//! Hochbruck, Ostermann, Acta Numerica 2010, 2.4), halved until the model is nearly linear over each. A linearisation
-//! serves as long as the model keeps to it, and inputs do not move within a step. Slopes go along by the variational
+//! A model from its inputs alone, from a state at one sample of a recording: exponential Rosenbrock steps of third order
+//! (Hochbruck, Ostermann, Acta Numerica 2010, 2.4), halved until the correction of the linear step is small. A linearisation
+//! serves as long as the model keeps to it. Slopes go along by the variational
 //! equation of each linearised step, S' = A S + B, which has the same exponential.
 
 use super::super::data::{Inputs, Recording};
@@ -12,10 +12,30 @@ use std::sync::Arc;
 
 /// Halvings of a step at most.
 const DEEPEST: u32 = 6;
-/// The curvature within a step that is let pass, in parts of the states' sizes.
-const CURVATURE: f64 = 1e-5;
-/// Part of it below which the next step is twice as long: the curvature grows with the square.
+/// The correction of a linear step that is let pass, in parts of the states' sizes. What is left after it is a tenth and
+/// less: over whole recordings 1e-5 to 1e-4 of full scale, where sensors are good to 1e-3.
+const CORRECTION: f64 = 1e-4;
+/// Part of it below which the next step is twice as long: the correction grows with the cube.
 const LENGTHENED: f64 = 0.1;
+
+/// How what a linearisation leaves out grows over a step: its weight beside phi_2, which belongs to growth in proportion.
+#[derive(Clone, Copy)]
+enum Remainder {
+    /// The linearisation is that of the beginning: with the square of time. The weight is 2 phi_3, of which 2/3 phi_2 has the
+    /// value at zero; of a fast lag it is two thirds, and of what that leaves nothing adds up.
+    Square,
+    /// It is older: in proportion to time.
+    Proportional,
+}
+
+impl Remainder {
+    fn weight(self) -> f64 {
+        match self {
+            Remainder::Square => 2.0 / 3.0,
+            Remainder::Proportional => 1.0,
+        }
+    }
+}
 
 /// How states and outputs depend on what may be chosen.
 #[derive(Clone, Debug)]
@@ -150,10 +170,10 @@ struct Stepper {
     lengths: [f64; DEEPEST as usize + 1],
     /// Halvings of the last step.
     depth: u32,
-    /// x' in sizes where the step begins, its change over the step, and x' as the linear model expects it at the end.
+    /// x' in sizes where the step begins, a change over the step, and what the linear model leaves out of x' at its end.
     rate: DVector<f64>,
     change: DVector<f64>,
-    expected: DVector<f64>,
+    remainder: DVector<f64>,
     /// How fast the inputs change the rates.
     ramp: DVector<f64>,
     next: Vec<f64>,
@@ -172,7 +192,7 @@ impl Stepper {
             depth: 0,
             rate: zeros(),
             change: zeros(),
-            expected: zeros(),
+            remainder: zeros(),
             ramp: zeros(),
             next: vec![0.0; n],
             inputs: Inputs::new(recording),
@@ -191,36 +211,39 @@ impl Stepper {
             let fraction = |ticks: u32| h * f64::from(ticks) / f64::from(WHOLE);
             let (after, length) = (fraction(gone), fraction(part));
             let serves = exponential::as_long(length, self.lengths[self.depth as usize]);
-            let mut bend = f64::INFINITY;
+            let mut off = f64::INFINITY;
             if serves {
                 self.grow();
-                bend = self.step(course, t, after, length);
+                off = self.step(course, t, after, length, Remainder::Proportional);
             }
-            if bend > CURVATURE {
+            if off > CORRECTION {
                 if !linear_here {
                     self.inputs.at(after, &mut self.u);
                     course.local.linearize(t + after, &course.state, course.theta, &self.u).ok()?;
                     linear_here = true;
                 }
                 self.linear(course, length);
-                bend = self.step(course, t, after, length);
+                off = self.step(course, t, after, length, Remainder::Square);
             }
-            if bend > CURVATURE && self.depth < DEEPEST {
+            if off > CORRECTION && self.depth < DEEPEST {
                 self.depth += 1;
                 continue;
             }
-            if bend.is_infinite() {
+            if off.is_infinite() {
                 return None;
             }
             if let Some(slopes) = &mut course.slopes {
                 slopes.advance(course.local, &self.exponentials[self.depth as usize], course.sizes);
             }
             course.state.copy_from_slice(&self.next);
-            // the model was evaluated there last
-            self.take_rates(course);
             gone += part;
             linear_here = false;
-            if bend < LENGTHENED * CURVATURE && self.depth > 0 && gone.is_multiple_of(2 * part) {
+            // at the next sample the model is looked at anyway
+            if gone < WHOLE {
+                course.local.evaluate(t + fraction(gone), &course.state, course.theta, &self.u).ok()?;
+                self.take_rates(course);
+            }
+            if off < LENGTHENED * CORRECTION && self.depth > 0 && gone.is_multiple_of(2 * part) {
                 self.depth -= 1;
             }
         }
@@ -255,8 +278,9 @@ impl Stepper {
         columns.for_each(|(column, slope)| self.ramp.axpy(*slope, &column, 1.0));
     }
 
-    /// A step so long after the sample at `t`, and how far the model is from linear over it.
-    fn step(&mut self, course: &mut Course<'_>, t: f64, after: f64, length: f64) -> f64 {
+    /// A step so long after the sample at `t`, corrected by what the linear model leaves out at its end, and the largest
+    /// correction of a state, in sizes.
+    fn step(&mut self, course: &mut Course<'_>, t: f64, after: f64, length: f64, grows: Remainder) -> f64 {
         let exponential = &self.exponentials[self.depth as usize];
         exponential::apply(&mut self.change, &exponential.integral, &self.rate, 0.0);
         if self.ramp.iter().any(|v| *v != 0.0) {
@@ -265,15 +289,25 @@ impl Stepper {
         for (i, next) in self.next.iter_mut().enumerate() {
             *next = course.state[i] + self.change[i] * course.sizes[i];
         }
-        self.expected.copy_from(&self.rate);
-        exponential::apply(&mut self.expected, &self.a, &self.change, 1.0);
-        self.expected.axpy(length, &self.ramp, 1.0);
+        self.remainder.copy_from(&self.rate);
+        exponential::apply(&mut self.remainder, &self.a, &self.change, 1.0);
+        self.remainder.axpy(length, &self.ramp, 1.0);
         self.inputs.at(after + length, &mut self.u);
         if course.local.evaluate(t + after + length, &self.next, course.theta, &self.u).is_err() {
             return f64::INFINITY;
         }
-        let off = |i: usize| 0.5 * length * (course.local.rates[i] / course.sizes[i] - self.expected[i]).abs();
-        // what is not a number is as far from linear as can be
-        (0..self.next.len()).map(off).fold(0.0, |most, v| if v >= 0.0 { most.max(v) } else { f64::INFINITY })
+        let rates = course.local.rates.iter().zip(course.sizes);
+        self.remainder.iter_mut().zip(rates).for_each(|(r, (rate, size))| *r = rate / size - *r);
+        exponential::apply(&mut self.change, &exponential.twice, &self.remainder, 0.0);
+        self.change *= grows.weight() / length;
+        // what is not a number is as far off as can be
+        let most =
+            self.change.iter().fold(0.0, |m: f64, v| if v.abs() >= 0.0 { m.max(v.abs()) } else { f64::INFINITY });
+        // behind a corner the rates say nothing of the step before it
+        if most <= CORRECTION {
+            let moves = self.next.iter_mut().zip(self.change.iter().zip(course.sizes));
+            moves.for_each(|(next, (change, size))| *next += change * size);
+        }
+        most
     }
 }
