@@ -292,22 +292,23 @@ impl Candidate {
         self.off = other.off.iter().map(guess).collect();
     }
 
-    /// A step to a point of this cost, doubled as long as the cost falls, within the bounds.
-    pub fn stretched(
+    /// A step to a point, doubled as long as what is found there is better, within the bounds.
+    pub fn stretched<T>(
         &self,
         from: &[f64],
-        (mut best, mut least): (Vec<f64>, f64),
-        cost: &impl Fn(&[f64]) -> Option<f64>,
-    ) -> (Vec<f64>, f64) {
+        (mut best, mut found): (Vec<f64>, T),
+        look: &impl Fn(&[f64]) -> Option<T>,
+        is_better: impl Fn(&T, &T) -> bool,
+    ) -> (Vec<f64>, T) {
         for _ in 0..DOUBLINGS {
             let far = |((c, from), to): ((&Coordinate, &f64), &f64)| (2.0 * to - from).clamp(c.low, c.high);
             let tried: Vec<f64> = self.coordinates.iter().zip(from).zip(&best).map(far).collect();
-            match cost(&tried).filter(|c| *c < least) {
-                Some(c) => (best, least) = (tried, c),
+            match look(&tried).filter(|t| is_better(t, &found)) {
+                Some(t) => (best, found) = (tried, t),
                 None => break,
             }
         }
-        (best, least)
+        (best, found)
     }
 
     /// When the simulation of a train recording stops before its end, s.

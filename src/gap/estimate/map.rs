@@ -151,7 +151,7 @@ impl Fit {
                     Some(self.weights.cost(&errors) + self.candidate.prior(x))
                 };
                 if let Some(found) = cost(&x).filter(|c| *c < before) {
-                    let (x, _) = self.candidate.stretched(&self.x, (x, found), &cost);
+                    let (x, _) = self.candidate.stretched(&self.x, (x, found), &cost, |a, b| a < b);
                     let Some(evaluated) = self.candidate.evaluate(&x, train) else { break };
                     self.candidate.off.clone_from(&evaluated.off);
                     (self.x, self.evaluated) = (x, evaluated);

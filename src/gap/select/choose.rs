@@ -1,11 +1,11 @@
 //! Which of the rivals of one step is taken: once it is sure that something is missing, all that is worth it contends, and
 //! held recordings confirm.
 
-use super::super::data::Recording;
 use super::super::estimate::Fit;
+use super::super::estimate::candidate::Errors;
 use super::super::problem::{Chosen, Problem};
 use super::compare::{closed, needed};
-use super::confirm::{Asked, ask};
+use super::confirm::{Asked, Held};
 use super::criteria::{Criteria, Judged, Reason, Rival};
 use super::weighed::{Weighed, ahead, saved};
 
@@ -52,21 +52,28 @@ pub struct Chooser<'a> {
     /// What is diagnosed.
     pub problem: &'a Problem<'a>,
     /// Recordings that only confirm.
-    pub held: &'a [Recording],
-    /// Noise-free gap of the nominal model on them.
-    pub nominal: f64,
+    pub held: Held<'a>,
     /// The tests.
     pub criteria: Criteria,
 }
 
+/// The model to which a step adds, and what it leaves of the held recordings.
+struct Before<'a> {
+    model: &'a Weighed,
+    held: Vec<Errors>,
+}
+
 impl Chooser<'_> {
+    fn is_shape(&self, rival: &Rival) -> bool {
+        self.problem.hypotheses[rival.hypothesis].is_shape()
+    }
+
     /// Once it is sure that something is missing, all that is worth it, what is sure first: they are compared with each other
     /// then, not with nothing. Beside shapes, what was weighed before among more hypotheses is not sure now.
-    fn contenders(&self, before: &Weighed, rivals: &[Rival], judged: &[Judged]) -> Vec<usize> {
-        let is_shape = |i: &usize| self.problem.hypotheses[rivals[*i].hypothesis].is_shape();
+    fn contenders(&self, before: &Before<'_>, rivals: &[Rival], judged: &[Judged]) -> Vec<usize> {
         let all = 0..rivals.len();
-        let any_shape = all.clone().any(|i| is_shape(&i));
-        let fresh: Vec<usize> = all.clone().filter(|i| !any_shape || is_shape(i)).collect();
+        let any_shape = rivals.iter().any(|r| self.is_shape(r));
+        let fresh: Vec<usize> = all.clone().filter(|&i| !any_shape || self.is_shape(&rivals[i])).collect();
         let mut sure: Vec<usize> = fresh.iter().copied().filter(|&i| judged[i].accepted()).collect();
         if sure.is_empty() {
             sure = fresh.into_iter().filter(|&i| self.sure_with_held(before, &rivals[i], &judged[i])).collect();
@@ -85,16 +92,17 @@ impl Chooser<'_> {
         let needed = needed(self.criteria.count);
         let mut reasons: Vec<Option<Reason>> =
             judged.iter().map(|j| (!j.accepted()).then(|| j.refused(needed))).collect();
-        let contenders = self.contenders(before, &rivals, &judged);
+        let asked = Before { model: before, held: self.held.left_by(&before.fit) };
+        let contenders = self.contenders(&asked, &rivals, &judged);
         contenders.iter().for_each(|&i| reasons[i] = None);
-        let is_shape = |i: usize| self.problem.hypotheses[rivals[i].hypothesis].is_shape();
+        let is_shape = |i: usize| self.is_shape(&rivals[i]);
         let mut order = self.criteria.order(&contenders, &rivals, &mut reasons);
         // a shape has a coefficient for every bump: it counts where it surely leaves less than what has a name
         if !order.iter().all(|&i| is_shape(i)) {
             order.retain(|&i| !is_shape(i));
         }
         let taken = order.iter().copied().find(|&i| {
-            reasons[i] = self.unconfirmed(before, &rivals[i].model);
+            reasons[i] = self.unconfirmed(&asked, &rivals[i].model);
             reasons[i].is_none()
         });
         for &i in order.iter().filter(|i| Some(**i) != taken) {
@@ -138,19 +146,19 @@ impl Chooser<'_> {
     }
 
     /// Why held recordings do not confirm a model; nothing where they do, or there are none.
-    fn unconfirmed(&self, before: &Weighed, model: &Weighed) -> Option<Reason> {
-        let asked = ask(&before.fit, &model.fit, self.held, self.nominal, &self.criteria.sensors)?;
-        let confirmed = asked.confirms(saved(before, model), self.criteria.count);
+    fn unconfirmed(&self, before: &Before<'_>, model: &Weighed) -> Option<Reason> {
+        let asked = self.held.ask(&before.held, &model.fit, &self.criteria.sensors)?;
+        let confirmed = asked.confirms(saved(before.model, model), self.criteria.count);
         (!confirmed).then_some(Reason::NotConfirmed(asked))
     }
 
     /// Few recordings, few blocks: what is worth it is asked of the held recordings too. They are fresh, and a product of
     /// e-values of independent data is one; the bound on it is one for all hypotheses together.
-    fn sure_with_held(&self, before: &Weighed, rival: &Rival, judged: &Judged) -> bool {
+    fn sure_with_held(&self, before: &Before<'_>, rival: &Rival, judged: &Judged) -> bool {
         if !judged.may() || judged.evidence <= 0.0 {
             return false;
         }
-        let asked = ask(&before.fit, &rival.model.fit, self.held, self.nominal, &self.criteria.sensors);
+        let asked = self.held.ask(&before.held, &rival.model.fit, &self.criteria.sensors);
         let shown = |a: Asked| a.evidence > 0.0 && judged.evidence + a.evidence > needed(self.criteria.count);
         asked.is_some_and(shown)
     }

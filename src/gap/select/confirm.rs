@@ -37,31 +37,44 @@ impl Asked {
     }
 }
 
-/// Noise-free gap of a model on held recordings, in parts of full scale.
-pub fn held_gap(candidate: &Candidate, x: &[f64], held: &[Recording], sensors: &Sensors) -> f64 {
-    let errors: Vec<Errors> = held.iter().map(|r| of(candidate, x, r)).collect();
-    gap(&LeftOut::of(&errors), sensors)
+/// Held recordings.
+pub struct Held<'a> {
+    recordings: &'a [Recording],
+    /// Noise-free gap of the nominal model on them, in parts of full scale.
+    nominal: f64,
 }
 
-/// Asks the held recordings, on which the nominal model leaves so much; `None` where there are none.
-pub fn ask(before: &Fit, after: &Fit, held: &[Recording], nominal: f64, sensors: &Sensors) -> Option<Asked> {
-    let errors = |fit: &Fit| -> Vec<Errors> { held.iter().map(|r| of(&fit.candidate, &fit.x, r)).collect() };
-    if held.is_empty() {
-        return None;
+impl<'a> Held<'a> {
+    /// Those on which the nominal model leaves so much.
+    pub fn new(recordings: &'a [Recording], nominal: &Candidate, x: &[f64], sensors: &Sensors) -> Self {
+        let errors: Vec<Errors> = recordings.iter().map(|r| of(nominal, x, r)).collect();
+        Held { recordings, nominal: gap(&LeftOut::of(&errors), sensors) }
     }
-    let (a, b) = (errors(before), errors(after));
-    let (tau_a, tau_b) = (Weights::of(&a, &sensors.full_scale).tau, Weights::of(&b, &sensors.full_scale).tau);
-    let samples = |i: usize| a.iter().flat_map(|e| &e[i]).filter(|v| !v.is_nan()).count() as f64;
-    let independent: Vec<f64> = (0..sensors.noise.len()).map(|i| samples(i) / tau_a[i].max(tau_b[i])).collect();
-    let (a, b) = (LeftOut::of(&a), LeftOut::of(&b));
-    let evidence = evidence(&a, &b, &independent, sensors);
-    let falls = |i: usize| {
-        let before = signal_gap(&a, i, sensors);
-        let worth = (0.5 * DELTA * before).max(0.5 * ACCURACY * sensors.full_scale[i]);
-        before - signal_gap(&b, i, sensors) >= worth
-    };
-    let closes = (0..sensors.noise.len()).any(falls);
-    Some(Asked { evidence, before: gap(&a, sensors), after: gap(&b, sensors), nominal, closes })
+
+    /// What a model leaves of them.
+    pub fn left_by(&self, fit: &Fit) -> Vec<Errors> {
+        self.recordings.iter().map(|r| of(&fit.candidate, &fit.x, r)).collect()
+    }
+
+    /// What they say of a model against the one before, which leaves so much; `None` where there are none.
+    pub fn ask(&self, before: &[Errors], after: &Fit, sensors: &Sensors) -> Option<Asked> {
+        if self.recordings.is_empty() {
+            return None;
+        }
+        let (a, b) = (before, self.left_by(after));
+        let (tau_a, tau_b) = (Weights::of(a, &sensors.full_scale).tau, Weights::of(&b, &sensors.full_scale).tau);
+        let samples = |i: usize| a.iter().flat_map(|e| &e[i]).filter(|v| !v.is_nan()).count() as f64;
+        let independent: Vec<f64> = (0..sensors.noise.len()).map(|i| samples(i) / tau_a[i].max(tau_b[i])).collect();
+        let (a, b) = (LeftOut::of(a), LeftOut::of(&b));
+        let evidence = evidence(&a, &b, &independent, sensors);
+        let falls = |i: usize| {
+            let before = signal_gap(&a, i, sensors);
+            let worth = (0.5 * DELTA * before).max(0.5 * ACCURACY * sensors.full_scale[i]);
+            before - signal_gap(&b, i, sensors) >= worth
+        };
+        let closes = (0..sensors.noise.len()).any(falls);
+        Some(Asked { evidence, before: gap(&a, sensors), after: gap(&b, sensors), nominal: self.nominal, closes })
+    }
 }
 
 /// Errors on a recording that took no part; infinite where the simulation does not reach the end.

@@ -6,6 +6,7 @@ pub mod confirm;
 pub mod criteria;
 pub mod folds;
 pub mod models;
+pub mod rivals;
 pub mod screen;
 pub mod search;
 pub mod weighed;

@@ -393,17 +393,16 @@ impl Ground<'_> {
             let errors = candidate.all_errors(x, &self.problem.train)?;
             Some(self.leaves(&errors, candidate.prior(x)))
         };
-        let cost = |x: &[f64]| leaves(x).map(|l| criterion(&l));
-        let mut best = (from.clone(), criterion(now));
+        let is_better = |a: &Leaves, b: &Leaves| criterion(a) < criterion(b);
+        let (mut x, mut best) = (from.clone(), now.clone());
         for damping in DAMPINGS {
-            let x = system.step(&candidate.coordinates, from, damping);
-            if let Some(found) = cost(&x).filter(|c| *c < best.1) {
-                best = candidate.stretched(from, (x, found), &cost);
+            let tried = system.step(&candidate.coordinates, from, damping);
+            if let Some(found) = leaves(&tried).filter(|l| is_better(l, &best)) {
+                (x, best) = candidate.stretched(from, (tried, found), &leaves, is_better);
                 break;
             }
         }
-        let leaves = leaves(&best.0).unwrap_or_else(|| now.clone());
-        Start { candidate: candidate.clone(), x: best.0, leaves, promised: promised.clone() }
+        Start { candidate: candidate.clone(), x, leaves: best, promised: promised.clone() }
     }
 }
 

@@ -2,19 +2,18 @@
 //! no name says more.
 
 use super::super::data::Recording;
-use super::super::effects::Coefficient;
 use super::super::estimate::Fit;
 use super::super::hypotheses::Hypothesis;
-use super::super::policy::{EFFECTS, FRONT, SEEN};
+use super::super::policy::{EFFECTS, SEEN};
 use super::super::problem::{Chosen, Problem, Tolerance};
 use super::choose::{Chooser, Taken, Trial};
-use super::confirm::held_gap;
+use super::confirm::Held;
 use super::criteria::{Criteria, Judged, Reason, Rival};
 use super::models;
+use super::rivals::fitted;
 use super::screen::{Ground, Screened, screened};
-use super::weighed::{Weighed, ahead, at_the_noise, from_nominal, left_by, no_worse, settled, weighed};
+use super::weighed::{Weighed, ahead, left_by, settled, weighed};
 use crate::diag::Diagnostic;
-use rayon::prelude::*;
 
 /// A stage of the search, for progress bars.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -125,7 +124,7 @@ pub fn explained(
     progress(Stage::Fit(1));
     let sensors = &search.chooser.criteria.sensors;
     let ground = Ground { problem, sensors, before: &base.fit, may_be_worth: &|_, _| true };
-    let rivals = search.fitted(&base.fit, screened(&ground, &[hypothesis]).best);
+    let rivals = fitted(problem, sensors, &base.fit, screened(&ground, &[hypothesis]).best);
     let Some(last) = rivals.first().map(|r| r.model.clone()) else { return Ok(None) };
     let closes = 1.0 - last.gap(sensors) / base.gap(sensors).max(f64::MIN_POSITIVE);
     let trials = search.chooser.choose(1, &base, rivals).trials;
@@ -151,10 +150,10 @@ fn begun<'a>(
     let base = settled(problem, &sensors, base);
     let first = (0..sensors.noise.len()).map(|i| left_by(&base.left[0], i, &sensors)).collect();
     let criteria = Criteria { sensors, first, count: problem.hypotheses.len() };
-    let nominal = held_gap(&nominal, &x, held, &criteria.sensors);
+    let held = Held::new(held, &nominal, &x, &criteria.sensors);
     let search = Search {
         problem,
-        chooser: Chooser { problem, held, nominal, criteria },
+        chooser: Chooser { problem, held, criteria },
         visible: None,
         trials: Vec::new(),
         passed: Vec::new(),
@@ -187,19 +186,27 @@ impl Search<'_> {
 
     /// Looks for one more effect.
     fn step(&mut self, step: usize, before: &Weighed, progress: &mut dyn FnMut(Stage)) -> Option<(Weighed, Taken)> {
-        progress(Stage::Screen(step));
         let open = self.open(&before.fit);
-        let screened = self.screened(step, before, &open);
+        self.beside(step, before, &open, progress)
+    }
+
+    /// The best of some hypotheses beside a model.
+    fn beside(
+        &mut self,
+        step: usize,
+        before: &Weighed,
+        open: &[usize],
+        progress: &mut dyn FnMut(Stage),
+    ) -> Option<(Weighed, Taken)> {
+        progress(Stage::Screen(step));
+        let screened = self.screened(step, before, open);
         progress(Stage::Fit(step));
         let rivals = self.fitted(&before.fit, screened);
         self.choose(step, before, rivals)
     }
 
-    /// The best of some hypotheses beside a model.
-    fn beside(&mut self, step: usize, before: &Weighed, open: &[usize]) -> Option<(Weighed, Taken)> {
-        let screened = self.screened(step, before, open);
-        let rivals = self.fitted(&before.fit, screened);
-        self.choose(step, before, rivals)
+    fn fitted(&self, before: &Fit, screened: Vec<Screened>) -> Vec<Rival> {
+        fitted(self.problem, &self.chooser.criteria.sensors, before, screened)
     }
 
     fn shapes(&self) -> Vec<usize> {
@@ -216,6 +223,9 @@ impl Search<'_> {
             return None;
         }
         let mut rivals = self.fitted(&last.fit, screened);
+        // they are weighed once: now
+        let again = |t: &Trial| t.step == step && self.undecided.iter().any(|r| r.hypothesis == t.chosen.hypothesis);
+        self.trials.retain(|t| !again(t));
         rivals.append(&mut self.undecided);
         self.choose(step, last, rivals)
     }
@@ -227,7 +237,7 @@ impl Search<'_> {
             return None;
         }
         self.undecided.clear();
-        let (model, shape) = self.beside(2, base, &self.shapes())?;
+        let (model, shape) = self.beside(2, base, &self.shapes(), &mut |_| ())?;
         self.chooser.criteria.worse(&model, last).then_some(shape)
     }
 
@@ -272,30 +282,6 @@ impl Search<'_> {
         screen.best
     }
 
-    /// Fits from all starts; the front by both weightings.
-    fn fitted(&self, before: &Fit, screened: Vec<Screened>) -> Vec<Rival> {
-        let (problem, sensors) = (self.problem, &self.chooser.criteria.sensors);
-        let one = |(hypothesis, starts): Screened| {
-            let fits = starts.into_iter().filter_map(|s| no_worse(problem, before, s.candidate, s.x));
-            let fit = fits.reduce(Fit::better_of)?;
-            let h = &problem.hypotheses[hypothesis];
-            let (places, is_parameter) = (h.attachments.len(), h.family == "parameter");
-            Some(Rival { hypothesis, places, size: 0.0, is_parameter, model: Weighed::new(problem, fit) })
-        };
-        let mut rivals: Vec<Rival> = screened.into_par_iter().filter_map(one).collect();
-        rivals.sort_by(|a, b| a.model.gap(sensors).total_cmp(&b.model.gap(sensors)));
-        let front = FRONT.min(rivals.len());
-        rivals[..front].par_iter_mut().for_each(|rival| {
-            for other in [from_nominal, at_the_noise] {
-                if let Some(better) = other(problem, sensors, &rival.model) {
-                    rival.model = better;
-                }
-            }
-        });
-        rivals.par_iter_mut().for_each(|r| r.size = size(problem, &problem.hypotheses[r.hypothesis], &r.model.fit));
-        rivals
-    }
-
     /// The model with the widths of everything that was taken free, where that is better.
     fn widened(&self, chosen: Weighed) -> Weighed {
         let causes = chosen.fit.causes();
@@ -328,22 +314,4 @@ impl Search<'_> {
     fn is_recording_error(&self, taken: &[Taken]) -> bool {
         taken.iter().any(|t| self.h(t.hypothesis).is_recording_error())
     }
-}
-
-/// By how many of its standard deviations the largest free coefficient of a model's last cause differs from nothing; a
-/// parameter that is said to be out of tolerance from its data sheet, what is known of both counted.
-fn size(problem: &Problem<'_>, h: &Hypothesis, fit: &Fit) -> f64 {
-    let Some(places) = fit.candidate.model.attached.last().filter(|_| !h.is_shape()) else { return f64::INFINITY };
-    let deviations = fit.deviations();
-    if let ("parameter", Some(&k)) = (h.family.as_str(), places.first()) {
-        let t = &problem.tolerances[k];
-        return (fit.x[k] - t.nominal / t.sigma).abs() / deviations[k].hypot(1.0);
-    }
-    let coordinates = &fit.candidate.coordinates;
-    let one = |(c, &place): (&Coefficient, &usize)| {
-        let k = coordinates.iter().position(|own| own.parameter == place)?;
-        let off = (fit.x[k] - coordinates[k].of(c.off)).abs();
-        Some(if off > 0.0 { off / deviations[k] } else { 0.0 })
-    };
-    h.coefficients.iter().zip(places).filter_map(one).reduce(f64::max).unwrap_or(f64::INFINITY)
 }
