@@ -172,6 +172,8 @@ pub struct Hypothesis {
     /// The order of the model changes with it (it needs a rate that the model does not have, or stands inside a connection),
     /// so that it cannot be linearised at its off value together with the others. States of its own beside are none.
     pub changes_order: bool,
+    /// Usual size of the signal that passes through it, SI; its own states are of that size. Nothing at a node.
+    pub passes: Option<f64>,
 }
 
 impl Hypothesis {
@@ -581,11 +583,12 @@ fn shared(
 
 fn hypothesis(circuit: &Circuit, attachments: Vec<Attachment>, sharing: Sharing, signals: &[Signal]) -> Hypothesis {
     let effect = attachments[0].effect.clone().expect("an effect at each place");
-    let scale = match &attachments[0].site {
-        Site::Sensor(s) => signals.iter().find(|x| x.name == *s).map_or(1.0, |x| x.scale),
-        Site::Command(i) => circuit.inputs.iter().find(|x| x.name == *i).and_then(|x| x.nominal).unwrap_or(1.0),
-        _ => 1.0,
+    let passes = match &attachments[0].site {
+        Site::Sensor(s) => Some(signals.iter().find(|x| x.name == *s).map_or(1.0, |x| x.scale)),
+        Site::Command(i) => Some(circuit.inputs.iter().find(|x| x.name == *i).and_then(|x| x.nominal).unwrap_or(1.0)),
+        _ => None,
     };
+    let scale = passes.unwrap_or(1.0);
     let mut coefficients = effect.coefficients.clone();
     coefficients.iter_mut().filter(|c| c.relative).for_each(|c| c.nominal *= scale);
     let mut shapes = effect.shapes.clone();
@@ -594,7 +597,7 @@ fn hypothesis(circuit: &Circuit, attachments: Vec<Attachment>, sharing: Sharing,
     }
     let changes_order = attachments.iter().any(|a| changes_order(circuit, a));
     let (class, family) = (effect.class.clone(), effect.family.clone());
-    Hypothesis { effect: class, family, attachments, sharing, coefficients, shapes, changes_order }
+    Hypothesis { effect: class, family, attachments, sharing, coefficients, shapes, changes_order, passes }
 }
 
 fn changes_order(circuit: &Circuit, a: &Attachment) -> bool {
@@ -641,6 +644,7 @@ fn drift(free: &Free) -> Hypothesis {
         coefficients: vec![coefficient],
         shapes: Vec::new(),
         changes_order: false,
+        passes: None,
     }
 }
 

@@ -86,6 +86,7 @@ fn hypothesis(effect: &Arc<Effect>, site: Site, name: &str, kind: Kind, factor: 
         coefficients: effect.coefficients.iter().map(usual).collect(),
         shapes: Vec::new(),
         changes_order: false,
+        passes: None,
     }
 }
 

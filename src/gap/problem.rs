@@ -112,6 +112,21 @@ pub struct Assembled {
     pub augmented: Augmented,
 }
 
+impl Assembled {
+    /// States of an effect through which a signal passes are as large as the signal.
+    fn take_sizes_of(&mut self, attached: &Attached<'_>) {
+        let Some(size) = attached.hypothesis.passes.filter(|s| s.is_normal()) else { return };
+        let instances = format!("{}_", attached.name);
+        let variables = &self.plan.system.dae.variables;
+        for (v, own) in self.plan.state_variables().zip(&mut self.sizes) {
+            let name = &variables[v.index()].name;
+            if of_plant(name).unwrap_or(name).starts_with(&instances) {
+                *own = size;
+            }
+        }
+    }
+}
+
 /// A hypothesis with one choice of its shapes and values of its coefficients.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chosen {
@@ -173,6 +188,9 @@ impl Problem<'_> {
         for (places, c) in model.attached.iter().zip(chosen) {
             let coefficients = &self.hypotheses[c.hypothesis].coefficients;
             model.own.extend(places.iter().zip(coefficients).filter_map(|(&place, c)| Some((place, c.recording?))));
+        }
+        for a in &attached {
+            model.take_sizes_of(a);
         }
         Ok(model)
     }

@@ -52,6 +52,10 @@ pub fn fit(problem: &mut Problem<'_>) {
         each_its_own(&mut h.coefficients, recordings);
         let site = h.attachments[0].site.clone();
         let size = size(&site, &sizes);
+        if let (Site::Command(_), Some((_, most))) = (&site, size) {
+            // the range of a command shows in the recordings only
+            h.passes = Some(most);
+        }
         for shape in &mut h.shapes {
             if shape.line {
                 shape.grid.clone_from(&lines);
@@ -72,7 +76,6 @@ pub fn fit(problem: &mut Problem<'_>) {
             } else if let (true, Some((least, most))) = (shape.limit, size) {
                 shape.grid = PARTS.iter().map(|part| least + part * (most - least)).collect();
             } else if let (true, Site::Command(name), Some((_, most))) = (shape.relative, &site, size) {
-                // the range of a command shows in the recordings only
                 let declared = problem.circuit.inputs.iter().find(|i| i.name == *name).and_then(|i| i.nominal);
                 shape.grid.iter_mut().for_each(|x| *x *= most / declared.unwrap_or(1.0));
             }
