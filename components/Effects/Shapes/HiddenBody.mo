@@ -4,8 +4,8 @@ model HiddenBody "A body on a spring that nobody sees: a resonance of the load"
   parameter SI.Mass m(min = 0, nominal = 5) = 0 "Mass of the body";
   parameter SI.Time T(min = 1e-6) = 0.01 "Period of its resonance over 2 pi";
   parameter Real zeta(unit = "1", min = 0) = 0.1 "Damping ratio";
-  SI.Position z "Position of the body, at the node at the start";
-  SI.Velocity w(start = 0, fixed = true) "Its speed";
+  SI.Position z(nominal = 1e-2) "Position of the body, at the node at the start";
+  SI.Velocity w(nominal = 1e-1, start = 0, fixed = true) "Its speed";
 initial equation
   z = s;
 equation

@@ -4,8 +4,8 @@ model ResonantBranch "A branch of the line that nobody sees: a resonance of the 
   parameter Real C(unit = "m3/Pa", min = 0, nominal = 3e-14) = 0 "Capacity of its end";
   parameter SI.Time T(min = 1e-6) = 0.01 "Period of its resonance over 2 pi";
   parameter Real zeta(unit = "1", min = 0) = 0.1 "Damping ratio";
-  SI.Pressure y "Pressure at its end, that of the node at the start";
-  Real z(unit = "Pa/s", start = 0, fixed = true) "Rate of that pressure";
+  SI.Pressure y(nominal = 1e6) "Pressure at its end, that of the node at the start";
+  Real z(unit = "Pa/s", nominal = 1e8, start = 0, fixed = true) "Rate of that pressure";
 initial equation
   y = p;
 equation

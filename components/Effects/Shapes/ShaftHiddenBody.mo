@@ -5,7 +5,7 @@ model ShaftHiddenBody "A body on an elastic shaft that nobody sees: a resonance 
   parameter SI.Time T(min = 1e-6) = 0.01 "Period of its resonance over 2 pi";
   parameter Real zeta(unit = "1", min = 0) = 0.1 "Damping ratio";
   SI.Angle z "Angle of the body, at the node at the start";
-  SI.AngularVelocity y(start = 0, fixed = true) "Its speed";
+  SI.AngularVelocity y(nominal = 10, start = 0, fixed = true) "Its speed";
 initial equation
   z = phi;
 equation
