@@ -63,14 +63,15 @@ impl Valued<'_> {
         let own = local.state();
         local.linearize(recording.times[0], &own, self.theta, &u).ok()?;
         let loose = self.looseness(&local, recording);
-        let nowhere = DVector::zeros(own.len());
         let moved = moves.unwrap_or(&[]);
         let mut first = guess.filter(|g| g.len() == own.len()).and_then(|g| {
             let x = DVector::from_column_slice(g);
             Some((self.through(recording, &mut local, &own, &loose, &x, moved)?, x, moved))
         });
-        if first.is_none() {
-            first = Some((self.through(recording, &mut local, &own, &loose, &nowhere, &[])?, nowhere, &[]));
+        for x in [self.shown_start(&local, recording), DVector::zeros(own.len())] {
+            if first.is_none() {
+                first = self.through(recording, &mut local, &own, &loose, &x, &[]).map(|b| (b, x, &[][..]));
+            }
         }
         let (mut best, mut x, mut known) = first?;
         for _ in 0..ROUNDS {
@@ -110,13 +111,8 @@ impl Valued<'_> {
     /// itself begins where the model says, for a wrong law would find any other start for it; but not in a recording that
     /// begins elsewhere with what is shown.
     fn looseness(&self, local: &Local, recording: &Recording) -> DVector<f64> {
-        let (c, d) = (&local.linear.c, &local.linear.d);
-        let shows = |y: usize, i: usize| {
-            let alone = (0..c.ncols()).all(|j| (c[(y, j)] != 0.0) == (j == i));
-            // what follows an input too is a balance, of which the state is a part that may be wrong
-            alone && (self.plan.parameters()..d.ncols()).all(|j| d[(y, j)] == 0.0)
-        };
-        let shown = |i: usize| (0..c.nrows()).find(|&y| shows(y, i));
+        let c = &local.linear.c;
+        let shown = |i: usize| self.shows(local, i);
         let begins_elsewhere = |y: usize| {
             let first = recording.signals[y][..=recording.settled()].iter().find(|v| v.is_finite());
             first.is_some_and(|v| (v - local.outputs[y]).abs() > SURE * self.deviations[y])
@@ -131,6 +127,26 @@ impl Valued<'_> {
                 _ => UNMEASURED.max(TRAVEL * self.travel[i] / self.sizes[i]),
             }
         })
+    }
+
+    /// The signal that follows a state alone: nothing else, and no input, for that would be a balance of which the state is
+    /// a part that may be wrong.
+    fn shows(&self, local: &Local, state: usize) -> Option<usize> {
+        let (c, d) = (&local.linear.c, &local.linear.d);
+        let alone = |y: usize| (0..c.ncols()).all(|j| (c[(y, j)] != 0.0) == (j == state));
+        let no_input = |y: usize| (self.plan.parameters()..d.ncols()).all(|j| d[(y, j)] == 0.0);
+        (0..c.nrows()).find(|&y| alone(y) && no_input(y))
+    }
+
+    /// How far states are from the model's own start by the first sample that shows them, in their sizes: far from what is
+    /// shown, a step of the whole start leads nowhere.
+    fn shown_start(&self, local: &Local, recording: &Recording) -> DVector<f64> {
+        let off = |i: usize| {
+            let y = self.shows(local, i)?;
+            let first = recording.signals[y][..=recording.settled()].iter().find(|v| v.is_finite())?;
+            Some((first - local.outputs[y]) / (local.linear.c[(y, i)] * self.sizes[i])).filter(|x| x.is_finite())
+        };
+        DVector::from_fn(self.sizes.len(), |i, _| off(i).unwrap_or(0.0))
     }
 
     /// The beginning from `x` sizes off the model's own start.
