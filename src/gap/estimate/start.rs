@@ -9,9 +9,10 @@ use crate::analysis::local::{Local, Plan};
 use nalgebra::{Cholesky, DMatrix, DVector};
 use std::sync::Arc;
 
-/// How far states that nothing measures may be from the model's start when a recording begins, as part of their size;
-/// measured ones by all of it.
+/// How far states that nothing measures may be from the model's start when a recording begins, as part of their size, and
+/// how far one step may lead them; measured ones by all of it.
 pub const UNMEASURED: f64 = 0.2;
+const MEASURED: f64 = 1.0;
 /// Or as part of how far they usually move.
 pub const TRAVEL: f64 = 0.5;
 /// Absolute temperatures, K.
@@ -123,7 +124,7 @@ impl Valued<'_> {
             match self.plan.state_unit(i) {
                 _ if self.plan.state_is_fixed(i) && !elsewhere && shown(i).is_none() => HELD,
                 Some("K") => KELVIN / self.sizes[i],
-                _ if measured => 1.0,
+                _ if measured => MEASURED,
                 _ => UNMEASURED.max(TRAVEL * self.travel[i] / self.sizes[i]),
             }
         })
@@ -217,7 +218,12 @@ impl Beginning {
     fn step(&self, x: &DVector<f64>, loose: &DVector<f64>) -> Option<DVector<f64>> {
         let pull = DVector::from_fn(x.len(), |i, _| x[i] * loose[i].powi(-2));
         let last = self.gram.ncols() - 1;
-        Some(self.information(loose)?.solve(&(self.gram.column(last) - pull)))
+        let step = self.information(loose)?.solve(&(self.gram.column(last) - pull));
+        // what nothing measures is led there by the linear model alone, which may end where the model has no sense
+        let far =
+            |(step, loose): (&f64, &f64)| if *loose < MEASURED { step.abs() / loose.max(UNMEASURED) } else { 0.0 };
+        let farthest = step.iter().zip(loose.iter()).map(far).fold(1.0, f64::max);
+        Some(step / farthest)
     }
 
     /// How the state depends on the parameters, the first state found anew for each: by the implicit function theorem.
