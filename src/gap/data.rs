@@ -44,6 +44,11 @@ impl Recording {
         short.max(enough).min(self.len() - 1)
     }
 
+    /// The first value of a signal within the start.
+    pub fn first_value(&self, signal: usize) -> Option<f64> {
+        self.signals[signal][..=self.settled()].iter().copied().find(|v| v.is_finite())
+    }
+
     /// Inputs at a sample.
     pub fn input(&self, k: usize, u: &mut [f64]) {
         u.iter_mut().zip(&self.inputs).for_each(|(u, samples)| *u = samples[k]);

@@ -1,7 +1,7 @@
 //! A model from its inputs alone, from a state at one sample of a recording: exponential Rosenbrock steps of third order
 //! (Hochbruck, Ostermann, Acta Numerica 2010, 2.4), halved until the correction of the linear step is small. A linearisation
-//! serves as long as the model keeps to it. Slopes go along by the variational
-//! equation of each linearised step, S' = A S + B, which has the same exponential.
+//! serves as long as the model keeps to it. Slopes go along by the variational equation of each linearised step,
+//! S' = A S + B, which has the same exponential.
 
 use super::super::data::{Inputs, Recording};
 use super::exponential::{self, Exponential};

@@ -10,8 +10,9 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 use std::sync::Arc;
 
 /// How far states that nothing measures may be from the model's start when a recording begins, as part of their size, and
-/// how far one step may lead them; measured ones by all of it.
+/// how far one step may lead them.
 pub const UNMEASURED: f64 = 0.2;
+/// The same for measured ones, whose steps the data hold.
 const MEASURED: f64 = 1.0;
 /// Or as part of how far they usually move.
 pub const TRAVEL: f64 = 0.5;
@@ -63,13 +64,15 @@ impl Valued<'_> {
         let mut local = Local::start(self.plan.clone(), recording.times[0], self.theta, &u).ok()?;
         let own = local.state();
         local.linearize(recording.times[0], &own, self.theta, &u).ok()?;
-        let loose = self.looseness(&local, recording);
+        let shown: Vec<Option<usize>> = (0..own.len()).map(|i| self.shows(&local, i)).collect();
+        let loose = self.looseness(&local, recording, &shown);
+        let shown_start = self.shown_start(&local, recording, &shown);
         let moved = moves.unwrap_or(&[]);
         let mut first = guess.filter(|g| g.len() == own.len()).and_then(|g| {
             let x = DVector::from_column_slice(g);
             Some((self.through(recording, &mut local, &own, &loose, &x, moved)?, x, moved))
         });
-        for x in [self.shown_start(&local, recording), DVector::zeros(own.len())] {
+        for x in [shown_start, DVector::zeros(own.len())] {
             if first.is_none() {
                 first = self.through(recording, &mut local, &own, &loose, &x, &[]).map(|b| (b, x, &[][..]));
             }
@@ -111,18 +114,17 @@ impl Valued<'_> {
     /// Deviations of the states from the model's own start, in their sizes. What the model fixes and no sensor shows by
     /// itself begins where the model says, for a wrong law would find any other start for it; but not in a recording that
     /// begins elsewhere with what is shown.
-    fn looseness(&self, local: &Local, recording: &Recording) -> DVector<f64> {
+    fn looseness(&self, local: &Local, recording: &Recording, shown: &[Option<usize>]) -> DVector<f64> {
         let c = &local.linear.c;
-        let shown = |i: usize| self.shows(local, i);
         let begins_elsewhere = |y: usize| {
-            let first = recording.signals[y][..=recording.settled()].iter().find(|v| v.is_finite());
+            let first = recording.first_value(y);
             first.is_some_and(|v| (v - local.outputs[y]).abs() > SURE * self.deviations[y])
         };
-        let elsewhere = (0..self.sizes.len()).filter_map(shown).any(begins_elsewhere);
+        let elsewhere = shown.iter().flatten().any(|&y| begins_elsewhere(y));
         DVector::from_fn(self.sizes.len(), |i, _| {
             let measured = c.column(i).iter().any(|c| *c != 0.0);
             match self.plan.state_unit(i) {
-                _ if self.plan.state_is_fixed(i) && !elsewhere && shown(i).is_none() => HELD,
+                _ if self.plan.state_is_fixed(i) && !elsewhere && shown[i].is_none() => HELD,
                 Some("K") => KELVIN / self.sizes[i],
                 _ if measured => MEASURED,
                 _ => UNMEASURED.max(TRAVEL * self.travel[i] / self.sizes[i]),
@@ -141,11 +143,11 @@ impl Valued<'_> {
 
     /// How far states are from the model's own start by the first sample that shows them, in their sizes: far from what is
     /// shown, a step of the whole start leads nowhere.
-    fn shown_start(&self, local: &Local, recording: &Recording) -> DVector<f64> {
+    fn shown_start(&self, local: &Local, recording: &Recording, shown: &[Option<usize>]) -> DVector<f64> {
         let off = |i: usize| {
-            let y = self.shows(local, i)?;
-            let first = recording.signals[y][..=recording.settled()].iter().find(|v| v.is_finite())?;
-            Some((first - local.outputs[y]) / (local.linear.c[(y, i)] * self.sizes[i])).filter(|x| x.is_finite())
+            let y = shown[i]?;
+            Some((recording.first_value(y)? - local.outputs[y]) / (local.linear.c[(y, i)] * self.sizes[i]))
+                .filter(|x| x.is_finite())
         };
         DVector::from_fn(self.sizes.len(), |i, _| off(i).unwrap_or(0.0))
     }

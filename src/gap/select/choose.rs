@@ -92,7 +92,9 @@ impl Chooser<'_> {
         let needed = needed(self.criteria.count);
         let mut reasons: Vec<Option<Reason>> =
             judged.iter().map(|j| (!j.accepted()).then(|| j.refused(needed))).collect();
-        let asked = Before { model: before, held: self.held.left_by(&before.fit) };
+        // they are asked about what may be taken only
+        let held = if judged.iter().any(Judged::may) { self.held.left_by(&before.fit) } else { Vec::new() };
+        let asked = Before { model: before, held };
         let contenders = self.contenders(&asked, &rivals, &judged);
         contenders.iter().for_each(|&i| reasons[i] = None);
         let is_shape = |i: usize| self.is_shape(&rivals[i]);

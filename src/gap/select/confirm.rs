@@ -47,13 +47,12 @@ pub struct Held<'a> {
 impl<'a> Held<'a> {
     /// Those on which the nominal model leaves so much.
     pub fn new(recordings: &'a [Recording], nominal: &Candidate, x: &[f64], sensors: &Sensors) -> Self {
-        let errors: Vec<Errors> = recordings.iter().map(|r| of(nominal, x, r)).collect();
-        Held { recordings, nominal: gap(&LeftOut::of(&errors), sensors) }
+        Held { recordings, nominal: gap(&LeftOut::of(&all(nominal, x, recordings)), sensors) }
     }
 
     /// What a model leaves of them.
     pub fn left_by(&self, fit: &Fit) -> Vec<Errors> {
-        self.recordings.iter().map(|r| of(&fit.candidate, &fit.x, r)).collect()
+        all(&fit.candidate, &fit.x, self.recordings)
     }
 
     /// What they say of a model against the one before, which leaves so much; `None` where there are none.
@@ -75,6 +74,10 @@ impl<'a> Held<'a> {
         let closes = (0..sensors.noise.len()).any(falls);
         Some(Asked { evidence, before: gap(&a, sensors), after: gap(&b, sensors), nominal: self.nominal, closes })
     }
+}
+
+fn all(candidate: &Candidate, x: &[f64], recordings: &[Recording]) -> Vec<Errors> {
+    recordings.iter().map(|r| of(candidate, x, r)).collect()
 }
 
 /// Errors on a recording that took no part; infinite where the simulation does not reach the end.
