@@ -12,16 +12,17 @@ FILES = ["train_1", "train_2", "train_3", "held_1", "held_2"]
 class Case:
     """Everything that is drawn for one case but the sizes of its effects."""
 
-    def __init__(self, rng, circuit):
+    def __init__(self, rng, circuit, visible=None):
         self.circuit = circuit
-        self.effects = library.draw(rng, circuit)
+        self.effects = library.draw(rng, circuit) if visible is None else [library.known(rng, circuit)]
         self.parameters = {k: v * math.exp(clipped(rng) * sigma) for k, (v, sigma) in circuit.known().items()}
         level = rng.choice([0.002, 0.005, 0.01])
         self.sigma = {s.name: s.range * level * rng.uniform(0.6, 1.5) for s in circuit.signals}
         self.quantum = {s: v * math.exp(rng.uniform(math.log(0.05), math.log(0.6))) for s, v in self.sigma.items()}
         self.tolerance = rng.choice([1e-7, 1e-8])
         self.closed = circuit.loop is not None and rng.random() < 0.6
-        self.aims = [math.exp(rng.uniform(math.log(1.5), math.log(25))) for _ in self.effects]
+        drawn = [math.exp(rng.uniform(math.log(1.5), math.log(25))) for _ in self.effects]
+        self.aims = drawn if visible is None else [visible]
         self.sizes = [e.size for e in self.effects]
         self.recordings = {f: Recording(rng, circuit, f, self) for f in FILES}
 

@@ -1,7 +1,10 @@
 #!/usr/bin/env python3
 """Makes blind cases: recordings with study and nominal model into OUT/data, the truth into OUT/truth.
 
-usage: generate.py BRAMAH OUT --seed S --cases N [--circuit NAME]
+usage: generate.py BRAMAH OUT --seed S --cases N [--circuit NAME] [--visible SIGMAS]
+
+With --visible each case has one effect of a library's kind that changes some signal by so many standard deviations of its
+noise, as far as the effect's limits allow.
 """
 
 import argparse
@@ -24,11 +27,11 @@ TRIES = 8
 ENOUGH = 30
 
 
-def make(binary, seed, index, circuit, out):
+def make(binary, seed, index, circuit, out, visible=None):
     """One case; a plant that does not run is drawn again, which the truth says."""
     troubles = []
     for attempt in range(TRIES):
-        case = Case(random.Random(f"{seed}/{index}/{circuit.name}/{attempt}"), circuit)
+        case = Case(random.Random(f"{seed}/{index}/{circuit.name}/{attempt}"), circuit, visible)
         with tempfile.TemporaryDirectory() as folder:
             bench = Bench(binary, folder, case)
             try:
@@ -94,11 +97,12 @@ def main():
     parser.add_argument("--seed", default="1")
     parser.add_argument("--cases", type=int, default=8)
     parser.add_argument("--circuit")
+    parser.add_argument("--visible", type=float, metavar="SIGMAS")
     options = parser.parse_args()
     offered = circuits(options.circuit)
     for index in range(options.cases):
         circuit = offered[index % len(offered)]
-        case, seen = make(options.binary, options.seed, index, circuit, options.out)
+        case, seen = make(options.binary, options.seed, index, circuit, options.out, options.visible)
         what = [f"{e.name} ({max(v['visible'].values()):.1f} sigma, {v['nats']:.0f} nats)" for e, v in zip(case.effects, seen)] or ["nothing"]
         if os.environ.get("BLIND_SHOW"):
             print(f"{index:03d}_{circuit.name}: {' and '.join(what)}", flush=True)
