@@ -106,7 +106,7 @@ fn is_structural(d: &Diagnostic) -> bool {
     matches!(d.code, Code::Singular | Code::NoReference | Code::Overdetermined)
 }
 
-/// The first level at which something is wrong: a cause in one component is told instead of its consequences.
+/// The first level at which something is wrong: a cause in one component is reported instead of its consequences.
 fn explained(flat: &FlatModel, found: Vec<Diagnostic>) -> Vec<Diagnostic> {
     let solvable = |changed: &FlatModel| structure::analyze(changed, &StateChoice::default()).value.is_some();
     let causes = flat::explain(flat, &solvable);

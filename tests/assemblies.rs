@@ -131,7 +131,7 @@ fn an_orifice_opens_at_once_behind_a_closed_compensator() {
     assert!((least..most).contains(&q), "{q} m3/s");
 }
 
-/// Of a loop that has no value where it begins, the operation is told that spoils it, not what reads it.
+/// Of a loop that has no value where it begins, the operation is reported that spoils it, not what reads it.
 #[test]
 fn what_is_not_finite_in_a_loop_is_told_where_it_is_made() {
     let simulation = circuit(
@@ -142,8 +142,8 @@ fn what_is_not_finite_in_a_loop_is_told_where_it_is_made() {
          q = sin(2/rho);
          x + 0.1*sin(x) = 3 + 0.1*q;",
     );
-    let told = simulation.run().expect_err("it divides by zero wherever it looks").to_string();
-    assert!(told.contains("2/rho") && told.contains("2/0"), "{told}");
+    let message = simulation.run().expect_err("it divides by zero wherever it looks").to_string();
+    assert!(message.contains("2/rho") && message.contains("2/0"), "{message}");
 }
 
 /// Oil that comes from a source and goes into another, with no pressure given anywhere.
@@ -156,9 +156,9 @@ fn oil_between_flow_sources_has_no_level() {
         "connect(into.port, between.port_a);
          connect(between.port_b, out_of.port);",
     );
-    let told = simulation.run().expect_err("no pressures fit").to_string();
-    assert!(told.contains("E302") && told.contains("{into, between, out_of}"), "{told}");
-    // a volume anywhere is a level: what else is wrong is told as before
+    let message = simulation.run().expect_err("no pressures fit").to_string();
+    assert!(message.contains("E302") && message.contains("{into, between, out_of}"), "{message}");
+    // a volume anywhere is a level: what else is wrong is reported as before
     let held = circuit(
         "inner Oil.ISOVG46 oil;
          Hydraulic.FlowSource into(q = 1e-4), out_of(q = -1e-4);
@@ -185,9 +185,9 @@ fn a_cavitating_chamber_is_told() {
          connect(cylinder.flange, pull.flange);",
     );
     let outcome = simulation.stop_time(0.1).run().expect("it runs on");
-    let told: Vec<String> = outcome.diagnostics.iter().map(|d| d.message.clone()).collect();
-    assert_eq!(told.len(), 1, "{told:?}");
-    assert!(told[0].starts_with("The oil cavitates"), "{told:?}");
+    let message: Vec<String> = outcome.diagnostics.iter().map(|d| d.message.clone()).collect();
+    assert_eq!(message.len(), 1, "{message:?}");
+    assert!(message[0].starts_with("The oil cavitates"), "{message:?}");
 }
 
 /// The load is lifted against the counterbalance valve's check, held by the brake, and let down no faster than the pilot

@@ -498,7 +498,7 @@ fn the_complete_bench_has_an_operating_point() {
     let mut simulation = shipped("ClosedCircuit.Bench");
     let t = run(simulation.stop_time(240.0));
     for name in ["n_p", "n_m", "p"] {
-        let line = said.lines().find_map(|l| l.trim().strip_prefix(&format!("{name} = "))).expect("told");
+        let line = said.lines().find_map(|l| l.trim().strip_prefix(&format!("{name} = "))).expect("reported");
         let value: f64 = line.split(' ').next().expect("a number").parse().expect("a number");
         near(value, last(&t, name), 1e-4);
     }

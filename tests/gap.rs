@@ -356,10 +356,10 @@ fn a_parameter_within_its_tolerance_is_no_finding() {
 fn shifted(world: &MemoryWorld, column: usize, samples: isize, seed: u64) -> String {
     let text = recording(world, ("rub.F", 0.0), seed);
     let mut rows: Vec<Vec<&str>> = text.lines().map(|l| l.split(',').collect()).collect();
-    let told: Vec<&str> = rows.iter().map(|r| r[column]).collect();
-    let last = told.len() - 1;
+    let measured: Vec<&str> = rows.iter().map(|r| r[column]).collect();
+    let last = measured.len() - 1;
     for (k, row) in rows.iter_mut().enumerate().skip(1) {
-        row[column] = told[k.saturating_add_signed(-samples).clamp(1, last)];
+        row[column] = measured[k.saturating_add_signed(-samples).clamp(1, last)];
     }
     rows.into_iter().map(|r| r.join(",") + "\n").collect()
 }

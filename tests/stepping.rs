@@ -24,7 +24,7 @@ fn lag() -> Simulation {
     Simulation::from_text(LAG).unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn course(k: u32) -> f64 {
+fn trajectory(k: u32) -> f64 {
     1.0 + (f64::from(k) * 0.05).sin()
 }
 
@@ -44,14 +44,14 @@ fn an_error_in_debug_is_its_messages() {
 fn steps_give_what_a_recorded_input_gives() {
     let mut whole = lag();
     let times: Vec<f64> = (0..500).map(|k| f64::from(k) * 1e-3).collect();
-    let values: Vec<f64> = (0..500).map(course).collect();
+    let values: Vec<f64> = (0..500).map(trajectory).collect();
     whole.input("u", &times, &values, Interpolation::Held).expect("an input").stop_time(0.5);
     let outcome = whole.run().expect("it runs");
     let stepped = lag();
     let mut run = stepped.stepping().expect("it starts");
     let (u, y, count) = (run.input("u").expect("u"), run.probe("y").expect("y"), run.probe("count").expect("count"));
     for k in 0..500 {
-        run.set(u, course(k));
+        run.set(u, trajectory(k));
         run.step_to(f64::from(k + 1) * 1e-3).expect("it steps");
     }
     let last = |name: &str| *outcome.trajectory.column(name).and_then(|c| c.last()).expect("a row");

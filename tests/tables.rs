@@ -1,10 +1,10 @@
-//! Tables that models read from files: the same as tables written in the model, and mistakes told at their place.
+//! Tables that models read from files: the same as tables written in the model, and mistakes reported at their place.
 
 use bramah::diag::render::{Format, render};
 use bramah::world::MemoryWorld;
 use bramah::{Request, Simulation, compile};
 
-/// A model whose table comes from `course.csv` beside it.
+/// A model whose table comes from `trajectory.csv` beside it.
 fn model(block: &str) -> String {
     format!("model M\n  {block}\n  Real x = t.y;\nend M;\n")
 }
@@ -103,7 +103,7 @@ fn a_smooth_map() {
     assert!((at("5", "2", ", hold = false") - (4.0 + 16.0 + 8.0)).abs() < 1e-9);
 }
 
-/// The course of the next two tests.
+/// The trajectory of the next two tests.
 const JUMPING: &str = "0.1,0\n0.2,1\n0.3,1\n0.3,-1\n0.5,0\n";
 
 fn jumping(t: f64) -> f64 {

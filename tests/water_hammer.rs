@@ -65,10 +65,10 @@ fn characteristics(n: usize) -> (f64, Vec<f64>) {
 }
 
 /// The value at a time between two steps.
-fn between(course: &(f64, Vec<f64>), time: f64) -> f64 {
-    let place = time / course.0;
-    let i = (place as usize).min(course.1.len() - 2);
-    course.1[i] + (place - i as f64) * (course.1[i + 1] - course.1[i])
+fn between(trajectory: &(f64, Vec<f64>), time: f64) -> f64 {
+    let place = time / trajectory.0;
+    let i = (place as usize).min(trajectory.1.len() - 2);
+    trajectory.1[i] + (place - i as f64) * (trajectory.1[i + 1] - trajectory.1[i])
 }
 
 /// Pressure at the valve from the component, at some times.
@@ -116,7 +116,7 @@ fn rms(a: &[f64], b: &[f64]) -> f64 {
 #[test]
 fn the_segmented_line_tends_to_the_characteristics_with_second_order() {
     let times = times();
-    let sample = |course: (f64, Vec<f64>)| times.iter().map(|&t| between(&course, t)).collect::<Vec<f64>>();
+    let sample = |trajectory: (f64, Vec<f64>)| times.iter().map(|&t| between(&trajectory, t)).collect::<Vec<f64>>();
     let (coarse, fine) = (sample(characteristics(2000)), sample(characteristics(8000)));
     let height = fine.iter().copied().fold(0.0, f64::max) - SOURCE;
     // the reference has converged, and the first wave is as deep as the line's impedance says, but for friction

@@ -34,7 +34,7 @@ class Recording:
         dt = circuit.step
         self.skip = rng.choice([0, int(rng.uniform(0, circuit.settle) / dt)])
         n = self.n = circuit.samples + self.skip
-        self.commands = {i.name: i.course(rng, n, dt, name) for i in circuit.inputs}
+        self.commands = {i.name: i.trajectory(rng, n, dt, name) for i in circuit.inputs}
         slow = circuit.samples * dt / 10
         self.disturbances = {
             d: shake.disturbance(rng, n, dt, node.through, slow)
@@ -42,7 +42,7 @@ class Recording:
         }
         if case.closed:
             loop = circuit.loop
-            self.reference = loop.course(rng, n, dt, name)
+            self.reference = loop.trajectory(rng, n, dt, name)
             self.noise = [rng.gauss(0, case.sigma[loop.signal]) for _ in range(n)]
         self.seed = rng.random()
 

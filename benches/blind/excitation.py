@@ -1,19 +1,19 @@
-"""Courses of commands: steps, triangles, chirps, staircases, sums of sines, rest."""
+"""Trajectories of commands: steps, triangles, chirps, staircases, sums of sines, rest."""
 
 import math
 
 
 def steps(rng, n, dt, dwell, low, high):
     """Random levels, each held for a random time around `dwell`."""
-    course, level = [], 0.5 * (low + high)
+    trajectory, level = [], 0.5 * (low + high)
     left = int(0.3 * dwell / dt)
     for _ in range(n):
         if left <= 0:
             level = rng.uniform(low, high)
             left = max(2, int(rng.expovariate(1) * dwell / dt) + int(0.3 * dwell / dt))
-        course.append(level)
+        trajectory.append(level)
         left -= 1
-    return course
+    return trajectory
 
 
 def triangle(rng, n, dt, period, low, high):
@@ -59,12 +59,12 @@ def sines(rng, n, dt, slowest, fastest, low, high):
 
 
 def mixed(low, high, dwell, slew=None, quiet=0.15):
-    """A course of changing kind: train and held recordings get different kinds.
+    """A trajectory of changing kind: train and held recordings get different kinds.
 
     `dwell` is the time that the circuit needs to follow; `slew` limits the rate; now and then a part rests (`quiet`).
     """
 
-    def course(rng, n, dt, role):
+    def trajectory(rng, n, dt, role):
         kinds = ["steps", "triangle", "chirp"] if role.startswith("train") else ["staircase", "sines"]
         kind = kinds[(int(role[-1]) - 1) % len(kinds)]
         if rng.random() < 0.2:
@@ -81,11 +81,11 @@ def mixed(low, high, dwell, slew=None, quiet=0.15):
             values[begin:] = [values[begin]] * (n - begin)
         return limited(values, dt, slew) if slew else values
 
-    return course
+    return trajectory
 
 
 def limited(values, dt, slew):
-    """The course with a limited rate."""
+    """The trajectory with a limited rate."""
     out = [values[0]]
     for v in values[1:]:
         out.append(out[-1] + min(max(v - out[-1], -slew * dt), slew * dt))
@@ -95,8 +95,8 @@ def limited(values, dt, slew):
 def level(low, high, wander=0.0):
     """A value that differs from recording to recording and wanders slowly by `wander`."""
 
-    def course(rng, n, dt, role):
+    def trajectory(rng, n, dt, role):
         start, end = rng.uniform(low, high), rng.uniform(-wander, wander)
         return [start + end * k / n for k in range(n)]
 
-    return course
+    return trajectory

@@ -42,7 +42,7 @@ def make(binary, seed, index, circuit, out, visible=None):
             except Failed as trouble:
                 troubles.append(dict(effects=[e.name for e in case.effects], why=str(trouble)))
                 continue
-            save(case, f"{index:03d}_{circuit.name}", out, recordings, told(case, seen, shaken, closing, troubles, seed), os.path.join(folder, "plant.mo"))
+            save(case, f"{index:03d}_{circuit.name}", out, recordings, truth_of(case, seen, shaken, closing, troubles, seed), os.path.join(folder, "plant.mo"))
             return case, seen
     raise SystemExit(f"case {index} ({circuit.name}): no plant runs: {troubles}")
 
@@ -70,7 +70,7 @@ def save(case, name, out, recordings, truth_told, plant):
         json.dump(truth_told, file, indent=1)
 
 
-def told(case, seen, shaken, closing, troubles, seed):
+def truth_of(case, seen, shaken, closing, troubles, seed):
     """The truth file."""
     parameters = dict(case.parameters)
     for e, size in zip(case.effects, case.sizes):

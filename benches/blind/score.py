@@ -89,7 +89,7 @@ def load(out):
         yield name, truth, json.load(open(path + ".json")) if good else None, log
 
 
-def told(truth):
+def described(truth):
     mark = lambda e: f"{e['name']} {max(e['visible'].values()):.1f}s {e['nats']:.0f}n{' small' if e['small'] else ''}"
     return " + ".join(mark(e) for e in truth["effects"]) or "nothing"
 
@@ -165,16 +165,16 @@ def main():
     print(f"{'case':20}{'truth':52}{'verdict':17}{'claimed':60}{'closed':>7}{'s':>7}")
     for name, truth, score, log in rows:
         if score is None:
-            print(f"{name:20}{told(truth):52}failed: {log.splitlines()[0]}")
+            print(f"{name:20}{described(truth):52}failed: {log.splitlines()[0]}")
             continue
         closed = "-" if score.closed is None else f"{score.closed:.2f}"
-        print(f"{name:20}{told(truth)[:51]:52}{score.verdict:17}{claimed(score)[:59]:60}{closed:>7}{score.seconds:>7.1f}")
+        print(f"{name:20}{described(truth)[:51]:52}{score.verdict:17}{claimed(score)[:59]:60}{closed:>7}{score.seconds:>7.1f}")
     table(rows)
     print("\nfailures:")
     for name, truth, score, log in rows:
         found = ["no verdict: " + " ".join(log.split()[:60])] if score is None else troubles(truth, score)
         if found:
-            print(f"  {name}: {told(truth)}: {'; '.join(found)}" + ("" if score is None else f" [{claimed(score)}]"))
+            print(f"  {name}: {described(truth)}: {'; '.join(found)}" + ("" if score is None else f" [{claimed(score)}]"))
     again = sum(len(t["redrawn"]) for _, t, _, _ in rows)
     if again:
         print(f"{again} plants did not run and were drawn again; OUT/truth says which")

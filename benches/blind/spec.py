@@ -7,11 +7,11 @@ from typing import Callable, Optional
 
 @dataclass
 class Input:
-    """A recorded command. `course(rng, n, dt, role)` gives its samples; `acts`: effects of commands may sit on it."""
+    """A recorded command. `trajectory(rng, n, dt, role)` gives its samples; `acts`: effects of commands may sit on it."""
 
     name: str
     unit: str
-    course: Callable
+    trajectory: Callable
     hold: bool = True
     acts: bool = True
 
@@ -100,7 +100,7 @@ class Loop:
     drives: str
     signal: str
     law: str  # of r (reference) and y (measured), Modelica
-    course: Callable
+    trajectory: Callable
 
 
 @dataclass

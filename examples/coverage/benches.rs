@@ -1,6 +1,6 @@
 //! The benches whose parameters are found again and again: what is run, how, and what is searched for.
 
-/// An input and its course, one value a sample; straight lines between samples unless it is held.
+/// An input and its trajectory, one value a sample; straight lines between samples unless it is held.
 pub struct Driven {
     /// Its name in the model.
     pub name: &'static str,

@@ -76,10 +76,10 @@ def clipped(rng):
 
 def steps(rng, n, low, high):
     """Random levels, each held for 1.5 to 5 s."""
-    course = []
-    while len(course) < n:
-        course += [rng.uniform(low, high)] * round(rng.uniform(1.5, 5) / STEP)
-    return course[:n]
+    trajectory = []
+    while len(trajectory) < n:
+        trajectory += [rng.uniform(low, high)] * round(rng.uniform(1.5, 5) / STEP)
+    return trajectory[:n]
 
 
 def sweep(rng, n, low, high):
@@ -97,16 +97,16 @@ def stairs(rng, n, low, high):
     return [stages[(turn + int(10 * k / n)) % len(stages)] for k in range(n)]
 
 
-def limited(course, slew):
-    """The course at a limited rate, as inverter and load accept it, rounded as it is recorded."""
-    out = [course[0]]
-    for v in course[1:]:
+def limited(trajectory, slew):
+    """The trajectory at a limited rate, as inverter and load accept it, rounded as it is recorded."""
+    out = [trajectory[0]]
+    for v in trajectory[1:]:
         out.append(out[-1] + min(max(v - out[-1], -slew * STEP), slew * STEP))
     return [float(f"{v:.5g}") for v in out]
 
 
-# The held recording has other courses than the train ones: a model that only copies them fails there.
-COURSES = {"train_1": (steps, steps), "train_2": (sweep, steps), "held_1": (stairs, sweep)}
+# The held recording has other trajectories than the train ones: a model that only copies them fails there.
+TRAJECTORIES = {"train_1": (steps, steps), "train_2": (sweep, steps), "held_1": (stairs, sweep)}
 
 
 def simulate(bramah, folder, commands, sets):
@@ -156,7 +156,7 @@ def main():
     n, skip = round((SETTLE + LENGTH) / STEP) + 1, round(SETTLE / STEP)
     with tempfile.TemporaryDirectory() as folder:
         Path(folder, "plant.mo").write_text(PLANT + (HERE / "Loop.mo").read_text())
-        for name, (drive, load) in COURSES.items():
+        for name, (drive, load) in TRAJECTORIES.items():
             commands = {
                 "f_ref": limited(drive(rng, n, 20, 40), 4), "u_load": limited(load(rng, n, 0.8, 3.8), 3),
             }

@@ -25,8 +25,8 @@ pub fn orders<S: AsRef<[f64]>>(series: &[S], most: usize, limit: f64) -> (f64, V
         if power.is_nan() || power <= 0.0 {
             break;
         }
-        let told: f64 = coefficients.iter().enumerate().map(|(i, a)| a * correlations[order - 1 - i]).sum();
-        let partial = ((correlations[order] - told) / power).clamp(-limit, limit);
+        let predicted: f64 = coefficients.iter().enumerate().map(|(i, a)| a * correlations[order - 1 - i]).sum();
+        let partial = ((correlations[order] - predicted) / power).clamp(-limit, limit);
         coefficients = longer(&coefficients, partial);
         power *= 1.0 - partial * partial;
         found.push(Order { partial, power });
@@ -49,7 +49,7 @@ mod tests {
         let series: Vec<f64> = (0..60).map(|k| 0.5_f64.powi(k)).collect();
         let (power, orders) = orders(&[series], 3, 1.0);
         assert!((orders[0].partial - 0.5).abs() < 1e-12, "{orders:?}");
-        // only its first value is not told by the one before
+        // only its first value has no value before it to predict it
         assert!((orders[0].power / power - 0.75).abs() < 1e-12, "{orders:?}");
         assert!(orders[1..].iter().all(|o| o.partial.abs() < 1e-9), "{orders:?}");
     }

@@ -1,4 +1,4 @@
-//! Trajectory sensitivities: how the course of variables moves with parameters and start values.
+//! Trajectory sensitivities: how trajectories of variables move with parameters and start values.
 //!
 //! By the equations' own derivatives, carried along in one run and right across events: this is checked against one
 //! difference in which all parameters move. Else by central differences of tight runs: the run itself finds the moved
@@ -14,7 +14,7 @@ use crate::structure::StateChoice;
 use rayon::prelude::*;
 use std::sync::atomic::AtomicBool;
 
-/// The course of variables and how it moves.
+/// The trajectory of variables and how it moves.
 #[derive(Clone, Debug)]
 pub struct Sensitivity {
     /// The plain run.

@@ -11,7 +11,7 @@ fn flat(text: &str) -> FlatModel {
     crate::flatten_text(text, None).value.expect("sound").flat
 }
 
-/// Times, and by direction (the plain run first) the courses of variables.
+/// Times, and by direction (the plain run first) the trajectories of variables.
 fn carried(text: &str, parameters: &[(&str, f64)], wanted: &[&str], stop: f64) -> (Vec<f64>, Vec<Vec<Vec<f64>>>) {
     let flat = flat(text);
     let moved: Vec<(VarId, f64)> = parameters.iter().map(|(n, size)| (id(&flat, n), *size)).collect();
@@ -69,7 +69,7 @@ fn a_jump_of_the_rate_at_an_event_that_moves() {
     }
 }
 
-/// A ball that bounces several times, with gravity, restitution and height moved, against its exact course.
+/// A ball that bounces several times, with gravity, restitution and height moved, against its exact trajectory.
 #[test]
 fn a_bouncing_ball() {
     let text = "model M parameter Real g = 9.81, e = 0.7, h0 = 1; Real h(start = h0, fixed = true), v(start = 0, fixed = true);

@@ -171,7 +171,7 @@ impl Simulation {
         Ok(values[system.layout.var(v)])
     }
 
-    /// Gives a top-level input its course: samples held, or joined by straight lines.
+    /// Gives a top-level input its trajectory: samples held, or joined by straight lines.
     ///
     /// # Errors
     /// `E903` when there is no such input, or when times do not grow or do not fit the values.

@@ -21,8 +21,8 @@ pub(super) fn result(path: &Path, time_column: Option<&str>, messages: &mut Mess
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
     if extension == "mat" {
         let bytes = std::fs::read(path).map_err(|e| access(path, "read", &e))?;
-        let told = |e| Diagnostic::new(Code::BadData, format!("`{}` cannot be used: {e}", path.display()));
-        return mat::read(&bytes).map_err(|e| told(e).into());
+        let unusable = |e| Diagnostic::new(Code::BadData, format!("`{}` cannot be used: {e}", path.display()));
+        return mat::read(&bytes).map_err(|e| unusable(e).into());
     }
     if extension == "parquet" {
         let text = format!("`{}` cannot be used: Parquet is written for other programs, and not read", path.display());

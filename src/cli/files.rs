@@ -235,9 +235,9 @@ mod tests {
     #[test]
     fn folders_and_missing_folders_are_told() {
         let folder = tempfile::tempdir().unwrap();
-        let told = |path: &Path| NewFile::create(path).unwrap_err().diagnostics.remove(0).message;
-        assert!(told(folder.path()).ends_with("it is a folder"));
-        assert!(told(&folder.path().join("no/out.csv")).ends_with("there is no such folder"));
+        let reported = |path: &Path| NewFile::create(path).unwrap_err().diagnostics.remove(0).message;
+        assert!(reported(folder.path()).ends_with("it is a folder"));
+        assert!(reported(&folder.path().join("no/out.csv")).ends_with("there is no such folder"));
         assert!(ready(&folder.path().join("no/out.csv")).is_err() && ready(&folder.path().join("out.csv")).is_ok());
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
     }

@@ -77,7 +77,7 @@ impl MethodArg {
 }
 
 pub(super) fn run(args: &IdentifyArgs, messages: &mut Messages) -> Result<Ending, Failure> {
-    // what cannot be written is told before the fit, which may take long
+    // what cannot be written is reported before the fit, which may take long
     files::ready_as(Path::new(&args.output), "a report", &["json"])?;
     args.plot.as_deref().map_or(Ok(()), plot::ready)?;
     let mut opened = open(&args.study, args.data.as_deref(), messages)?;

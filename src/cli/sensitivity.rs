@@ -19,7 +19,7 @@ use crate::plot::{Figure, Panel, Series};
 use crate::results::{CsvWriter, Globs, Signal, number};
 use crate::solve::Settings;
 
-/// How the course of variables moves with parameters
+/// How trajectories of variables move with parameters
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Each number belongs to a relative change: the variable's change over the parameter's, times the parameter's own size. The
@@ -43,7 +43,7 @@ pub(super) struct SensitivityArgs {
     /// Seconds, or a time with a unit
     #[arg(long, value_name = "TIME", value_parser = seconds, allow_hyphen_values = true)]
     stop_time: Option<f64>,
-    /// Where to write the courses, one column a variable and parameter: CSV, `-` for stdout
+    /// Where to write the trajectories, one column a variable and parameter: CSV, `-` for stdout
     #[arg(short, long, value_name = "CSV")]
     output_file: Option<PathBuf>,
     /// A picture of the strongest: .svg, .png or .html

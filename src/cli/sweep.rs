@@ -282,7 +282,7 @@ fn sobol_words(sweep: &Sweep, plan: &Plan, table: &Table) -> String {
     for (r, (name, _)) in plan.results.iter().enumerate() {
         out += &format!("{name}: share of the variance, alone and in all, with the 95 % confidence\n");
         match indices(&table.column(d + r), d, sweep.seed) {
-            None => out += "  not told: it does not vary, or too few runs succeeded\n",
+            None => out += "  not known: it does not vary, or too few runs succeeded\n",
             Some(found) => {
                 for (v, i) in plan.varied.iter().zip(found) {
                     let shown = |x: f64| number::rounded(x, 3);

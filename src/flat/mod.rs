@@ -36,7 +36,7 @@ pub struct FlatModel {
     pub asserts: Vec<Assert>,
     /// Component instances, parents before children; entry 0 is the model itself with an empty name.
     pub instances: Vec<InstanceInfo>,
-    /// What seems wrong with signals or with the balance of single components: told when the equations turn out not to
+    /// What seems wrong with signals or with the balance of single components: reported when the equations turn out not to
     /// determine the unknowns.
     pub doubts: Vec<Diagnostic>,
     /// Enumeration types: full name and literals.

@@ -18,11 +18,11 @@ pub(super) fn uneven(
     census: &Census,
     scopes: &[ScopeId],
 ) -> Vec<Diagnostic> {
-    let mut told: FxHashSet<&str> = FxHashSet::default();
+    let mut reported: FxHashSet<&str> = FxHashSet::default();
     let mut found = Vec::new();
     for &(port, difference) in &census.uneven {
         let info = &flat.instances[port as usize];
-        if !told.insert(&info.class) {
+        if !reported.insert(&info.class) {
             continue;
         }
         let class = instance.scope(scopes[port as usize]).template.class;
@@ -175,7 +175,7 @@ impl<'s> Signals<'s> {
     /// Inputs of components that get no value.
     fn without_source(&self) -> Vec<Diagnostic> {
         let mut found = Vec::new();
-        let mut told: FxHashSet<(u32, u32)> = FxHashSet::default();
+        let mut reported: FxHashSet<(u32, u32)> = FxHashSet::default();
         for (i, role) in (0u32..).zip(&self.census.role) {
             let v = VarId(i);
             let holder = self.census.holder[v.index()];
@@ -191,7 +191,7 @@ impl<'s> Signals<'s> {
                         || self.census.bound.contains(m)
                         || self.census.role[m.index()] == Role::Own
                 });
-                if fed || !told.insert(*group) {
+                if fed || !reported.insert(*group) {
                     continue;
                 }
             }

@@ -1,6 +1,6 @@
 //! Before measuring: which effects a planned experiment would show at their usual size, which it could not tell apart, and
 //! which further sensor or other excitation would. The nominal model is driven by the planned inputs, and the slopes of its
-//! signals with all hypotheses are weighed by the sensors' noise and accuracy; how much of one effect's course another one's
+//! signals with all hypotheses are weighed by the sensors' noise and accuracy; how much of one effect's trajectory another one's
 //! could take over follows from their products.
 
 use super::data::Recording;
@@ -95,9 +95,9 @@ pub fn plan(problem: &mut Problem<'_>, progress: &mut dyn FnMut(&str)) -> Option
     };
     let measured = problem.train.clone();
     let mut excitations = Vec::new();
-    for (name, course) in EXCITATIONS {
+    for (name, trajectory) in EXCITATIONS {
         progress(name);
-        if excite(problem, &measured[0], course).is_some()
+        if excite(problem, &measured[0], trajectory).is_some()
             && let Some(products) = Products::new(problem)
         {
             excitations.push(change(name.to_string(), &products));
@@ -269,10 +269,10 @@ fn without_tolerances(gram: &DMatrix<f64>, count: usize) -> Option<DMatrix<f64>>
     Some(gram - cross.tr_mul(&solved))
 }
 
-/// A course over the time from 0 to 1, with values from 0 to 1.
-type Course = fn(f64) -> f64;
+/// A trajectory over the time from 0 to 1, with values from 0 to 1.
+type Trajectory = fn(f64) -> f64;
 
-const EXCITATIONS: [(&str, Course); 5] =
+const EXCITATIONS: [(&str, Trajectory); 5] =
     [("steps", steps), ("slow triangle", triangle), ("chirp", chirp), ("staircase", staircase), ("hold", |_| 0.75)];
 
 /// Levels in an order that makes steps of all sizes.
@@ -295,14 +295,14 @@ fn staircase(t: f64) -> f64 {
     (triangle(t) * LEVELS as f64).floor() / LEVELS as f64
 }
 
-/// Drives the inputs that the plan moves with another course over the same range, alone.
-fn excite(problem: &mut Problem<'_>, planned: &Recording, course: Course) -> Option<()> {
+/// Drives the inputs that the plan moves with another trajectory over the same range, alone.
+fn excite(problem: &mut Problem<'_>, planned: &Recording, trajectory: Trajectory) -> Option<()> {
     let (t0, count) = (planned.times[0], planned.len());
     let span = planned.times[count - 1] - t0;
     let drive = |samples: &Arc<[f64]>| -> Arc<[f64]> {
         let (low, high) = ends(samples);
         if high > low {
-            planned.times.iter().map(|t| low + (high - low) * course((t - t0) / span)).collect()
+            planned.times.iter().map(|t| low + (high - low) * trajectory((t - t0) / span)).collect()
         } else {
             samples.clone()
         }
@@ -335,13 +335,13 @@ fn further(problem: &Problem<'_>) -> Vec<Signal> {
     }
     let values = problem.observe(&found).unwrap_or_default();
     let mut moving: Vec<Signal> = Vec::new();
-    let mut courses: Vec<Vec<f64>> = problem.observe(&problem.signals).unwrap_or_default();
-    for (signal, course) in found.into_iter().zip(values) {
-        let (low, high) = ends(&course);
-        let alike = |other: &Vec<f64>| other.iter().zip(&course).all(|(a, b)| (a - b).abs() <= 1e-6 * (high - low));
-        if high > low && !courses.iter().any(alike) {
+    let mut trajectories: Vec<Vec<f64>> = problem.observe(&problem.signals).unwrap_or_default();
+    for (signal, trajectory) in found.into_iter().zip(values) {
+        let (low, high) = ends(&trajectory);
+        let alike = |other: &Vec<f64>| other.iter().zip(&trajectory).all(|(a, b)| (a - b).abs() <= 1e-6 * (high - low));
+        if high > low && !trajectories.iter().any(alike) {
             moving.push(Signal { scale: high - low, ..signal });
-            courses.push(course);
+            trajectories.push(trajectory);
         }
     }
     moving.truncate(SENSORS);

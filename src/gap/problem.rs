@@ -232,13 +232,13 @@ impl Problem<'_> {
             .enumerate()
             .map(|(i, name)| Signal { name: format!("state_{i}"), variable: name.to_string(), scale: 1.0 })
             .collect();
-        let courses = self.observe(&signals).unwrap_or_default();
-        let travel = |course: &Vec<f64>| {
+        let trajectories = self.observe(&signals).unwrap_or_default();
+        let travel = |trajectory: &Vec<f64>| {
             let (least, most) =
-                course.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, m), v| (l.min(*v), m.max(*v)));
+                trajectory.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, m), v| (l.min(*v), m.max(*v)));
             most - least
         };
-        self.travel = signals.into_iter().map(|s| s.variable).zip(courses.iter().map(travel)).collect();
+        self.travel = signals.into_iter().map(|s| s.variable).zip(trajectories.iter().map(travel)).collect();
     }
 
     /// The flat model of an augmented text.

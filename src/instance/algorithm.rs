@@ -461,7 +461,7 @@ impl<'a> Instance<'a, '_> {
         done
     }
 
-    /// A loop; in a section of a model one whose course is not known becomes a procedure.
+    /// A loop; in a section of a model one whose trajectory is not known becomes a procedure.
     fn loop_statement(&mut self, s: &'a Statement, view: View) -> Option<Flow> {
         let before = self.eval.locals.clone();
         let marks = (self.diagnostics.len(), self.eval.calls.len(), self.eval.whens.len());

@@ -308,8 +308,8 @@ impl<'a> Instance<'a, '_> {
             }
             let class = self.library.full_name(template.class);
             let names: Vec<Symbol> = template.elements.iter().filter(|e| !e.protected).map(|e| e.name).collect();
-            let told = self.diagnostics.iter().any(|d| d.labels.first().is_some_and(|l| l.span == name.span));
-            if !told {
+            let reported = self.diagnostics.iter().any(|d| d.labels.first().is_some_and(|l| l.span == name.span));
+            if !reported {
                 self.unknown_modifier(name, &class, &names);
             }
         }

@@ -283,15 +283,15 @@ impl<'a> Instance<'a, '_> {
         Some(())
     }
 
-    /// A number given to an input must lie within the bounds of its declaration; told once however often it is called.
+    /// A number given to an input must lie within the bounds of its declaration; reported once however often it is called.
     fn check_bounds(&mut self, callee: &Callee<'a>, f: &Formal<'a>, value: &Val, span: Span) {
         let Some(x) = value.as_number(&self.exprs) else { return };
-        let told = match (declared_number(f.component, "min"), declared_number(f.component, "max")) {
+        let bound = match (declared_number(f.component, "min"), declared_number(f.component, "max")) {
             (Some(low), _) if x < low => format!("less than its `min`, {low}"),
             (_, Some(high)) if x > high => format!("more than its `max`, {high}"),
             _ => return,
         };
-        let message = format!("the input `{}` of `{}` is {x}, {told}", f.name, callee.name);
+        let message = format!("the input `{}` of `{}` is {x}, {bound}", f.name, callee.name);
         if self.diagnostics.iter().all(|d| d.message != message) {
             self.report(
                 Diagnostic::new(Code::OutOfRange, message)
@@ -467,7 +467,7 @@ impl<'a> Instance<'a, '_> {
         match wrong {
             None => self.functions_checked.insert(class),
             Some(d) => {
-                if self.diagnostics.iter().all(|told| told.message != d.message) {
+                if self.diagnostics.iter().all(|other| other.message != d.message) {
                     self.report(d);
                 }
                 false

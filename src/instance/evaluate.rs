@@ -254,7 +254,7 @@ impl<'a> Instance<'a, '_> {
         Some(value)
     }
 
-    /// A value for an array of another size, told once for all its elements.
+    /// A value for an array of another size, reported once for all its elements.
     fn wrong_count(&mut self, wanted: u32, value: &Val, span: Span) {
         let message = format!("an array of {wanted} elements is needed here, and this is {}", value.describe());
         if self.diagnostics.iter().any(|d| d.message == message && d.labels.first().is_some_and(|l| l.span == span)) {

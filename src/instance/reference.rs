@@ -645,8 +645,8 @@ impl<'a> Instance<'a, '_> {
         }
         let value = self.binding_value(&b, true)?;
         let text = value.as_text(&self.exprs);
-        let told = |d: &Diagnostic| d.labels.first().is_some_and(|l| l.span == b.expr.span);
-        if text.is_none() && !self.diagnostics.iter().any(told) {
+        let reported = |d: &Diagnostic| d.labels.first().is_some_and(|l| l.span == b.expr.span);
+        if text.is_none() && !self.diagnostics.iter().any(reported) {
             let name = self.variables[i as usize].name.clone();
             let message = format!("`{attribute}` of `{name}` is a String and cannot take {}", value.describe());
             let d = Diagnostic::new(Code::TypeMismatch, message).at(b.expr.span, "the value").instance(name);

@@ -194,7 +194,7 @@ impl<'a> Instance<'a, '_> {
             return base;
         }
         self.gathered += 1;
-        // told once, and then not tried to its end again
+        // reported once, and then not tried to its end again
         let most = if self.tangled { DEEPEST } else { MOST_BASES };
         if self.gathered > most {
             if !self.tangled {

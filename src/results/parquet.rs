@@ -78,7 +78,7 @@ mod writer {
         /// # Errors
         /// What `out` reports.
         pub fn finish(mut self) -> io::Result<()> {
-            self.file.finish().map_err(told)?;
+            self.file.finish().map_err(reported)?;
             self.file.inner_mut().flush()
         }
     }
@@ -101,12 +101,13 @@ mod writer {
         };
         let mut file = begin(out, &columns.iter().map(head).collect::<Vec<_>>())?;
         write_group(&mut file, columns.iter().map(|(_, values)| values.clone()))?;
-        file.finish().map(|_| ()).map_err(told)
+        file.finish().map(|_| ()).map_err(reported)
     }
 
     fn begin<W: Write + Send>(out: W, heads: &[Head]) -> io::Result<SerializedFileWriter<W>> {
         let fields: Result<Vec<_>, ParquetError> = heads.iter().map(|h| field(h).map(Arc::new)).collect();
-        let root = Type::group_type_builder("schema").with_fields(fields.map_err(told)?).build().map_err(told)?;
+        let root =
+            Type::group_type_builder("schema").with_fields(fields.map_err(reported)?).build().map_err(reported)?;
         let units: serde_json::Map<String, serde_json::Value> =
             heads.iter().filter(|h| !h.unit.is_empty()).map(|h| (h.name.clone(), h.unit.clone().into())).collect();
         let units = KeyValue::new("units".to_owned(), serde_json::Value::Object(units).to_string());
@@ -118,7 +119,7 @@ mod writer {
         for head in heads.iter().filter(|h| h.kind == Physical::BYTE_ARRAY) {
             properties = properties.set_column_dictionary_enabled(ColumnPath::new(vec![head.name.clone()]), true);
         }
-        SerializedFileWriter::new(out, Arc::new(root), Arc::new(properties.build())).map_err(told)
+        SerializedFileWriter::new(out, Arc::new(root), Arc::new(properties.build())).map_err(reported)
     }
 
     /// A column of the schema; only numbers are always there.
@@ -134,13 +135,13 @@ mod writer {
         file: &mut SerializedFileWriter<W>,
         columns: impl Iterator<Item = Values<'a>>,
     ) -> io::Result<()> {
-        let mut group = file.next_row_group().map_err(told)?;
+        let mut group = file.next_row_group().map_err(reported)?;
         for values in columns {
-            let mut column = group.next_column().map_err(told)?.expect("as many columns as in the schema");
-            write_column(&mut column, values).map_err(told)?;
-            column.close().map_err(told)?;
+            let mut column = group.next_column().map_err(reported)?.expect("as many columns as in the schema");
+            write_column(&mut column, values).map_err(reported)?;
+            column.close().map_err(reported)?;
         }
-        group.close().map(|_| ()).map_err(told)
+        group.close().map(|_| ()).map_err(reported)
     }
 
     fn write_column(column: &mut SerializedColumnWriter<'_>, values: Values<'_>) -> Result<(), ParquetError> {
@@ -190,8 +191,8 @@ mod writer {
         }
     }
 
-    /// What the system said stays what it said: a full disk is told as such.
-    fn told(error: ParquetError) -> io::Error {
+    /// What the system said stays what it said: a full disk is reported as such.
+    fn reported(error: ParquetError) -> io::Error {
         match error {
             ParquetError::External(inner) => match inner.downcast::<io::Error>() {
                 Ok(error) => *error,

@@ -1,6 +1,6 @@
 //! Algebraic unknowns: how closely they are watched, and their values where no step ends.
 //!
-//! What IDA's error test measures of an algebraic unknown is not its error. Predicted is the course of its old values,
+//! What IDA's error test measures of an algebraic unknown is not its error. Predicted is the trajectory of its old values,
 //! which already hold the errors of the states behind them; at order one and with steps of equal length these cancel,
 //! after any change of the step they do not, and the integrator is caught at tiny steps. The error of an algebraic
 //! unknown is that of the states times its sensitivity to them, as if it were eliminated. So the test holds it loosely,

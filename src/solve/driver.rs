@@ -13,7 +13,7 @@ use super::ida::{Failure, Ida, Tolerances};
 use super::linear::Lu;
 use super::model::Model;
 use super::modes::{Modes, RootFunctions, follows_time};
-use super::monitor::{Chatter, Told};
+use super::monitor::{Chatter, Reported};
 use super::newton::Scales;
 use super::output::Grid;
 use super::past::{Delays, Past};
@@ -140,7 +140,7 @@ pub struct Driver<'a, 'c> {
     last_step: f64,
     algebraic: Algebraic,
     chatter: Chatter,
-    told: Told,
+    reported: Reported,
     /// Inputs that change at the next event, as slots and values.
     pending: Vec<(usize, f64)>,
     t: f64,
@@ -265,7 +265,7 @@ fn prepare<'a, 'c>(
         renewed: f64::NEG_INFINITY,
         renewals: 0,
         chatter: Chatter::new(settings.stop_time - settings.start_time, settings.events_at_once),
-        told: Told::new(system),
+        reported: Reported::new(system),
         pending: Vec::new(),
         t: start,
         until: settings.stop_time,
@@ -367,8 +367,11 @@ impl<'a> Driver<'a, '_> {
         self.clocks = Clocks::new(system, &model.values, self.t).map_err(|i| {
             let sample = &system.dae.samples[i];
             let text = "the interval of `sample` is not positive";
-            let told = report::at_origin(&system.dae, Code::EventFailed, text, sample.origin, "here");
-            Stop::new(End::StepTooSmall, told.help("give the parameters of the interval positive values, in seconds"))
+            let reported = report::at_origin(&system.dae, Code::EventFailed, text, sample.origin, "here");
+            Stop::new(
+                End::StepTooSmall,
+                reported.help("give the parameters of the interval positive values, in seconds"),
+            )
         })?;
         if resumed {
             self.clocks.skip(self.t);

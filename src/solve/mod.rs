@@ -92,8 +92,8 @@ pub fn simulate(
 ) -> Run {
     let first = settings.checkpoint(1);
     let leg = driver::run(system, settings, inputs, from.map(driver::From::State), first, sink, control);
-    let course = Course { system, settings, inputs, states: States::default(), number: 0 };
-    course.complete(leg, sink, control)
+    let trajectory = Trajectory { system, settings, inputs, states: States::default(), number: 0 };
+    trajectory.complete(leg, sink, control)
 }
 
 /// Goes on from a checkpoint of a run of the same system with the same settings and inputs. The rows are, bit for bit,
@@ -106,18 +106,18 @@ pub fn resume(
     sink: &mut dyn Sink,
     control: &mut Control<'_>,
 ) -> Run {
-    let mut course = Course { system, settings, inputs, states: States::default(), number: from.number };
+    let mut trajectory = Trajectory { system, settings, inputs, states: States::default(), number: from.number };
     if from.settled {
         control.reselect = None;
     }
     if let Some(choice) = &from.choice {
-        course.states.choose(choice, control);
+        trajectory.states.choose(choice, control);
     }
     let grid = output::Grid::after(settings.start_time, settings.stop_time, settings.interval, from.rows)
         .with_event_rows(settings.most_event_rows);
-    let mut leg = course.leg(driver::From::Switch(&from.state, grid), sink, control);
+    let mut leg = trajectory.leg(driver::From::Switch(&from.state, grid), sink, control);
     leg.run.statistics.add(&from.statistics);
-    course.complete(leg, sink, control)
+    trajectory.complete(leg, sink, control)
 }
 
 /// The states chosen so far, with the systems made for them.
@@ -144,7 +144,7 @@ impl States {
 }
 
 /// A run in parts: each ends at a checkpoint, or where other states are needed.
-struct Course<'a> {
+struct Trajectory<'a> {
     system: &'a System,
     settings: &'a Settings,
     inputs: &'a [Input],
@@ -153,7 +153,7 @@ struct Course<'a> {
     number: u64,
 }
 
-impl Course<'_> {
+impl Trajectory<'_> {
     fn leg(&self, from: driver::From<'_>, sink: &mut dyn Sink, control: &mut Control<'_>) -> driver::Leg {
         let system = self.states.present.as_ref().map_or(self.system, |(_, system)| system);
         let until = self.settings.checkpoint(self.number + 1);

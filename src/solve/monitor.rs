@@ -68,25 +68,25 @@ impl Chatter {
     }
 }
 
-/// Which assertions have been told already.
+/// Which assertions have been reported already.
 #[derive(Debug, Default)]
-pub struct Told {
+pub struct Reported {
     asserts: Vec<bool>,
     actions: Vec<bool>,
 }
 
-impl Told {
-    /// None told yet.
+impl Reported {
+    /// None reported yet.
     pub fn new(system: &System) -> Self {
-        Told { asserts: vec![false; system.dae.asserts.len()], actions: vec![false; system.dae.actions.len()] }
+        Reported { asserts: vec![false; system.dae.asserts.len()], actions: vec![false; system.dae.actions.len()] }
     }
 
-    /// True the first time an `assert` outside `when` is told.
+    /// True the first time an `assert` outside `when` is reported.
     pub fn first(&mut self, assert: usize) -> bool {
         !std::mem::replace(&mut self.asserts[assert], true)
     }
 
-    /// True the first time an action's `assert` is told.
+    /// True the first time an action's `assert` is reported.
     pub fn first_action(&mut self, action: usize) -> bool {
         !std::mem::replace(&mut self.actions[action], true)
     }

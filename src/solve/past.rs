@@ -1,6 +1,6 @@
-//! The past that `delay` reads: the course of every delayed expression, recorded while the run goes on.
+//! The past that `delay` reads: the trajectory of every delayed expression, recorded while the run goes on.
 //!
-//! To the equations a delayed value is an input. No step is longer than the shortest delay, so its course is known
+//! To the equations a delayed value is an input. No step is longer than the shortest delay, so its trajectory is known
 //! wherever a step leads. Where a delayed expression jumps or bends at an event, the input does so one delay later: a
 //! jump is an event then, a bend a time that no step passes. In a retarded equation each passage makes a bend smoother
 //! by one derivative, and from the order of the integrator on it is none. Source: C. T. H. Baker, C. A. H. Paul,
@@ -172,8 +172,8 @@ impl Delays {
 
     /// What came to be between two times, at [`points`].
     pub fn remember(&mut self, from: f64, to: f64, rows: &[Vec<f64>]) {
-        let course = |k: usize| std::array::from_fn(|i| rows[i][k]);
-        let values: Vec<[f64; POINTS]> = (0..self.tracks.len()).map(course).collect();
+        let trajectory = |k: usize| std::array::from_fn(|i| rows[i][k]);
+        let values: Vec<[f64; POINTS]> = (0..self.tracks.len()).map(trajectory).collect();
         for (track, values) in self.tracks.iter_mut().zip(&values) {
             track.size = values.iter().fold(track.size, |size, v| size.max(v.abs()));
         }
@@ -278,12 +278,12 @@ impl Past {
             let jumps = (0..delays).map(|_| rest.next().map(|j| j != 0.0)).collect::<Option<_>>()?;
             let mut piece = || {
                 let (from, to) = (rest.next()?, rest.next()?);
-                let mut course = || {
+                let mut trajectory = || {
                     let mut values = [0.0; POINTS];
                     values.iter_mut().try_for_each(|v| rest.next().map(|n| *v = n))?;
                     Some(values)
                 };
-                let values = (0..delays).map(|_| course()).collect::<Option<_>>()?;
+                let values = (0..delays).map(|_| trajectory()).collect::<Option<_>>()?;
                 Some(Piece { from, to, values })
             };
             let pieces: VecDeque<Piece> = (0..count as usize).map(|_| piece()).collect::<Option<_>>()?;

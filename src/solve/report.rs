@@ -162,8 +162,8 @@ fn equation_diagnostic(dae: &Dae, code: Code, text: String, equation: u32) -> Di
 
 fn loop_failure(system: &System, code: Code, failure: &NewtonFailure, values: &[f64], when: &str) -> Diagnostic {
     let equation = failure.residuals.first().map(|r| r.0).or_else(|| failure.non_finite.first().copied());
-    if let Some(told) = equation.and_then(|e| no_pressure_level(&system.dae, loop_of(&system.dae, e)?)) {
-        return told;
+    if let Some(reported) = equation.and_then(|e| no_pressure_level(&system.dae, loop_of(&system.dae, e)?)) {
+        return reported;
     }
     if let (Reason::NonFinite, Some(&equation)) = (&failure.reason, failure.non_finite.first())
         && let Some(trap) = trap_in_loop(system, equation, values)

@@ -187,8 +187,8 @@ impl Restart {
             g
         };
         let times: Vec<f64> = (0..=HALVINGS).map(|k| 4.0 * h * 0.5_f64.powi(k)).collect();
-        let courses: Vec<Vec<f64>> = std::iter::once(0.0).chain(times.iter().copied()).map(at).collect();
-        let turns = (0..count).filter_map(|i| turn(courses[0][i], |k| courses.get(k + 1).map(|g| g[i])));
+        let trajectories: Vec<Vec<f64>> = std::iter::once(0.0).chain(times.iter().copied()).map(at).collect();
+        let turns = (0..count).filter_map(|i| turn(trajectories[0][i], |k| trajectories.get(k + 1).map(|g| g[i])));
         turns.max().map_or(h, |k| 0.25 * times[k])
     }
 

@@ -1,4 +1,4 @@
-//! Assertions about parameters alone: told before the model is run, for no run can make them hold.
+//! Assertions about parameters alone: reported before the model is run, for no run can make them hold.
 
 use super::draft::Draft;
 use super::parameters::Known;

@@ -120,11 +120,11 @@ pub(super) fn initially_contradicting(draft: &Draft, extra: &Equation, group: &[
     let others: Vec<Equation> = conditions.iter().filter(|e| *e != extra).copied().collect();
     let made = with_equations(draft, made.at(extra.origin.span, "this one is too much"), &others);
     let (have, want) = (counted(conditions.len(), "condition"), conditions.len().max(1) - 1);
-    let told = match want {
+    let note = match want {
         0 => format!("there is {have} where none can hold"),
         _ => format!("there are {have} where {want} can hold"),
     };
-    made.note(told).help("remove one of these conditions, for instance by `fixed = false`")
+    made.note(note).help("remove one of these conditions, for instance by `fixed = false`")
 }
 
 fn is_condition(draft: &Draft, equation: &Equation) -> bool {
@@ -178,13 +178,13 @@ pub(super) fn closed_group(draft: &Draft, aliases: &[Alias], flows: &[VarId]) ->
     let (level, advice) = kind_of_level(draft, &levels);
     let message = format!("nothing fixes the {level} of {{{}}}", listed(&components));
     let mut made = Diagnostic::new(Code::NoReference, message);
-    let mut told: Vec<u32> = Vec::new();
+    let mut reported: Vec<u32> = Vec::new();
     for v in &levels {
         let owner = draft.instances[variable(v).origin.instance as usize].parent;
-        if !told.contains(&owner) && told.len() < MOST_ITEMS {
+        if !reported.contains(&owner) && reported.len() < MOST_ITEMS {
             let text = format!("only differences of `{}` to others matter", variable(v).name);
             made = made.at(places::own_place(draft, *v), text);
-            told.push(owner);
+            reported.push(owner);
         }
     }
     made.note(

@@ -189,7 +189,7 @@ pub struct Sample {
     pub origin: flat::Origin,
 }
 
-/// A `delay(source, time)`: to the equations an input, whose course the run itself records.
+/// A `delay(source, time)`: to the equations an input, whose trajectory the run itself records.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Delay {
     /// The input that stands for it in all equations. At the start it is the source itself.

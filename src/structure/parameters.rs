@@ -97,11 +97,11 @@ pub(super) fn values(draft: &Draft, order: &[VarId]) -> Vec<f64> {
     values
 }
 
-/// Parameters whose value is no number (E217) or lies outside their range (E215); a value that is only passed on is told
+/// Parameters whose value is no number (E217) or lies outside their range (E215); a value that is only passed on is reported
 /// where it comes from.
 pub(super) fn check(draft: &Draft, order: &[VarId], values: &[f64]) -> Vec<Diagnostic> {
     let mut wrong = vec![false; draft.variables.len()];
-    let mut told = Vec::new();
+    let mut reported = Vec::new();
     for &v in order {
         let source = draft.variables[v.index()].binding.map(|b| draft.exprs.node(b));
         if let Some(Node::Var(u)) = source
@@ -110,10 +110,10 @@ pub(super) fn check(draft: &Draft, order: &[VarId], values: &[f64]) -> Vec<Diagn
             wrong[v.index()] = true;
         } else if let Some(diagnostic) = check_one(draft, v, values) {
             wrong[v.index()] = true;
-            told.push(diagnostic);
+            reported.push(diagnostic);
         }
     }
-    told
+    reported
 }
 
 fn check_one(draft: &Draft, v: VarId, values: &[f64]) -> Option<Diagnostic> {
@@ -151,13 +151,13 @@ fn check_one(draft: &Draft, v: VarId, values: &[f64]) -> Option<Diagnostic> {
     }
     let bound = |e: Option<ExprId>| e.and_then(known);
     let (low, high) = (bound(variable.min), bound(variable.max));
-    let told = match (low, high) {
+    let bound = match (low, high) {
         (Some(low), _) if value < low => format!("less than its `min`, {low}"),
         (_, Some(high)) if value > high => format!("more than its `max`, {high}"),
         _ => return None,
     };
     let unit = variable.unit.as_deref().filter(|u| *u != "1").map(|u| format!(" {u}")).unwrap_or_default();
-    let message = format!("`{}` is {value}{unit}, {told}{unit}", variable.name);
+    let message = format!("`{}` is {value}{unit}, {bound}{unit}", variable.name);
     let mut made = Diagnostic::new(Code::OutOfRange, message);
     let holder = &draft.instances[variable.origin.instance as usize];
     if variable.origin.instance != 0 {

@@ -178,7 +178,7 @@ fn an_input_that_steps_is_not_joined_by_straight_lines() {
         load(&world).1
     };
     assert!(said(stepping).contains("W608") && said(stepping).contains("`u` jumps 4 times"), "{}", said(stepping));
-    // a course that climbs from sample to sample
+    // a trajectory that climbs from sample to sample
     assert_eq!(said(&stepping.replace("0.1,1", "0.1,1.5").replace("0.5,1", "0.5,1.5")), "");
 }
 
@@ -200,7 +200,7 @@ fn an_input_that_stands_still_in_all_recordings_is_told() {
         load(&world).1
     };
     let (still, moving) = ("t_s,q,level\n0,1,2\n1,1,3\n2,1,3\n3,1,2\n", "t_s,q,level\n0,1,2\n1,2,3\n2,3,3\n3,1,2\n");
-    let told = said(still, still);
-    assert!(told.contains("W605") && told.contains("`q` never changes"), "{told}");
+    let reported = said(still, still);
+    assert!(reported.contains("W605") && reported.contains("`q` never changes"), "{reported}");
     assert!(!said(still, moving).contains("W605"), "{}", said(still, moving));
 }

@@ -119,9 +119,9 @@ impl<'a> Colour<'a> {
         (0..n).for_each(|j| information[(j, j)] += small);
         let Some(factor) = information.cholesky() else { return f64::INFINITY };
         let slope = squares.view((0, n), (n, 1)).into_owned();
-        let told = factor.l().solve_lower_triangular(&slope).map_or(0.0, |v| v.norm_squared());
+        let explained = factor.l().solve_lower_triangular(&slope).map_or(0.0, |v| v.norm_squared());
         let volume = 2.0 * factor.l_dirty().diagonal().map(f64::ln).sum();
-        0.5 * (size + squares[(n, n)] - told + volume)
+        0.5 * (size + squares[(n, n)] - explained + volume)
     }
 
     /// The likeliest models.
@@ -279,8 +279,8 @@ impl Filter {
         for t in 0..x.nrows() {
             let k = t.min(self.excess.len() - 1);
             for (i, a) in self.coefficients[k].iter().enumerate() {
-                let told = x.row(t - 1 - i) * *a;
-                white.set_row(t, &(white.row(t) - told));
+                let explained = x.row(t - 1 - i) * *a;
+                white.set_row(t, &(white.row(t) - explained));
             }
             let scaled = white.row(t) / (self.deviation * self.excess[k].sqrt());
             white.set_row(t, &scaled);
@@ -298,7 +298,7 @@ impl Filter {
             for t in (0..rows).rev() {
                 let k = t.min(last);
                 let undone = column[t] * self.deviation * self.excess[k].sqrt();
-                // what this row was told by those before it
+                // what the rows before it say of this one
                 for (i, a) in self.coefficients[k].iter().enumerate() {
                     column[t - 1 - i] += a * column[t];
                 }

@@ -34,8 +34,8 @@ pub struct Fit {
     pub train: Vec<SignalFit>,
     /// What the errors on the train recordings look like, one a signal (or input, for the inverse model).
     pub residuals: Vec<ResidualTest>,
-    /// Measured and modelled course of each signal along the first train recording.
-    pub courses: Vec<Course>,
+    /// Measured and modelled trajectory of each signal along the first train recording.
+    pub trajectories: Vec<Trajectory>,
     /// Why derivatives were differences along some recording; `None` where runs carried them all along.
     pub differences: Option<String>,
     /// Where searches from several places ended.
@@ -56,7 +56,7 @@ pub struct Fit {
 
 /// A signal along a recording.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Course {
+pub struct Trajectory {
     /// The signal's name; for the inverse model the input's.
     pub name: String,
     /// Its unit.
@@ -112,13 +112,13 @@ impl Identification<'_> {
         model: &mut dyn Residuals,
         minimum: &Minimum,
         train: Vec<SignalFit>,
-        courses: Vec<Course>,
+        trajectories: Vec<Trajectory>,
     ) -> Fit {
         let p = self.problem.free.len();
         let Spread { mut covariance, plain, degrees } = spread(model.weights(), minimum);
         // what nothing is known about has no finite deviation
-        let told = separate(&without_rest(&minimum.jacobian.tr_mul(&minimum.jacobian), p));
-        let hidden = told.blind.iter().filter(|b| b.deviation.is_infinite());
+        let distinct = separate(&without_rest(&minimum.jacobian.tr_mul(&minimum.jacobian), p));
+        let hidden = distinct.blind.iter().filter(|b| b.deviation.is_infinite());
         hidden.flat_map(|b| &b.group).for_each(|&j| covariance[(j, j)] = f64::INFINITY);
         let free = self.problem.free.iter().zip(&minimum.z);
         let slope: Vec<f64> = free.clone().map(|(f, &z)| f.slope(z).abs()).collect();
@@ -140,7 +140,7 @@ impl Identification<'_> {
             iterations: minimum.iterations,
             train,
             residuals: Vec::new(),
-            courses,
+            trajectories,
             differences: None,
             starts: Starts::default(),
             joints: None,

@@ -8,7 +8,7 @@
 use super::filter::{LowPass, derivative, filled};
 use super::least_squares::LeastSquares;
 use super::weights::{Series, Weights};
-use super::{Course, Problem, Residuals};
+use super::{Problem, Residuals, Trajectory};
 use crate::analysis::local::Plan;
 use crate::analysis::{Local, lift};
 use crate::expr::VarId;
@@ -190,11 +190,11 @@ impl<'a> InverseModel<'a> {
     }
 
     /// The forces along the first recording with the errors of `residual`.
-    pub fn courses(&self, residual: &[f64]) -> Vec<Course> {
+    pub fn trajectories(&self, residual: &[f64]) -> Vec<Trajectory> {
         let one = |s: &Series| {
             let input = &self.problem.bound.inputs[self.inverse.inputs[s.signal]];
             let sigma = self.weights.sigma[s.signal];
-            Course {
+            Trajectory {
                 name: input.name.clone(),
                 unit: input.unit.clone(),
                 times: self.motions[0].thin_times(),
@@ -210,8 +210,8 @@ impl<'a> InverseModel<'a> {
         let mut out = Vec::new();
         for motion in &self.motions {
             for column in self.raw_errors(motion, theta)? {
-                let told = column.iter().filter(|v| v.is_finite()).count();
-                if told < column.len() / 2 {
+                let found = column.iter().filter(|v| v.is_finite()).count();
+                if found < column.len() / 2 {
                     return None;
                 }
                 out.extend(motion.thin(&filled(&column)));

@@ -22,7 +22,7 @@ mod starts;
 mod weights;
 
 pub use doubts::doubts;
-pub use fit::{Course, Fit, SignalFit};
+pub use fit::{Fit, SignalFit, Trajectory};
 pub use free::Free;
 pub use least_squares::{Bounds, Effort, LeastSquares, Minimum, minimise};
 pub use picture::picture;
@@ -238,7 +238,7 @@ impl<'a> Identification<'a> {
             None => {
                 let mut model = self.output_error()?;
                 if let Some(residual) = model.residual(&vec![0.0; model.unknowns()]) {
-                    suspicions = foreign(self.problem, &model.courses(self.train, residual.as_slice()));
+                    suspicions = foreign(self.problem, &model.trajectories(self.train, residual.as_slice()));
                 }
                 information(&mut model, z.len())
             }
@@ -304,8 +304,8 @@ impl<'a> Identification<'a> {
                 let found = search_several(self.problem, &mut model, &[], starts, seed);
                 let (minimum, starts) = found.ok_or_else(|| cannot_follow(None))?;
                 let train = self.force_fits(&mut model, &minimum);
-                let courses = model.courses(minimum.residual.as_slice());
-                let mut fit = self.estimate(&mut model, &minimum, train, courses);
+                let trajectories = model.trajectories(minimum.residual.as_slice());
+                let mut fit = self.estimate(&mut model, &minimum, train, trajectories);
                 fit.residuals = self.judge_residuals(&fit, minimum.residual.as_slice());
                 fit.differences = Some("of the inverse model".to_owned());
                 fit.starts = starts;
@@ -318,8 +318,8 @@ impl<'a> Identification<'a> {
                 let (minimum, starts) = found.ok_or_else(|| cannot_follow(model.broken.as_ref()))?;
                 let residual = minimum.residual.as_slice();
                 let train = signal_fits(self.problem, model.weights(), residual, self.train);
-                let courses = model.courses(self.train, residual);
-                let mut fit = self.estimate(&mut model, &minimum, train, courses);
+                let trajectories = model.trajectories(self.train, residual);
+                let mut fit = self.estimate(&mut model, &minimum, train, trajectories);
                 fit.residuals = self.judge_residuals(&fit, residual);
                 fit.differences = model.differences().map(str::to_owned);
                 fit.starts = starts;

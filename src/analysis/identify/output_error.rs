@@ -8,7 +8,7 @@ use super::least_squares::LeastSquares;
 use super::pieces::{self, Case, FreeState, Leg};
 use super::runs::{Broken, Runner, Track};
 use super::weights::{Series, Weights};
-use super::{Course, Problem, Residuals};
+use super::{Problem, Residuals, Trajectory};
 use crate::expr::VarId;
 use crate::solve::State;
 use crate::study::Recording;
@@ -161,7 +161,7 @@ impl<'a> OutputError<'a> {
     /// # Errors
     /// When the run does not reach the end.
     pub fn simulate(&self, case: usize, z: &[f64], wanted: &[VarId]) -> Result<Vec<Vec<f64>>, Broken> {
-        self.course(case, z, wanted).map(|run| run.signals)
+        self.trajectory(case, z, wanted).map(|run| run.signals)
     }
 
     /// One leg from the end of the one before: the values of `wanted` at its samples and at the start of the next leg,
@@ -192,7 +192,7 @@ impl<'a> OutputError<'a> {
     }
 
     /// All legs of a recording.
-    fn course(&self, case: usize, z: &[f64], wanted: &[VarId]) -> Result<Values, Broken> {
+    fn trajectory(&self, case: usize, z: &[f64], wanted: &[VarId]) -> Result<Values, Broken> {
         let of = &self.cases[case];
         let mut all = Values { signals: vec![Vec::new(); wanted.len()], jumps: Vec::new() };
         let mut before = None;
@@ -229,7 +229,7 @@ impl<'a> OutputError<'a> {
 
     /// Errors of one recording over the deviations in the order of its rows, and its jumps over theirs.
     fn errors(&self, case: usize, z: &[f64]) -> Result<Vec<f64>, Broken> {
-        let mut values = self.course(case, z, &self.wanted)?;
+        let mut values = self.trajectory(case, z, &self.wanted)?;
         for (simulated, measured) in values.signals.iter_mut().zip(&self.cases[case].measured) {
             simulated.iter_mut().zip(measured).for_each(|(s, m)| *s -= m);
         }
@@ -350,13 +350,13 @@ impl LeastSquares for OutputError<'_> {
 
 impl OutputError<'_> {
     /// The signals along the first recording with the errors of `residual`.
-    pub fn courses(&self, recordings: &[Recording], residual: &[f64]) -> Vec<Course> {
+    pub fn trajectories(&self, recordings: &[Recording], residual: &[f64]) -> Vec<Trajectory> {
         let one = |s: &Series| {
             let signal = &self.problem.bound.signals[s.signal];
             let measured = &recordings[0].signals[s.signal];
             let known = || recordings[0].times.iter().zip(measured).filter(|(_, m)| !m.is_nan());
             let sigma = self.weights.sigma[s.signal];
-            Course {
+            Trajectory {
                 name: signal.name.clone(),
                 unit: signal.unit.clone(),
                 times: known().map(|k| *k.0).collect(),
@@ -509,7 +509,7 @@ impl OutputError<'_> {
     fn part(&self, case: usize, j: usize, z: &[f64], ends: &[State]) -> Result<Values, Broken> {
         let of = &self.cases[case];
         let Some(leg) = (1..of.legs.len()).find(|&k| of.legs[k].places.contains(&j)) else {
-            return self.course(case, z, &self.wanted);
+            return self.trajectory(case, z, &self.wanted);
         };
         let mut all = Values {
             signals: vec![vec![0.0; of.track.times.len()]; self.wanted.len()],

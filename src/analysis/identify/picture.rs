@@ -31,7 +31,7 @@ impl Fit {
 
 /// All panels: signals, autocorrelations, ellipses, profiles.
 pub fn picture(problem: &Problem<'_>, fit: &Fit, profiles: &[Profile]) -> Figure {
-    let mut panels: Vec<Panel> = fit.courses.iter().map(course).collect();
+    let mut panels: Vec<Panel> = fit.trajectories.iter().map(trajectory).collect();
     panels.extend(fit.residuals.iter().map(autocorrelation));
     panels.extend(pairs(fit).into_iter().filter_map(|(i, j)| pair(problem, fit, i, j)));
     panels.extend(profiles.iter().map(|p| profile(problem, fit, p)));
@@ -42,21 +42,21 @@ fn label(name: &str, unit: &str) -> String {
     if unit.is_empty() { name.to_owned() } else { format!("{name} in {unit}") }
 }
 
-fn course(course: &super::Course) -> Panel {
-    // dashes let the measured course show through where the model meets it
+fn trajectory(trajectory: &super::Trajectory) -> Panel {
+    // dashes let the measured trajectory show through where the model meets it
     let line = |name: &str, y: Vec<f64>, colour: usize, dashed: bool| Series {
-        name: format!("{} {name}", course.name),
-        x: course.times.clone(),
+        name: format!("{} {name}", trajectory.name),
+        x: trajectory.times.clone(),
         y,
         colour,
         dashed,
         ..Series::default()
     };
-    let model = course.measured.iter().zip(&course.errors).map(|(m, e)| m + e).collect();
+    let model = trajectory.measured.iter().zip(&trajectory.errors).map(|(m, e)| m + e).collect();
     Panel {
         x_label: "time in s".to_owned(),
-        y_label: label(&course.name, &course.unit),
-        series: vec![line("measured", course.measured.clone(), 6, false), line("of the model", model, 0, true)],
+        y_label: label(&trajectory.name, &trajectory.unit),
+        series: vec![line("measured", trajectory.measured.clone(), 6, false), line("of the model", model, 0, true)],
         ..Panel::default()
     }
 }

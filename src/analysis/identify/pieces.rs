@@ -155,7 +155,7 @@ impl OutputError<'_> {
         }
     }
 
-    /// The states at the start of a leg from its own samples, the course of the states that pieces hand on, and where it
+    /// The states at the start of a leg from its own samples, the trajectory of the states that pieces hand on, and where it
     /// ends; a leg that cannot be run has neither.
     fn fit_alone(
         &self,

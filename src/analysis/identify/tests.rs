@@ -253,7 +253,7 @@ fn pieces_of_an_unstable_recording() {
     });
 }
 
-/// As many unknowns as samples (two parameters and the start) meet them whatever they are: no deviation is told.
+/// As many unknowns as samples (two parameters and the start) meet them whatever they are: no deviation is reported.
 #[test]
 fn no_more_samples_than_unknowns_tell_nothing_about_deviations() {
     let few = |samples: usize| -> String {
@@ -329,7 +329,7 @@ fn profiles_of_a_linear_fit_agree_with_the_deviations_and_open_ones_are_open() {
                 "{profile:?}"
             );
             assert!(low < truth && truth < high);
-            // a course, not only its ends: about as many points on both sides, each on the parabola
+            // a trajectory, not only its ends: about as many points on both sides, each on the parabola
             let level = chance::student(fit.degrees[j]).powi(2);
             assert!((9..=13).contains(&profile.points.len()), "{profile:?}");
             assert!(profile.points[0].1 >= 0.9 * level && profile.points.last().expect("some").1 >= 0.9 * level);

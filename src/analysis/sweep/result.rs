@@ -2,7 +2,7 @@
 
 use crate::results::Trajectory;
 
-/// What can be asked of a variable's course.
+/// What can be asked of a variable's trajectory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Question {
     Max,

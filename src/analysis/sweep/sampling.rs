@@ -120,22 +120,24 @@ enum Map {
 
 impl Map {
     fn new(v: &Varied) -> Result<Map, String> {
-        let told = |e: String| format!("`{}`: {e}", v.name);
-        let amount = |text: &str| Amount::parse(text).map_err(told);
+        let message = |e: String| format!("`{}`: {e}", v.name);
+        let amount = |text: &str| Amount::parse(text).map_err(message);
         match &v.spread {
             Spread::Range { min, max, logarithmic } => {
-                let value = |t: &str| amount(t)?.in_unit(&v.unit, v.value).map_err(told);
+                let value = |t: &str| amount(t)?.in_unit(&v.unit, v.value).map_err(message);
                 let (low, high) = (value(min)?, value(max)?);
                 if low >= high || (*logarithmic && low <= 0.0) {
-                    return Err(told("`min` must lie below `max`, and above zero for a logarithmic range".to_owned()));
+                    return Err(message(
+                        "`min` must lie below `max`, and above zero for a logarithmic range".to_owned(),
+                    ));
                 }
                 Ok(if *logarithmic { Map::Logarithmic(low.ln(), high.ln()) } else { Map::Even(low, high) })
             }
             Spread::Sigma(text) => match amount(text)? {
                 Amount::Part(part) if v.value > 0.0 => Ok(Map::LogNormal(v.value, part)),
-                other => Ok(Map::Normal(v.value, other.difference_in_unit(&v.unit, v.value.abs()).map_err(told)?)),
+                other => Ok(Map::Normal(v.value, other.difference_in_unit(&v.unit, v.value.abs()).map_err(message)?)),
             },
-            Spread::Values(_) => Err(told("samples need `min` and `max`, or `sigma`".to_owned())),
+            Spread::Values(_) => Err(message("samples need `min` and `max`, or `sigma`".to_owned())),
         }
     }
 

@@ -6,7 +6,7 @@ use super::super::policy::{DOUBLINGS, PIECES};
 use super::super::problem::{Assembled, Chosen};
 use super::exponential;
 use super::map::Weights;
-use super::simulation::Course;
+use super::simulation::Run;
 use super::start::Valued;
 use crate::expr::VarId;
 use nalgebra::{DMatrix, DVector};
@@ -404,14 +404,14 @@ impl Candidate {
         let mut begun = valued.begin(recording, guess.map(Vec::as_slice), slopes.then_some(&moves[..]))?;
         let from = recording.settled();
         let mut errors = vec![0.0; self.deviations.len()];
-        let mut course = Course {
+        let mut run = Run {
             local: &mut begun.local,
             theta: &theta,
             sizes: &model.sizes,
             state: begun.state,
             slopes: begun.slopes,
         };
-        course.run(recording, from..end.max(from + 1), |k, local, slopes| {
+        run.along(recording, from..end.max(from + 1), |k, local, slopes| {
             // the sample at which the run begins is known
             if k == from {
                 return;

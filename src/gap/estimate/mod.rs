@@ -7,6 +7,8 @@ pub mod exponential;
 pub mod map;
 pub mod simulation;
 pub mod start;
+#[cfg(test)]
+mod tests;
 
 pub use candidate::{Candidate, Coordinate};
 pub use map::{Fit, System, Weights};

@@ -17,6 +17,9 @@ const DEEPEST: u32 = 6;
 const CORRECTION: f64 = 1e-4;
 /// Part of it below which the next step is twice as long: the correction grows with the cube.
 const LENGTHENED: f64 = 0.1;
+/// What slopes may miss over a step with an older linearisation, as part of the states: it is added to first order, and the
+/// square of it is left.
+const MISSED: f64 = 0.1;
 
 /// How what a linearisation leaves out grows over a step: its weight beside phi_2, which belongs to growth in proportion.
 #[derive(Clone, Copy)]
@@ -83,8 +86,8 @@ impl Slopes {
         }
     }
 
-    /// S over a step whose transition and integral are known.
-    fn advance(&mut self, local: &Local, exponential: &Exponential, sizes: &[f64]) {
+    /// S over a step whose transition and integral are known; `missed`: what an older linearisation lacks of the transition.
+    fn advance(&mut self, local: &Local, exponential: &Exponential, missed: Option<&DMatrix<f64>>, sizes: &[f64]) {
         for (mut column, moved) in self.driven.column_iter_mut().zip(&self.moves) {
             if let Some((parameter, factor)) = moved {
                 let b = local.linear.b.column(*parameter);
@@ -93,12 +96,15 @@ impl Slopes {
         }
         exponential::multiply(&mut self.next, &exponential.transition, &self.states, 0.0);
         exponential::multiply(&mut self.next, &exponential.integral, &self.driven, 1.0);
+        if let Some(missed) = missed {
+            exponential::multiply(&mut self.next, missed, &self.states, 1.0);
+        }
         std::mem::swap(&mut self.states, &mut self.next);
     }
 }
 
 /// A model on its way through a recording.
-pub struct Course<'a> {
+pub struct Run<'a> {
     /// The model at the last point.
     pub local: &'a mut Local,
     /// Values of its parameters.
@@ -111,10 +117,10 @@ pub struct Course<'a> {
     pub slopes: Option<Slopes>,
 }
 
-impl Course<'_> {
+impl Run<'_> {
     /// Goes through samples of a recording; `at` sees the model at each of them, and how its signals depend on the choices
     /// (choices by signals). It ends at the last one. `None` where the model has no value on the way.
-    pub fn run(
+    pub fn along(
         &mut self,
         recording: &Recording,
         samples: Range<usize>,
@@ -153,8 +159,8 @@ pub fn from_start(plan: &Arc<Plan>, theta: &[f64], sizes: &[f64], recording: &Re
     let mut local = Local::start(plan.clone(), recording.times[0], theta, &u).ok()?;
     let mut outputs = vec![Vec::with_capacity(recording.len()); plan.outputs()];
     let state = local.state();
-    let mut course = Course { local: &mut local, theta, sizes, state, slopes: None };
-    course.run(recording, 0..recording.len(), |_, local, _| {
+    let mut run = Run { local: &mut local, theta, sizes, state, slopes: None };
+    run.along(recording, 0..recording.len(), |_, local, _| {
         outputs.iter_mut().zip(&local.outputs).for_each(|(all, y)| all.push(*y));
     })?;
     Some(outputs)
@@ -166,6 +172,9 @@ struct Stepper {
     /// Scaled matrices of the last linearisation: states by states, states by inputs.
     a: DMatrix<f64>,
     b: DMatrix<f64>,
+    /// How the matrix where the model was linearised last differs from `a`, and what a transition lacks of it.
+    change_of_a: DMatrix<f64>,
+    missed: DMatrix<f64>,
     /// Per length the step that the linearisation served last; 0 where it did not.
     lengths: [f64; DEEPEST as usize + 1],
     /// Halvings of the last step.
@@ -188,6 +197,8 @@ impl Stepper {
             exponentials: (0..=DEEPEST).map(|_| Exponential::new(n)).collect(),
             a: DMatrix::zeros(n, n),
             b: DMatrix::zeros(n, recording.inputs.len()),
+            change_of_a: DMatrix::zeros(n, n),
+            missed: DMatrix::zeros(n, n),
             lengths: [0.0; DEEPEST as usize + 1],
             depth: 0,
             rate: zeros(),
@@ -201,29 +212,31 @@ impl Stepper {
     }
 
     /// From a sample at `t`, where the model has been evaluated (linearised, where there are slopes), to the next.
-    fn advance(&mut self, course: &mut Course<'_>, t: f64, h: f64) -> Option<()> {
+    fn advance(&mut self, run: &mut Run<'_>, t: f64, h: f64) -> Option<()> {
         const WHOLE: u32 = 1 << DEEPEST;
-        let mut linear_here = course.slopes.is_some();
+        let mut linear_here = run.slopes.is_some();
         let mut gone = 0;
-        self.take_rates(course);
+        self.take_rates(run);
         while gone < WHOLE {
             let part = WHOLE >> self.depth;
             let fraction = |ticks: u32| h * f64::from(ticks) / f64::from(WHOLE);
             let (after, length) = (fraction(gone), fraction(part));
             let serves = exponential::as_long(length, self.lengths[self.depth as usize]);
             let mut off = f64::INFINITY;
-            if serves {
+            let mut older = serves && (run.slopes.is_none() || self.serves_slopes(run));
+            if older {
                 self.grow();
-                off = self.step(course, t, after, length, Remainder::Proportional);
+                off = self.step(run, t, after, length, Remainder::Proportional);
             }
             if off > CORRECTION {
+                older = false;
                 if !linear_here {
                     self.inputs.at(after, &mut self.u);
-                    course.local.linearize(t + after, &course.state, course.theta, &self.u).ok()?;
+                    run.local.linearize(t + after, &run.state, run.theta, &self.u).ok()?;
                     linear_here = true;
                 }
-                self.linear(course, length);
-                off = self.step(course, t, after, length, Remainder::Square);
+                self.linear(run, length);
+                off = self.step(run, t, after, length, Remainder::Square);
             }
             if off > CORRECTION && self.depth < DEEPEST {
                 self.depth += 1;
@@ -232,16 +245,17 @@ impl Stepper {
             if off.is_infinite() {
                 return None;
             }
-            if let Some(slopes) = &mut course.slopes {
-                slopes.advance(course.local, &self.exponentials[self.depth as usize], course.sizes);
+            if let Some(slopes) = &mut run.slopes {
+                let missed = older.then_some(&self.missed);
+                slopes.advance(run.local, &self.exponentials[self.depth as usize], missed, run.sizes);
             }
-            course.state.copy_from_slice(&self.next);
+            run.state.copy_from_slice(&self.next);
             gone += part;
             linear_here = false;
             // at the next sample the model is looked at anyway
             if gone < WHOLE {
-                course.local.evaluate(t + fraction(gone), &course.state, course.theta, &self.u).ok()?;
-                self.take_rates(course);
+                run.local.evaluate(t + fraction(gone), &run.state, run.theta, &self.u).ok()?;
+                self.take_rates(run);
             }
             if off < LENGTHENED * CORRECTION && self.depth > 0 && gone.is_multiple_of(2 * part) {
                 self.depth -= 1;
@@ -250,14 +264,26 @@ impl Stepper {
         Some(())
     }
 
-    fn take_rates(&mut self, course: &Course<'_>) {
-        let scaled = course.local.rates.iter().zip(course.sizes).map(|(r, s)| r / s);
+    fn take_rates(&mut self, run: &Run<'_>) {
+        let scaled = run.local.rates.iter().zip(run.sizes).map(|(r, s)| r / s);
         self.rate.iter_mut().zip(scaled).for_each(|(to, r)| *to = r);
     }
 
+    /// Whether an older linearisation will do for slopes; finds what its transition lacks of the last one.
+    fn serves_slopes(&mut self, run: &Run<'_>) -> bool {
+        let (a, sizes) = (&run.local.linear.a, run.sizes);
+        for (j, mut column) in self.change_of_a.column_iter_mut().enumerate() {
+            let old = self.a.column(j);
+            (0..sizes.len()).for_each(|i| column[i] = a[(i, j)] * sizes[j] / sizes[i] - old[i]);
+        }
+        let integral = &self.exponentials[self.depth as usize].integral;
+        exponential::multiply(&mut self.missed, integral, &self.change_of_a, 0.0);
+        (0..sizes.len()).all(|i| self.missed.row(i).iter().map(|v| v.abs()).sum::<f64>() <= MISSED)
+    }
+
     /// Takes over the linearisation.
-    fn linear(&mut self, course: &Course<'_>, length: f64) {
-        let (linear, sizes) = (&course.local.linear, course.sizes);
+    fn linear(&mut self, run: &Run<'_>, length: f64) {
+        let (linear, sizes) = (&run.local.linear, run.sizes);
         let n = sizes.len();
         (0..n).for_each(|j| (0..n).for_each(|i| self.a[(i, j)] = linear.a[(i, j)] * sizes[j] / sizes[i]));
         let first = linear.b.ncols() - self.b.ncols();
@@ -280,23 +306,23 @@ impl Stepper {
 
     /// A step so long after the sample at `t`, corrected by what the linear model leaves out at its end, and the largest
     /// correction of a state, in sizes.
-    fn step(&mut self, course: &mut Course<'_>, t: f64, after: f64, length: f64, grows: Remainder) -> f64 {
+    fn step(&mut self, run: &mut Run<'_>, t: f64, after: f64, length: f64, grows: Remainder) -> f64 {
         let exponential = &self.exponentials[self.depth as usize];
         exponential::apply(&mut self.change, &exponential.integral, &self.rate, 0.0);
         if self.ramp.iter().any(|v| *v != 0.0) {
             exponential::apply(&mut self.change, &exponential.twice, &self.ramp, 1.0);
         }
         for (i, next) in self.next.iter_mut().enumerate() {
-            *next = course.state[i] + self.change[i] * course.sizes[i];
+            *next = run.state[i] + self.change[i] * run.sizes[i];
         }
         self.remainder.copy_from(&self.rate);
         exponential::apply(&mut self.remainder, &self.a, &self.change, 1.0);
         self.remainder.axpy(length, &self.ramp, 1.0);
         self.inputs.at(after + length, &mut self.u);
-        if course.local.evaluate(t + after + length, &self.next, course.theta, &self.u).is_err() {
+        if run.local.evaluate(t + after + length, &self.next, run.theta, &self.u).is_err() {
             return f64::INFINITY;
         }
-        let rates = course.local.rates.iter().zip(course.sizes);
+        let rates = run.local.rates.iter().zip(run.sizes);
         self.remainder.iter_mut().zip(rates).for_each(|(r, (rate, size))| *r = rate / size - *r);
         exponential::apply(&mut self.change, &exponential.twice, &self.remainder, 0.0);
         self.change *= grows.weight() / length;
@@ -305,7 +331,7 @@ impl Stepper {
             self.change.iter().fold(0.0, |m: f64, v| if v.abs() >= 0.0 { m.max(v.abs()) } else { f64::INFINITY });
         // behind a corner the rates say nothing of the step before it
         if most <= CORRECTION {
-            let moves = self.next.iter_mut().zip(self.change.iter().zip(course.sizes));
+            let moves = self.next.iter_mut().zip(self.change.iter().zip(run.sizes));
             moves.for_each(|(next, (change, size))| *next += change * size);
         }
         most

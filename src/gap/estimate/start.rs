@@ -4,7 +4,7 @@
 use super::super::data::{Inputs, Recording};
 use super::super::policy::SURE;
 use super::exponential;
-use super::simulation::{Course, Slopes};
+use super::simulation::{Run, Slopes};
 use crate::analysis::local::{Local, Plan};
 use nalgebra::{Cholesky, DMatrix, DVector};
 use std::sync::Arc;
@@ -21,7 +21,7 @@ pub const KELVIN: f64 = 10.0;
 /// And those that begin where the model says.
 const HELD: f64 = 1e-6;
 /// Gauss-Newton steps at most, and halvings of one that leads nowhere.
-const ROUNDS: usize = 6;
+const ROUNDS: usize = 12;
 const HALVINGS: usize = 3;
 /// A step of the first state, in its sizes, that the linear model takes along: what it leaves out grows with the square.
 const SMALL: f64 = 1e-2;
@@ -172,8 +172,8 @@ impl Valued<'_> {
         let mut gram = DMatrix::zeros(n, width + 1);
         let mut row = vec![0.0; width + 1];
         let mut cost = x.component_div(loose).norm_squared();
-        let mut course = Course { local, theta: self.theta, sizes: self.sizes, state, slopes };
-        course.run(recording, 0..recording.settled() + 1, |k, local, slopes| {
+        let mut run = Run { local, theta: self.theta, sizes: self.sizes, state, slopes };
+        run.along(recording, 0..recording.settled() + 1, |k, local, slopes| {
             let Some(slopes) = slopes else { return };
             for (i, deviation) in self.deviations.iter().enumerate() {
                 let error = (recording.signals[i][k] - local.outputs[i]) / deviation;
@@ -186,7 +186,7 @@ impl Valued<'_> {
                 exponential::add_outer(&mut gram, 1.0, &row[..n], &row);
             }
         })?;
-        let (state, slopes) = (course.state, course.slopes?.states);
+        let (state, slopes) = (run.state, run.slopes?.states);
         cost.is_finite().then_some(Beginning { state, slopes, gram, cost })
     }
 }

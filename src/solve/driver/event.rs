@@ -48,7 +48,7 @@ impl<'a> Driver<'a, '_> {
     pub(super) fn judge(&mut self, model: &mut Model<'a>, outcome: &Outcome) -> Flow {
         for (action, text) in &outcome.failed {
             if let ActionKind::Assert(assert) = &self.system.dae.actions[*action].kind {
-                let first = self.told.first_action(*action);
+                let first = self.reported.first_action(*action);
                 self.assertion(assert.warning, first, assert.origin, text)?;
             }
         }
@@ -67,7 +67,7 @@ impl<'a> Driver<'a, '_> {
         system.asserts.program.run(&mut model.values);
         for (i, assert) in system.dae.asserts.iter().enumerate() {
             if model.values[system.asserts.holds[i]] == 0.0 {
-                let first = self.told.first(i);
+                let first = self.reported.first(i);
                 let text = report::message_text(system, &assert.message, &model.values);
                 self.assertion(assert.warning, first, assert.origin, &text)?;
             }

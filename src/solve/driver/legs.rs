@@ -138,13 +138,13 @@ impl<'a> Driver<'a, '_> {
         let known = self.ida().at(t - step, &mut earlier, &mut rates);
         let (model, y, yp) = self.ida().parts();
         let ahead: Vec<f64> = y.iter().zip(yp).map(|(y, rate)| y + beyond * rate).collect();
-        let mut course = |t: f64, y: &[f64]| {
+        let mut trajectory = |t: f64, y: &[f64]| {
             let mut g = vec![0.0; model.roots.len()];
             model.crossings(t, y, yp, &mut g);
             g
         };
-        let before = if known { course(t - step, &earlier) } else { Vec::new() };
-        let (now, then) = (course(t, y), course(t + beyond, &ahead));
+        let before = if known { trajectory(t - step, &earlier) } else { Vec::new() };
+        let (now, then) = (trajectory(t, y), trajectory(t + beyond, &ahead));
         let crossings: Vec<usize> = (0..now.len()).map(|i| model.roots.crossing(i)).collect();
         before.iter().zip(&crossings).for_each(|(g, &c)| self.modes.seen(c, *g));
         self.roots.resize(now.len(), 0);

@@ -15,7 +15,7 @@ impl<'a> Driver<'a, '_> {
         (!ida.equations().playback.delays.is_empty() && end > t && end < target).then_some(end)
     }
 
-    /// Records the course of what is delayed from where it is known to where the run stands, all within one step.
+    /// Records the trajectory of what is delayed from where it is known to where the run stands, all within one step.
     pub(super) fn remember(&mut self) {
         let to = self.t;
         let Some(from) = self.ida().equations().playback.delays.known_to().filter(|from| *from < to) else { return };

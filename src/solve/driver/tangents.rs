@@ -51,8 +51,8 @@ pub struct Carried {
 /// An event about to be carried out: values and forced modes, to carry it out again beside.
 pub type Ready = Option<(Vec<f64>, Modes)>;
 
-/// A solution and its course in time: unknowns, derivatives.
-struct Course {
+/// A solution and its trajectory in time: unknowns, derivatives.
+struct Trajectory {
     y: Vec<f64>,
     yp: Vec<f64>,
 }
@@ -141,7 +141,7 @@ impl Carried {
     }
 
     /// How the solution itself goes on in time: rates of all unknowns, and theirs.
-    fn course(&mut self, model: &mut Model<'_>, t: f64, step: f64) -> Option<Course> {
+    fn trajectory(&mut self, model: &mut Model<'_>, t: f64, step: f64) -> Option<Trajectory> {
         let n = self.y.len();
         let (mut up, mut own) = (vec![0.0; n], vec![0.0; n]);
         let dt = (1e-4 * step).max(1e-11 * t.abs()).max(f64::MIN_POSITIVE.sqrt());
@@ -149,7 +149,7 @@ impl Carried {
             && model.residual(t + dt, &self.y, &self.yp, &mut up) == Evaluation::Done;
         own.iter_mut().zip(&up).for_each(|(d, u)| *d = (u - *d) / (2.0 * dt));
         let (mut y, mut yp) = (self.yp.clone(), vec![0.0; n]);
-        (known && self.complete(model, &mut y, &mut yp, &own)).then_some(Course { y, yp })
+        (known && self.complete(model, &mut y, &mut yp, &own)).then_some(Trajectory { y, yp })
     }
 
     /// How far to go along a direction for a difference.
@@ -260,8 +260,8 @@ impl<'a> Driver<'a, '_> {
         let root = self.roots.iter().position(|&d| d != 0).filter(|_| cause == Cause::Root && done);
         if let Some(function) = root {
             let raw = model.roots.raw_index(function);
-            let course = carried.course(model, t, step);
-            let speed = course.map(|c| carried.crossing(model, t, raw, 1.0, &c.y, &c.yp));
+            let trajectory = carried.trajectory(model, t, step);
+            let speed = trajectory.map(|c| carried.crossing(model, t, raw, 1.0, &c.y, &c.yp));
             let speed = speed.filter(|s| s.is_finite() && *s != 0.0);
             done = speed.is_some();
             for k in 0..carried.count() {
