@@ -83,6 +83,8 @@ pub mod instance;
 pub mod network;
 
 pub mod expr;
+#[doc(hidden)]
+pub mod external;
 pub mod flat;
 pub mod structure;
 

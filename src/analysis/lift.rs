@@ -75,6 +75,7 @@ impl Lift {
         let origin = Origin { kind: OriginKind::Made, ..model.origin };
         let variable = Variable {
             hidden: true,
+            unwanted: true,
             fixed: variability <= Variability::Parameter,
             nominal: model.nominal,
             unit: model.unit.clone(),

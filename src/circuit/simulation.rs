@@ -341,8 +341,8 @@ impl Simulation {
     }
 }
 
-/// Variables that results show: all but protected and hidden ones.
+/// Variables that results show.
 fn visible(model: &Model) -> Vec<VarId> {
-    let shown = (0u32..).zip(&model.flat.variables).filter(|(_, v)| !v.hidden);
-    shown.map(|(i, _)| VarId(i)).collect()
+    let all = (0u32..).zip(&model.flat.variables).map(|(i, _)| VarId(i));
+    all.filter(|v| model.dae.is_shown(*v)).collect()
 }

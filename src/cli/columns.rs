@@ -11,18 +11,20 @@ use crate::structure::Dae;
 /// The variables to write, in declaration order.
 ///
 /// Without patterns, and for patterns with `*` or `?`: variables that can change and are neither protected nor annotated
-/// `HideResult`; in a `.mat` file also parameters, which cost nothing there. A variable named exactly is always written.
+/// `HideResult`, and protected states; in a `.mat` file also parameters, which cost nothing there. A variable named exactly is always written.
 pub(super) fn choose(dae: &Dae, patterns: &[String], target: &Target) -> Result<Vec<VarId>, Failure> {
     let globs = Globs::new(patterns);
     let with_parameters = matches!(target, Target::Mat(_));
-    let usual = |v: &Variable| !v.hidden && (with_parameters || v.variability >= Variability::Discrete);
-    let wanted = |v: &Variable| {
+    let usual =
+        |id: VarId, v: &Variable| dae.is_shown(id) && (with_parameters || v.variability >= Variability::Discrete);
+    let wanted = |id: VarId, v: &Variable| {
         if globs.is_empty() {
-            return usual(v);
+            return usual(id, v);
         }
-        globs.names(&v.name) || (usual(v) && globs.matches(&v.name))
+        globs.names(&v.name) || (globs.matches(&v.name) && usual(id, v))
     };
-    let chosen: Vec<VarId> = (0u32..).zip(&dae.variables).filter(|(_, v)| wanted(v)).map(|(i, _)| VarId(i)).collect();
+    let all = (0u32..).zip(&dae.variables).map(|(i, v)| (VarId(i), v));
+    let chosen: Vec<VarId> = all.filter(|(id, v)| wanted(*id, v)).map(|(id, _)| id).collect();
     let missing = globs.unused(dae.variables.iter().map(|v| v.name.as_str()));
     if let Some(problem) = missing.iter().map(|name| unknown(dae, name)).reduce(|first, _| first) {
         return Err(problem.into());

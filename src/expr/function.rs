@@ -4,6 +4,26 @@
 //! per combination of argument sizes). Slots `0..inputs` are the scalarised inputs.
 
 use super::{Binary, FunctionId, Rel, Unary};
+use std::sync::Arc;
+
+/// A function that is carried out in Rust: the same bits for the same arguments, however often it is asked.
+pub trait External: std::fmt::Debug + Send + Sync {
+    /// One output; not a number where there is none.
+    fn value(&self, output: usize, args: &[f64]) -> f64;
+
+    /// The derivatives of all outputs by one argument, as a function of the same arguments; `None` where they are 0.
+    fn partial(&self, input: usize) -> Option<Arc<dyn External>>;
+}
+
+/// A handle of such a function; two are equal where they are the same one.
+#[derive(Clone, Debug)]
+pub struct Handle(pub Arc<dyn External>);
+
+impl PartialEq for Handle {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+}
 
 /// A compiled function body.
 #[derive(Clone, Debug, PartialEq)]
@@ -96,4 +116,6 @@ pub enum Term {
     If(Box<Term>, Box<Term>, Box<Term>),
     /// One scalar output of another function.
     Call(FunctionId, u32, Vec<Term>),
+    /// One output of a function carried out in Rust.
+    External(Handle, u32, Vec<Term>),
 }

@@ -248,6 +248,10 @@ impl<'a> Run<'a> {
                 })?;
                 found
             }
+            Term::External(function, output, args) => {
+                self.step(frame)?;
+                function.0.value(*output as usize, &self.terms(frame, args)?)
+            }
         })
     }
 

@@ -5,7 +5,7 @@
 //! tangent. Calls become calls of the tangent of the called function, which is reserved before its body is made, so
 //! that recursive functions end. A tangent is a function like any other: its tangent gives second derivatives.
 
-use super::function::{Function, Stmt, Term};
+use super::function::{Function, Handle, Stmt, Term};
 use super::rules::{self, Algebra};
 use super::{Binary, Exprs, FunctionId, Rel, Unary, math};
 
@@ -164,6 +164,9 @@ impl Tangent<'_> {
             Term::Rel(rel, a, b) => Term::Rel(*rel, Box::new(self.value(a)), Box::new(self.value(b))),
             Term::If(c, a, b) => Term::If(Box::new(self.value(c)), Box::new(self.value(a)), Box::new(self.value(b))),
             Term::Call(f, output, args) => Term::Call(*f, *output, args.iter().map(|arg| self.value(arg)).collect()),
+            Term::External(f, output, args) => {
+                Term::External(f.clone(), *output, args.iter().map(|arg| self.value(arg)).collect())
+            }
         }
     }
 
@@ -196,6 +199,20 @@ impl Tangent<'_> {
             Term::Call(function, output, args) => {
                 let tangent = self.pool.tangent_function(*function);
                 Some(Term::Call(tangent, *output, self.with_tangents(args)))
+            }
+            Term::External(function, output, args) => {
+                let values: Vec<Term> = args.iter().map(|arg| self.value(arg)).collect();
+                let mut sum = None;
+                for (i, arg) in args.iter().enumerate() {
+                    let (Some(partial), Some(change)) = (function.0.partial(i), self.tangent(arg)) else { continue };
+                    let slope = Term::External(Handle(partial), *output, values.clone());
+                    let part = Terms.binary(Binary::Mul, slope, change);
+                    sum = Some(match sum {
+                        Some(before) => Terms.binary(Binary::Add, before, part),
+                        None => part,
+                    });
+                }
+                sum
             }
         }
     }

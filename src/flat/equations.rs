@@ -210,7 +210,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
             );
             return;
         };
-        if self.instance.variability(test) <= Variability::Parameter {
+        if self.instance.variability(test) <= Variability::Parameter && !self.instance.found_at_start(test) {
             match self.instance.constant_boolean(condition, view) {
                 Some(true) => {
                     for e in body {
@@ -485,7 +485,15 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
                 let text = args.first().and_then(|m| self.instance.eval(m, view));
                 out.push(WhenAction::Terminate { message: message(text), guard, origin });
             }
-            _ => self.bad_call(span, "only `reinit`, `assert` and `terminate` can be called here"),
+            // a function without outputs says what must hold, or does what no model can see
+            _ => match self.instance.eval_all(call, view) {
+                Some(Val::Tuple(values)) if values.is_empty() => {}
+                None => {}
+                _ => self.bad_call(
+                    span,
+                    "only `reinit`, `assert`, `terminate` and functions without outputs can be called here",
+                ),
+            },
         }
     }
 
@@ -529,7 +537,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
                 );
             }
             _ => {
-                self.instance.eval(call, view);
+                self.instance.eval_all(call, view);
             }
         }
     }

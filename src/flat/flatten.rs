@@ -84,6 +84,7 @@ fn variable(instance: &mut Instance<'_, '_>, i: u32, numbers: &Numbers, flat: &m
         output,
         flow: data.flow,
         hidden: data.hidden,
+        unwanted: data.unwanted,
         fixed: data.variability <= Variability::Parameter,
         description: data.description.map(Into::into),
         state_select: if data.ty == Type::Real { data.state_select } else { StateSelect::Default },

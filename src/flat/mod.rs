@@ -157,8 +157,10 @@ pub struct Variable {
     pub output: bool,
     /// Declared `flow`.
     pub flow: bool,
-    /// `protected`, or annotated `HideResult`: left out of results.
+    /// `protected`, or annotated `HideResult`: left out of results but for protected states.
     pub hidden: bool,
+    /// Annotated `HideResult`.
+    pub unwanted: bool,
     /// Binding of a parameter or constant, or default of an input. Bindings of variables are equations.
     pub binding: Option<ExprId>,
     /// `start`: a parameter expression. `None` when not given (0 or `false`, first literal).
@@ -233,6 +235,7 @@ impl Variable {
             output: false,
             flow: false,
             hidden: false,
+            unwanted: false,
             binding: None,
             start: None,
             confidence: Confidence::default(),

@@ -387,7 +387,7 @@ impl<'a> Instance<'a, '_> {
                 _ => {}
             }
         }
-        self.eval(call, view)?;
+        self.eval_all(call, view)?;
         Some(Flow::Next)
     }
 

@@ -89,7 +89,9 @@ pub fn instantiate<'a, 'l>(library: &'l mut Library<'a>, request: &ModelRequest)
         array_values: FxHashMap::default(),
         inner_declared: FxHashMap::default(),
         functions_checked: FxHashSet::default(),
+        at_start: FxHashMap::default(),
         procedures: FxHashMap::default(),
+        externals: FxHashMap::default(),
         outer_checked: FxHashMap::default(),
         variabilities: Vec::new(),
         functions: Vec::new(),
@@ -398,6 +400,7 @@ impl<'a> Instance<'a, '_> {
             variability: stricter,
             causality: component.prefix.causality.or(declared.prefix.causality).or(outer.causality),
             hidden: outer.hidden || protected || hides_result(declared),
+            unwanted: outer.unwanted || hides_result(declared),
             nested: outer.nested,
         }
     }
@@ -692,7 +695,7 @@ impl<'a> Instance<'a, '_> {
     ) -> NodeId {
         let causality = plan.prefix.causality.or(declared);
         let ty = match builtin {
-            Builtin::Real | Builtin::String => Type::Real,
+            Builtin::Real | Builtin::String | Builtin::Object => Type::Real,
             Builtin::Integer => Type::Integer,
             Builtin::Boolean => Type::Boolean,
             Builtin::Enumeration(i) => Type::Enumeration(i),
@@ -727,11 +730,13 @@ impl<'a> Instance<'a, '_> {
             name: name.to_string(),
             ty,
             string: builtin == Builtin::String,
+            object: builtin == Builtin::Object,
             variability,
             causality,
             top: !plan.prefix.nested && causality.is_some() && !plan.prefix.hidden,
             flow: plan.declared.prefix.flow,
             hidden: plan.prefix.hidden,
+            unwanted: plan.prefix.unwanted,
             final_: part.final_,
             structural: false,
             binding,
@@ -860,7 +865,7 @@ impl<'a> Instance<'a, '_> {
 
     fn number_variable(&mut self, i: u32, order: &mut Vec<u32>) {
         let data = &mut self.variables[i as usize];
-        if data.id.0 == u32::MAX && !data.string {
+        if data.id.0 == u32::MAX && !data.string && !data.object {
             data.id = VarId(u32::try_from(order.len()).expect("limited above"));
             order.push(i);
         }
@@ -917,6 +922,7 @@ pub(super) fn attributes_of(builtin: Builtin) -> &'static [&'static str] {
         }
         Builtin::Integer | Builtin::Enumeration(_) => &["start", "fixed", "min", "max", "quantity"],
         Builtin::Boolean | Builtin::String => &["start", "fixed", "quantity"],
+        Builtin::Object => &[],
     }
 }
 

@@ -1,6 +1,6 @@
 //! Built-in operators and functions (MLS 3.7, 10.3).
 
-use super::value::{Val, wider};
+use super::value::{Val, size_text, wider};
 use super::{Instance, View};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::expr::differentiate::Leaf;
@@ -32,11 +32,10 @@ fn mathematical(name: &str) -> Option<Unary> {
 }
 
 /// Names that are built in and valid, but not supported.
-const UNSUPPORTED: [&str; 11] = [
+const UNSUPPORTED: [&str; 10] = [
     "spatialDistribution",
     "inStream",
     "actualStream",
-    "getInstanceName",
     "previous",
     "hold",
     "subSample",
@@ -83,6 +82,7 @@ impl<'a> Instance<'a, '_> {
             "initial" => self.moment(Node::Initial, span),
             "terminal" => self.moment(Node::Terminal, span),
             "sample" => self.sample(args, view, span),
+            "getInstanceName" => Some(Val::text(self.instance_name(view))),
             "delay" => self.delay(args, view, span),
             "homotopy" => self.homotopy_call(args, named, view, span),
             "semiLinear" => self.semi_linear(args, view, span),
@@ -250,6 +250,15 @@ impl<'a> Instance<'a, '_> {
             return self.fail(Code::NotConstant, "`sample` is not known before the run", span);
         }
         Some(Val::Scalar(self.exprs.sample(s, i), Type::Boolean))
+    }
+
+    /// The model that runs, and the components from it to the place of the call.
+    fn instance_name(&self, view: View) -> String {
+        let model = self.library.full_name(self.scope(self.root).template.class);
+        match self.scope(view.scope).name.as_str() {
+            "" => model,
+            path => format!("{model}.{path}"),
+        }
     }
 
     /// `delay(expression, time)`; the largest time as a third argument says nothing that a fixed time does not.
@@ -451,6 +460,11 @@ impl<'a> Instance<'a, '_> {
             }
             _ => {}
         }
+        if let ("size" | "ndims", Some(of)) = (name, args.first())
+            && let Some(dims) = self.declared_dims(of, view)
+        {
+            return self.sizes(name, &dims, args.get(1), view, span);
+        }
         let values: Option<Vec<Val>> = args.iter().map(|a| self.eval(a, view)).collect();
         let values = values?;
         let Some(first) = values.first() else {
@@ -458,19 +472,7 @@ impl<'a> Instance<'a, '_> {
         };
         match (name, values.len()) {
             ("array", _) => self.stacked(values, span),
-            ("ndims", 1) => Some(self.integer(first.dims().len() as f64)),
-            ("size", 1) => {
-                let sizes = first.dims().to_vec();
-                let elements = sizes.iter().map(|&n| self.integer(n as f64)).collect();
-                Some(Val::array(vec![sizes.len()], elements))
-            }
-            ("size", 2) => {
-                let k = values[1].as_number(&self.exprs).unwrap_or(0.0);
-                match first.dims().get((k as usize).wrapping_sub(1)) {
-                    Some(&n) => Some(self.integer(n as f64)),
-                    None => self.fail(Code::BadIndex, &format!("{} has no dimension {k}", first.describe()), span),
-                }
-            }
+            ("ndims", 1) | ("size", 1 | 2) => self.sizes(name, first.dims(), args.get(1), view, span),
             ("scalar", 1) if first.elements().len() == 1 => Some(first.elements()[0].clone()),
             ("vector", 1) => Some(Val::array(vec![first.elements().len()], first.elements().to_vec())),
             ("matrix", 1) => self.promote(first, 2, span),
@@ -516,6 +518,29 @@ impl<'a> Instance<'a, '_> {
             ("cross", 2) if first.dims() == [3] && values[1].dims() == [3] => self.cross(first, &values[1]),
             ("skew", 1) if first.dims() == [3] => self.skew(first),
             _ => self.fail(Code::BadCall, &format!("these arguments do not fit `{name}`"), span),
+        }
+    }
+
+    /// `ndims(a)`, `size(a)` or `size(a, k)` of sizes that are known.
+    fn sizes(&mut self, name: &str, dims: &[usize], along: Option<&'a Expr>, view: View, span: Span) -> Option<Val> {
+        if name == "ndims" {
+            return Some(self.integer(dims.len() as f64));
+        }
+        let Some(along) = along else {
+            let elements = dims.iter().map(|&n| self.integer(n as f64)).collect();
+            return Some(Val::array(vec![dims.len()], elements));
+        };
+        let k = self.eval(along, view)?.as_number(&self.exprs).unwrap_or(0.0);
+        match dims.get((k as usize).wrapping_sub(1)) {
+            Some(&n) => Some(self.integer(n as f64)),
+            None => {
+                let what = if dims.is_empty() {
+                    "a single value".into()
+                } else {
+                    format!("an array of size {}", size_text(dims))
+                };
+                self.fail(Code::BadIndex, &format!("{what} has no dimension {k}"), span)
+            }
         }
     }
 

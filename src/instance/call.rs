@@ -1,6 +1,7 @@
 //! Calls: built-in functions, record constructors, user functions (written out as expressions where that is possible).
 
 use super::builtin::retyped;
+use super::files::Place;
 use super::lookup::{Builtin, Found};
 use super::template::{Kind, Template};
 use super::value::{Val, size_text};
@@ -124,7 +125,8 @@ impl<'a> Instance<'a, '_> {
         if let Some(Builtin::Enumeration(i)) = template.builtin {
             return self.enumeration_of(i, args, view, span);
         }
-        let text = gives_text(&template);
+        // a function without outputs only asserts
+        let text = gives_text(&template) || gives_nothing(&template);
         let positional: Option<Vec<Val>> = args.iter().map(|a| self.argument(a, text, view)).collect();
         let mut by_name = Vec::new();
         for (name, e) in named {
@@ -132,6 +134,10 @@ impl<'a> Instance<'a, '_> {
         }
         by_name.extend_from_slice(bound);
         let positional = positional?;
+        if template.builtin == Some(Builtin::Object) {
+            let place = Place { call: span, given: None };
+            return self.construct_object(&class, Given { positional, named: by_name }, place);
+        }
         let scope = self.package(&class);
         let name = self.library.full_name(class.class);
         let callee = Callee { scope, template, name };
@@ -155,12 +161,24 @@ impl<'a> Instance<'a, '_> {
     /// whatever a text depends on.
     fn argument(&mut self, e: &'a Expr, text: bool, view: View) -> Option<Val> {
         let value = self.eval(e, view)?;
+        if text && !value.dims().is_empty() && self.eval.frame == 0 && !self.eval.procedure {
+            let mut scalars = Vec::new();
+            value.scalars(&mut scalars);
+            let fixed = scalars.iter().all(|e| self.variability(*e) <= Variability::Parameter);
+            if fixed && !self.all_known(std::slice::from_ref(&value)) {
+                return self.constant(e, view);
+            }
+        }
         if let Val::Scalar(id, ty) = value
             && (text || ty == Type::Integer)
         {
             let outside = self.eval.frame == 0 && !self.eval.procedure;
             let open = self.exprs.as_num(id).is_none() && self.variability(id) <= Variability::Parameter;
-            if outside && open && !self.eval.locals.iter().any(|(_, v)| v.scalar().is_some_and(|(l, _)| l == id)) {
+            if outside
+                && open
+                && (text || !self.found_at_start(id))
+                && !self.eval.locals.iter().any(|(_, v)| v.scalar().is_some_and(|(l, _)| l == id))
+            {
                 return self.constant(e, view);
             }
         }
@@ -337,6 +355,7 @@ impl<'a> Instance<'a, '_> {
             (Builtin::Real, Some(Type::Real | Type::Integer)) => true,
             (Builtin::Integer, Some(Type::Integer)) | (Builtin::Boolean, Some(Type::Boolean)) => true,
             (Builtin::Enumeration(a), Some(Type::Enumeration(b))) => a == b,
+            (Builtin::Object, _) => matches!(value, Val::Object(_)),
             (Builtin::String, _) => matches!(value.elements().first(), Some(Val::Text(_)) | None),
             (_, None) => value.elements().is_empty(),
             _ => false,
@@ -395,6 +414,9 @@ impl<'a> Instance<'a, '_> {
         named: Vec<(Ident, Val)>,
         span: Span,
     ) -> Option<Val> {
+        if let Some(how) = self.external_builtin_of(callee) {
+            return self.call_external(how, callee, positional, named, Place { call: span, given: None });
+        }
         if callee.template.bases.iter().any(|b| has_external(b.ast)) {
             self.unsupported(span, &format!("the external function `{}`", callee.name));
             return None;
@@ -434,6 +456,11 @@ impl<'a> Instance<'a, '_> {
         if known {
             let message = format!("`{}` does not come to an end", callee.name);
             return self.fail(Code::Recursion, &message, span);
+        }
+        if gives_nothing(&callee.template) {
+            let what = format!("a call of `{}`, which has no output, with arguments that change,", callee.name);
+            self.unsupported(span, &what);
+            return None;
         }
         self.diagnostics.truncate(mark.0);
         self.eval.calls.truncate(mark.1);
@@ -531,12 +558,11 @@ impl<'a> Instance<'a, '_> {
             .filter(|f| f.component.prefix.causality == Some(Causality::Output))
             .filter_map(|f| self.local(f.name).map(|i| self.eval.locals[i].1.clone()))
             .collect();
-        self.outputs(outputs, callee, span)
+        Self::outputs(outputs)
     }
 
-    pub(super) fn outputs(&mut self, mut outputs: Vec<Val>, callee: &Callee<'a>, span: Span) -> Option<Val> {
+    pub(super) fn outputs(mut outputs: Vec<Val>) -> Option<Val> {
         match outputs.len() {
-            0 => self.fail(Code::BadCall, &format!("`{}` has no output", callee.name), span),
             1 => outputs.pop(),
             _ => Some(Val::Tuple(Rc::new(outputs))),
         }
@@ -604,7 +630,8 @@ impl<'a> Instance<'a, '_> {
             Builtin::Integer => Val::Scalar(Exprs::ZERO, Type::Integer),
             Builtin::Boolean => Val::Scalar(Exprs::ZERO, Type::Boolean),
             Builtin::Enumeration(i) => Val::Scalar(Exprs::ONE, Type::Enumeration(i)),
-            Builtin::String => Val::text(""),
+            // an output of this type is made by what Rust knows of the function
+            Builtin::String | Builtin::Object => Val::text(""),
         };
         match found {
             Found::Builtin(b) => Some(of(*b)),
@@ -629,6 +656,15 @@ impl<'a> Instance<'a, '_> {
     fn blank_field(&mut self, f: &Formal<'a>) -> Option<Val> {
         self.declared_local(f)
     }
+}
+
+/// Whether a function has no output.
+fn gives_nothing(template: &Template<'_>) -> bool {
+    matches!(template.kind, ClassKind::Function { .. })
+        && !template
+            .elements
+            .iter()
+            .any(|e| matches!(e.kind, Kind::Component(c) if c.prefix.causality == Some(Causality::Output)))
 }
 
 /// Whether a function has a text as an output.

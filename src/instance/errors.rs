@@ -31,7 +31,6 @@ impl<'a> Instance<'a, '_> {
         let advice = match name {
             "spatialDistribution" => "cut the line into a chain of volumes and resistances",
             "inStream" | "actualStream" => "give the connector a potential and a flow for what is carried along",
-            "getInstanceName" => "write the name as a String parameter",
             _ => "use `when sample(start, interval) then`, with `pre` for the value before",
         };
         self.report(
@@ -186,6 +185,7 @@ pub fn builtin_name(b: Builtin) -> &'static str {
         Builtin::Integer => "Integer",
         Builtin::Boolean => "Boolean",
         Builtin::String => "String",
+        Builtin::Object => "ExternalObject",
         Builtin::Enumeration(_) => "enumeration",
     }
 }

@@ -87,9 +87,23 @@ impl<'a> Instance<'a, '_> {
     /// Evaluates an expression; `None` after a message. A call with several outputs counts as its first (MLS 12.4.3).
     pub fn eval(&mut self, e: &'a Expr, view: View) -> Option<Val> {
         match self.eval_all(e, view)? {
-            Val::Tuple(values) => values.first().cloned(),
+            Val::Tuple(values) => match values.first() {
+                Some(first) => Some(first.clone()),
+                None => self.no_output(e),
+            },
             value => Some(value),
         }
+    }
+
+    /// A call that gives nothing cannot be a value.
+    fn no_output(&mut self, e: &'a Expr) -> Option<Val> {
+        let name = match &e.kind {
+            ExprKind::Call { function, .. } => {
+                function.parts.iter().map(|p| p.name.name.as_str()).collect::<Vec<_>>().join(".")
+            }
+            _ => "this".to_owned(),
+        };
+        self.fail(Code::BadCall, &format!("`{name}` has no output"), e.span)
     }
 
     /// Evaluates an expression with all outputs of a call.

@@ -122,7 +122,7 @@ impl<'a> Instance<'a, '_> {
         text
     }
 
-    fn table(&mut self, file: &str, name: &str, place: Place) -> Option<Rc<Matrix>> {
+    pub(super) fn table(&mut self, file: &str, name: &str, place: Place) -> Option<Rc<Matrix>> {
         let id = match self.library.data(file) {
             Ok(id) => id,
             Err(why) => {

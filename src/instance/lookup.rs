@@ -18,6 +18,8 @@ pub enum Builtin {
     Integer,
     Boolean,
     String,
+    /// `ExternalObject`
+    Object,
     /// Index into `Instance::enumerations`.
     Enumeration(u32),
 }
@@ -56,6 +58,7 @@ fn builtin(name: Symbol) -> Option<Builtin> {
         "Integer" => Builtin::Integer,
         "Boolean" => Builtin::Boolean,
         "String" => Builtin::String,
+        "ExternalObject" => Builtin::Object,
         "StateSelect" => Builtin::Enumeration(STATE_SELECT),
         "AssertionLevel" => Builtin::Enumeration(ASSERTION_LEVEL),
         _ => return None,

@@ -3,7 +3,7 @@
 //! [`instantiate`] builds the tree; [`Instance`] is also the place where expressions are evaluated, because names have
 //! a meaning only inside an instance. The files: [`template`] (what a class holds, inherited elements included),
 //! [`modifiers`] (which modifier reaches which element), [`lookup`] (names), [`build`] (components), [`value`] and
-//! [`evaluate`] (expressions), [`builtin`], [`call`] and [`algorithm`] (functions), `files` (tables from files).
+//! [`evaluate`] (expressions), [`builtin`], [`call`] and [`algorithm`] (functions), `files` (tables from files), `external` (functions of C code that Rust knows).
 
 pub mod algorithm;
 pub mod build;
@@ -12,6 +12,7 @@ pub mod call;
 pub mod deduce;
 mod errors;
 pub mod evaluate;
+mod external;
 mod files;
 mod functional;
 pub mod lookup;
@@ -135,6 +136,8 @@ pub struct Inherited {
     pub causality: Option<ast::Causality>,
     /// Inside a protected element.
     pub hidden: bool,
+    /// Inside an element annotated `HideResult`.
+    pub unwanted: bool,
     /// Below a component that is not at the top level.
     pub nested: bool,
 }
@@ -147,6 +150,8 @@ pub struct VarData<'a> {
     pub ty: Type,
     /// True for String parameters, which have no place in the flat model.
     pub string: bool,
+    /// True for external objects, which have none either.
+    pub object: bool,
     /// Declared variability; `Continuous` when nothing is said.
     pub variability: Variability,
     /// input, output
@@ -157,6 +162,8 @@ pub struct VarData<'a> {
     pub flow: bool,
     /// protected or hidden
     pub hidden: bool,
+    /// annotated `HideResult`
+    pub unwanted: bool,
     /// Final, so not to be set from outside.
     pub final_: bool,
     /// Its value was needed to build the model.
@@ -227,7 +234,11 @@ pub struct Instance<'a, 'l> {
     outer_checked: FxHashMap<(NodeId, *const ast::Component), bool>,
     /// Functions that were seen to keep to what functions may do.
     functions_checked: FxHashSet<ClassId>,
+    /// Parameters by whether their value is only found at the start.
+    at_start: FxHashMap<VarId, bool>,
     procedures: FxHashMap<String, (crate::expr::FunctionId, Vec<Val>)>,
+    /// External functions that stay calls, by what they are.
+    externals: FxHashMap<String, crate::expr::FunctionId>,
     /// Functions that were given as arguments.
     functions: Vec<ClassRef<'a>>,
     /// Tables read from files, by file and name.
@@ -287,6 +298,39 @@ impl<'a> Instance<'a, '_> {
             self.variabilities.push(v);
         }
         self.variabilities[e.index()]
+    }
+
+    /// Whether a value that stays the same through the run is only found at its start: it reads a parameter with
+    /// `fixed = false`, which initial equations determine.
+    pub fn found_at_start(&mut self, e: ExprId) -> bool {
+        self.exprs.variables(e).into_iter().any(|v| self.parameter_found_at_start(v))
+    }
+
+    fn parameter_found_at_start(&mut self, v: VarId) -> bool {
+        let Some(&i) = self.order.get(v.index()) else { return false };
+        let data = &self.variables[i as usize];
+        if data.variability != Variability::Parameter || data.string || data.object || data.constant.is_some() {
+            return false;
+        }
+        if let Some(&known) = self.at_start.get(&v) {
+            return known;
+        }
+        // a circle of parameters has a message of its own
+        self.at_start.insert(v, false);
+        let fixed = data.attributes.iter().find(|(n, _)| *n == "fixed").cloned();
+        let found = match (data.binding.clone(), fixed) {
+            (Some(b), _) => {
+                let mark = self.diagnostics.len();
+                let value = self.bound(i, &b, false);
+                self.diagnostics.truncate(mark);
+                let scalar = value.and_then(|v| v.scalar());
+                scalar.is_some_and(|(e, _)| self.found_at_start(e))
+            }
+            (None, Some((name, b))) => self.known_attribute(i, name, &b, Type::Boolean) == Some(0.0),
+            (None, None) => false,
+        };
+        self.at_start.insert(v, found);
+        found
     }
 
     fn leaf_variability(&self, v: VarId) -> Variability {

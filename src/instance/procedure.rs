@@ -66,7 +66,7 @@ impl<'a> Instance<'a, '_> {
                 })
             })
             .collect();
-        self.outputs(outputs, callee, span)
+        Self::outputs(outputs)
     }
 
     /// Whole numbers and truth values that are known are built in: sizes and loop bounds depend on them.

@@ -10,7 +10,7 @@ use super::value::Val;
 use super::{ElementState, Instance, Node, NodeId, ScopeId, View};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::flat::{Type, Variability};
-use crate::syntax::ast::{ClassKind, ExprKind, Reference, ReferencePart, Subscript};
+use crate::syntax::ast::{ClassKind, Expr, ExprKind, Reference, ReferencePart, Subscript};
 use crate::syntax::symbol::Symbol;
 use std::rc::Rc;
 
@@ -197,6 +197,29 @@ impl<'a> Instance<'a, '_> {
             }
         }
         self.selection_value(&at, r.span)
+    }
+
+    /// Sizes of what a reference to components of the model selects: they are known where the values are not. `None` where
+    /// it is anything else.
+    pub(super) fn declared_dims(&mut self, e: &'a Expr, view: View) -> Option<Vec<usize>> {
+        let ExprKind::Reference(r) = &e.kind else { return None };
+        if !self.eval.constant || !r.global && self.local(r.parts[0].name.name).is_some() {
+            return None;
+        }
+        let from = if r.global { super::ROOT } else { view };
+        let Found::Component(scope, index) = self.lookup(from, r.parts[0].name.name)? else { return None };
+        let node = self.component(scope, index)?;
+        let mut at = self.selection(node);
+        for (i, p) in r.parts.iter().enumerate() {
+            if i > 0 {
+                let Descent::Nodes(next) = self.descend(&at, p) else { return None };
+                at = next;
+            }
+            if !p.subscripts.is_empty() {
+                at = self.subscript_selection(&at, p, view, r.span)?.ok()?;
+            }
+        }
+        Some(at.dims)
     }
 
     fn dynamic_selection(&mut self, at: &Selection, r: &'a Reference, part: usize, view: View) -> Option<Val> {
@@ -489,6 +512,7 @@ impl<'a> Instance<'a, '_> {
         let data = &self.variables[i as usize];
         // Constants of packages are not part of the model, so only their value can stand in it.
         let by_value = data.string
+            || data.object
             || (data.variability <= Variability::Parameter && (self.eval.constant || data.id.0 == u32::MAX));
         if by_value {
             return self.known_value(i, span);
@@ -569,7 +593,7 @@ impl<'a> Instance<'a, '_> {
         let value = self.binding_value(b, constant)?;
         let data = &self.variables[i as usize];
         match (data.string, &value) {
-            (false, Val::Text(_)) => {
+            (false, Val::Text(_) | Val::Object(_)) if !data.object => {
                 let name = data.name.clone();
                 let message = format!("`{name}` is {} and cannot take {}", type_name(data.ty), value.describe());
                 let numeric = data.ty == Type::Real;
@@ -578,6 +602,12 @@ impl<'a> Instance<'a, '_> {
                     d = d.help("write a number without quotes, in the SI unit of the variable: 200 bar are `200e5`; only `--set` and experiment files take units");
                 }
                 self.report(d);
+                None
+            }
+            (_, other) if data.object && !matches!(other, Val::Object(_)) => {
+                let name = data.name.clone();
+                let message = format!("`{name}` is an external object and cannot take {}", value.describe());
+                self.report(Diagnostic::new(Code::TypeMismatch, message).at(b.expr.span, "the value").instance(name));
                 None
             }
             (true, other) if !matches!(other, Val::Text(_)) => {
@@ -684,7 +714,7 @@ impl<'a> Instance<'a, '_> {
     /// Checks a value against the type of the variable that takes it.
     pub fn coerce(&mut self, value: Val, ty: Type, name: &str, span: Span) -> Option<Val> {
         match &value {
-            Val::Text(_) => Some(value),
+            Val::Text(_) | Val::Object(_) => Some(value),
             Val::Scalar(e, own) => match (own, ty) {
                 (a, b) if *a == b => Some(value),
                 (Type::Integer, Type::Real) => Some(Val::Scalar(*e, Type::Real)),

@@ -1,6 +1,7 @@
 //! What an expression of the language evaluates to: scalars over the pool, arrays, records, texts.
 
 use crate::expr::{ExprId, Exprs};
+use crate::external::Object;
 use crate::flat::{MessagePart, Type};
 use crate::syntax::ast::Ident;
 use crate::syntax::symbol::Symbol;
@@ -24,6 +25,8 @@ pub enum Val {
     Record(Rc<Vec<(Symbol, Val)>>),
     /// Several outputs of a function.
     Tuple(Rc<Vec<Val>>),
+    /// What a constructor of an external object made.
+    Object(Object),
     /// A function given as an argument: its number in the instance, and inputs that it was given already.
     Function(u32, Rc<Vec<(Ident, Val)>>),
 }
@@ -108,6 +111,7 @@ impl Val {
             Val::Array { dims, .. } => format!("an array of size {}", size_text(dims)),
             Val::Record(_) => "a record".into(),
             Val::Tuple(_) => "several values".into(),
+            Val::Object(_) => "an external object".into(),
             Val::Function(..) => "a function".into(),
         }
     }
@@ -120,7 +124,7 @@ impl Val {
             Val::Record(fields) => fields.iter().for_each(|(_, v)| v.scalars(out)),
             Val::Tuple(values) => values.iter().for_each(|v| v.scalars(out)),
             Val::Function(_, bound) => bound.iter().for_each(|(_, v)| v.scalars(out)),
-            Val::Text(_) => {}
+            Val::Text(_) | Val::Object(_) => {}
         }
     }
 
@@ -136,7 +140,7 @@ impl Val {
             Val::Function(f, bound) => {
                 Val::Function(*f, Rc::new(bound.iter().map(|(n, v)| (*n, v.map(change))).collect()))
             }
-            Val::Text(t) => Val::Text(t.clone()),
+            Val::Text(_) | Val::Object(_) => self.clone(),
         }
     }
 

@@ -131,7 +131,11 @@ impl Draft {
         if self.variables.len() == self.variables.capacity() {
             self.variables.reserve_exact(self.variables.len() / 8 + 64);
         }
-        self.variables.push(flat::Variable { hidden: true, ..flat::Variable::plain(name, ty, variability, origin) });
+        self.variables.push(flat::Variable {
+            hidden: true,
+            unwanted: true,
+            ..flat::Variable::plain(name, ty, variability, origin)
+        });
         self.roles.push(role);
         self.when_assigned.push(false);
         self.derivative.push(None);

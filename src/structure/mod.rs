@@ -90,6 +90,15 @@ pub struct Dae {
     pub chosen_starts: Vec<VarId>,
 }
 
+impl Dae {
+    /// Whether results show a variable: what is public, and states whoever they belong to, but not what is annotated
+    /// `HideResult`.
+    pub fn is_shown(&self, v: VarId) -> bool {
+        let variable = &self.variables[v.index()];
+        !variable.hidden || !variable.unwanted && self.states.binary_search(&v).is_ok()
+    }
+}
+
 /// `variable = target` or `variable = -target`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Alias {

@@ -1,0 +1,219 @@
+//! Surfaces over a grid, as `ModelicaStandardTables` draws them: constant in each cell, bilinear, or bicubic with the slopes
+//! of Akima along both axes.
+
+use super::curve::slopes;
+use super::options::{Extrapolation, Smoothness};
+
+/// Values over a grid of growing abscissae.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Surface {
+    axes: [Vec<f64>; 2],
+    /// Value, slope along the first axis, along the second, and both, at each point, row by row.
+    points: Vec<[f64; 4]>,
+    smoothness: Smoothness,
+    extrapolation: Extrapolation,
+}
+
+/// A place along an axis: the point before, the share of the way to the next, the distance of both, what lies beyond the
+/// end, and whether that follows the argument.
+struct Place {
+    at: usize,
+    share: f64,
+    width: f64,
+    beyond: f64,
+    moves: bool,
+}
+
+impl Surface {
+    /// `values` row by row: one row for each abscissa of the first axis.
+    pub fn new(axes: [Vec<f64>; 2], values: &[f64], smoothness: Smoothness, extrapolation: Extrapolation) -> Self {
+        let [n, m] = [axes[0].len(), axes[1].len()];
+        let cubic = !matches!(smoothness, Smoothness::Linear | Smoothness::Constant);
+        let mut points: Vec<[f64; 4]> = values.iter().map(|v| [*v, 0.0, 0.0, 0.0]).collect();
+        if cubic {
+            let periodic = extrapolation == Extrapolation::Periodic;
+            let along = |axis: &[f64], line: &[f64]| line_slopes(axis, line, periodic);
+            for j in 0..m {
+                let line: Vec<f64> = (0..n).map(|i| values[i * m + j]).collect();
+                along(&axes[0], &line).into_iter().enumerate().for_each(|(i, s)| points[i * m + j][1] = s);
+            }
+            for i in 0..n {
+                for (from, to) in [(0, 2), (1, 3)] {
+                    let line: Vec<f64> = (0..m).map(|j| points[i * m + j][from]).collect();
+                    along(&axes[1], &line).into_iter().enumerate().for_each(|(j, s)| points[i * m + j][to] = s);
+                }
+            }
+        }
+        Surface { axes, points, smoothness, extrapolation }
+    }
+
+    /// The least and the largest abscissae.
+    pub fn range(&self) -> [[f64; 2]; 2] {
+        [0, 1].map(|end| [0, 1].map(|k| self.axes[k][end * (self.axes[k].len() - 1)]))
+    }
+
+    /// The value or a derivative, of these orders along the axes.
+    pub fn value(&self, u: [f64; 2], orders: [usize; 2]) -> f64 {
+        let (Some(p), Some(q)) = (self.place(0, u[0]), self.place(1, u[1])) else { return f64::NAN };
+        let m = self.axes[1].len();
+        let corner =
+            |i: usize, j: usize| self.points[(p.at + i).min(self.axes[0].len() - 1) * m + (q.at + j).min(m - 1)];
+        let (first, second) = (self.weights(&p, orders[0]), self.weights(&q, orders[1]));
+        let mut sum = 0.0;
+        for i in 0..2 {
+            for j in 0..2 {
+                let [z, along_first, along_second, both] = corner(i, j);
+                let (a, b) = (first[i], second[j]);
+                sum += a[0] * b[0] * z + a[1] * b[0] * along_first + a[0] * b[1] * along_second + a[1] * b[1] * both;
+            }
+        }
+        sum
+    }
+
+    fn place(&self, axis: usize, u: f64) -> Option<Place> {
+        let x = &self.axes[axis];
+        let n = x.len();
+        if n == 1 {
+            return Some(Place { at: 0, share: 0.0, width: 1.0, beyond: 0.0, moves: false });
+        }
+        let (from, to) = (x[0], x[n - 1]);
+        let mut inside = u;
+        let (mut beyond, mut moves) = (0.0, true);
+        if u < from || u > to {
+            match self.extrapolation {
+                Extrapolation::None => return None,
+                Extrapolation::Periodic => inside = from + (u - from).rem_euclid(to - from),
+                Extrapolation::Hold => {
+                    inside = u.clamp(from, to);
+                    moves = false;
+                }
+                Extrapolation::Slope => {
+                    inside = u.clamp(from, to);
+                    beyond = u - inside;
+                }
+            }
+        }
+        let mut at = x.partition_point(|s| *s <= inside).clamp(1, n) - 1;
+        // the last point belongs to the last cell, but where a cell has one value
+        if self.smoothness != Smoothness::Constant {
+            at = at.min(n - 2);
+        }
+        let width = if at + 1 < n { x[at + 1] - x[at] } else { 1.0 };
+        Some(Place { at, share: (inside - x[at]) / width, width, beyond, moves })
+    }
+
+    /// What the values and the slopes at the two points around a place count.
+    fn weights(&self, p: &Place, order: usize) -> [[f64; 2]; 2] {
+        let still = [[1.0, 0.0], [0.0, 0.0]];
+        let none = [[0.0; 2]; 2];
+        if self.smoothness == Smoothness::Constant || p.width == 1.0 && !p.moves && p.share == 0.0 {
+            return if order == 0 { still } else { none };
+        }
+        if order > 0 && !p.moves {
+            return none;
+        }
+        let of = |order: usize| match self.smoothness {
+            Smoothness::Linear => linear(p, order),
+            _ => hermite(p, order),
+        };
+        if p.beyond == 0.0 {
+            return of(order);
+        }
+        // on with the slope of the end
+        match order {
+            0 => sum(of(0), of(1), p.beyond),
+            1 => of(1),
+            _ => none,
+        }
+    }
+}
+
+fn line_slopes(axis: &[f64], line: &[f64], periodic: bool) -> Vec<f64> {
+    if axis.len() < 2 {
+        return vec![0.0; axis.len()];
+    }
+    let secants: Vec<f64> = (1..axis.len()).map(|k| (line[k] - line[k - 1]) / (axis[k] - axis[k - 1])).collect();
+    if secants.len() == 1 {
+        return vec![secants[0]; 2];
+    }
+    slopes(axis, &secants, Smoothness::Akima, periodic)
+}
+
+fn sum(a: [[f64; 2]; 2], b: [[f64; 2]; 2], factor: f64) -> [[f64; 2]; 2] {
+    std::array::from_fn(|i| std::array::from_fn(|j| a[i][j] + factor * b[i][j]))
+}
+
+fn linear(p: &Place, order: usize) -> [[f64; 2]; 2] {
+    match order {
+        0 => [[1.0 - p.share, 0.0], [p.share, 0.0]],
+        1 => [[-1.0 / p.width, 0.0], [1.0 / p.width, 0.0]],
+        _ => [[0.0; 2]; 2],
+    }
+}
+
+/// Hermite's cubic weights over the share of a cell, or their derivatives by the abscissa.
+fn hermite(p: &Place, order: usize) -> [[f64; 2]; 2] {
+    let (t, h) = (p.share, p.width);
+    let polynomial = |c: [f64; 4]| match order {
+        0 => c[0] + t * (c[1] + t * (c[2] + t * c[3])),
+        1 => (c[1] + t * (2.0 * c[2] + 3.0 * t * c[3])) / h,
+        2 => (2.0 * c[2] + 6.0 * t * c[3]) / (h * h),
+        3 => 6.0 * c[3] / (h * h * h),
+        _ => 0.0,
+    };
+    let (near, far) = (polynomial([1.0, 0.0, -3.0, 2.0]), polynomial([0.0, 0.0, 3.0, -2.0]));
+    let (leaving, arriving) = (polynomial([0.0, 1.0, -2.0, 1.0]), polynomial([0.0, 0.0, -1.0, 1.0]));
+    [[near, h * leaving], [far, h * arriving]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn surface(smoothness: Smoothness, extrapolation: Extrapolation, z: impl Fn(f64, f64) -> f64) -> Surface {
+        let axes = [vec![0.0, 1.0, 3.0, 4.0], vec![-1.0, 0.0, 2.0]];
+        let values: Vec<f64> =
+            axes[0].iter().flat_map(|a| axes[1].iter().map(|b| z(*a, *b)).collect::<Vec<_>>()).collect();
+        Surface::new(axes.clone(), &values, smoothness, extrapolation)
+    }
+
+    #[test]
+    fn planes_stay_planes_inside_and_outside() {
+        for smoothness in [Smoothness::Linear, Smoothness::Akima] {
+            let plane = surface(smoothness, Extrapolation::Slope, |a, b| 1.0 + 2.0 * a - 3.0 * b);
+            for u in [[0.5, 0.5], [2.9, -0.9], [-2.0, 5.0], [7.0, 0.1]] {
+                assert!(
+                    (plane.value(u, [0, 0]) - (1.0 + 2.0 * u[0] - 3.0 * u[1])).abs() < 1e-12,
+                    "{smoothness:?} {u:?}"
+                );
+                assert!((plane.value(u, [1, 0]) - 2.0).abs() < 1e-12 && (plane.value(u, [0, 1]) + 3.0).abs() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn derivatives_are_those_of_the_values() {
+        for smoothness in [Smoothness::Linear, Smoothness::Akima] {
+            let curved = surface(smoothness, Extrapolation::Slope, |a, b| a * a - b * b * b + a * b);
+            for u in [[0.4, 0.7], [2.2, -0.3], [5.0, 1.0], [-1.0, 3.0]] {
+                let h = 1e-6;
+                let first =
+                    (curved.value([u[0] + h, u[1]], [0, 0]) - curved.value([u[0] - h, u[1]], [0, 0])) / (2.0 * h);
+                let second =
+                    (curved.value([u[0], u[1] + h], [0, 0]) - curved.value([u[0], u[1] - h], [0, 0])) / (2.0 * h);
+                assert!((first - curved.value(u, [1, 0])).abs() < 1e-5, "{smoothness:?} {u:?}");
+                assert!((second - curved.value(u, [0, 1])).abs() < 1e-5, "{smoothness:?} {u:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn outside_as_asked() {
+        let z = |a: f64, b: f64| 10.0 * a + b;
+        let hold = surface(Smoothness::Linear, Extrapolation::Hold, z);
+        assert_eq!((hold.value([9.0, 0.0], [0, 0]), hold.value([9.0, 0.0], [1, 0])), (40.0, 0.0));
+        assert!(surface(Smoothness::Linear, Extrapolation::None, z).value([9.0, 0.0], [0, 0]).is_nan());
+        let steps = surface(Smoothness::Constant, Extrapolation::Hold, z);
+        assert_eq!((steps.value([2.9, 1.9], [0, 0]), steps.value([4.0, 2.0], [0, 0])), (10.0, 42.0));
+    }
+}

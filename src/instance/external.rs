@@ -1,0 +1,316 @@
+//! Calls of external functions: those that [`crate::external`] knows by their C names are carried out, with the arguments
+//! of the C call in its order.
+
+use super::Instance;
+use super::call::{Callee, is_input};
+use super::files::Place;
+use super::value::Val;
+use crate::diag::Code;
+use crate::expr::ExprId;
+use crate::expr::function::{External, Function, Handle, Stmt, Term};
+use crate::external::{Builtin, Given, NO_NAME, Object};
+use crate::flat::Type;
+use crate::syntax::ast::{Causality, ClassBody, Ident};
+use crate::syntax::symbol::Symbol;
+use std::sync::Arc;
+
+/// `result = name(arguments)`, as it stands behind `external`.
+struct CCall {
+    name: String,
+    /// The output to which the result goes.
+    result: Option<Symbol>,
+    /// The arguments, `None` for anything but a name.
+    arguments: Vec<Option<Symbol>>,
+}
+
+impl CCall {
+    /// Parses what stands between `external` and its semicolon; without a call the function's own name, inputs and output
+    /// are meant (MLS 12.9).
+    fn parse(text: &str) -> Option<Self> {
+        let text = text.trim_start();
+        let text = text.strip_prefix('"').map_or(text, |t| t.split_once('"').map_or("", |(_, rest)| rest));
+        let (head, rest) = text.split_once('(')?;
+        let (result, name) = match head.split_once('=') {
+            Some((result, name)) => (Some(result.trim()), name.trim()),
+            None => (None, head.trim()),
+        };
+        if name.is_empty() || name.contains(char::is_whitespace) {
+            return None;
+        }
+        Some(CCall {
+            name: name.to_owned(),
+            result: result.map(Symbol::new),
+            arguments: arguments(rest).into_iter().map(|a| is_name(a).then(|| Symbol::new(a))).collect(),
+        })
+    }
+}
+
+/// What stands between commas, up to the bracket that closes.
+fn arguments(text: &str) -> Vec<&str> {
+    let (mut depth, mut begin, mut found) = (0, 0, Vec::new());
+    for (at, c) in text.char_indices() {
+        match c {
+            '(' | '[' | '{' => depth += 1,
+            ')' if depth == 0 => {
+                found.push(text[begin..at].trim());
+                break;
+            }
+            ')' | ']' | '}' => depth -= 1,
+            ',' if depth == 0 => {
+                found.push(text[begin..at].trim());
+                begin = at + 1;
+            }
+            _ => {}
+        }
+    }
+    found
+}
+
+fn is_name(text: &str) -> bool {
+    let letter = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    text.chars().all(letter) && text.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
+}
+
+impl<'a> Instance<'a, '_> {
+    /// How an external function is carried out, if it is known.
+    pub(super) fn external_builtin_of(&self, callee: &Callee<'a>) -> Option<Builtin> {
+        crate::external::builtin(&self.c_call(callee)?.name)
+    }
+
+    fn c_call(&self, callee: &Callee<'a>) -> Option<CCall> {
+        let mut bodies = callee.template.bases.iter().filter_map(|b| match &b.ast.body {
+            ClassBody::Long(body) => body.external_text.as_deref(),
+            _ => None,
+        });
+        CCall::parse(bodies.next()?)
+    }
+
+    pub(super) fn call_external(
+        &mut self,
+        how: Builtin,
+        callee: &Callee<'a>,
+        positional: Vec<Val>,
+        named: Vec<(Ident, Val)>,
+        place: Place,
+    ) -> Option<Val> {
+        let inputs = self.formals(callee, is_input);
+        let before = self.enter_frame();
+        let bound = self.bind(callee, &inputs, positional, named, place.call);
+        let value = bound.and_then(|()| self.carry_out_external(how, callee, place));
+        self.leave_frame(before);
+        value
+    }
+
+    fn carry_out_external(&mut self, how: Builtin, callee: &Callee<'a>, place: Place) -> Option<Val> {
+        let call = self.c_call(callee)?;
+        let values: Vec<Option<Val>> = call.arguments.iter().map(|name| self.input_of_c(*name)).collect();
+        let given: Vec<Given> = values.iter().map(|v| self.given(v.as_ref())).collect();
+        match how {
+            Builtin::Nothing => Some(Val::Tuple(Vec::new().into())),
+            Builtin::Object(make) => {
+                let given = self.table_given(given, place)?;
+                match make(&given) {
+                    Ok(object) => Some(Val::Object(object)),
+                    Err(why) => self.fail(Code::BadCall, &format!("the table cannot be used: {why}"), place.call),
+                }
+            }
+            Builtin::Values(make) => match make(&given) {
+                Some(found) => self.external_values(found, &call, callee),
+                None => {
+                    let message = format!("the arguments of `{}` must be known before the run", callee.name);
+                    self.fail(Code::NotConstant, &message, place.call)
+                }
+            },
+            Builtin::Function(make) => {
+                let Some(function) = make(&given) else {
+                    let message = format!("these arguments do not fit `{}`", callee.name);
+                    return self.fail(Code::BadCall, &message, place.call);
+                };
+                let object = given.iter().find_map(|g| match g {
+                    Given::Object(object) => Some(object.address()),
+                    _ => None,
+                });
+                let mut scalars = Vec::new();
+                values.iter().flatten().for_each(|v| v.scalars(&mut scalars));
+                let key = format!("{} of {:x}", call.name, object.unwrap_or(0));
+                self.external_function(function, &key, &call, callee, &scalars)
+            }
+        }
+    }
+
+    /// The value of an input of the function; nothing for outputs and for what is no name.
+    fn input_of_c(&self, name: Option<Symbol>) -> Option<Val> {
+        self.local(name?).map(|i| self.eval.locals[i].1.clone())
+    }
+
+    fn given(&self, value: Option<&Val>) -> Given {
+        match value {
+            Some(text @ Val::Text(_)) => match text.as_text(&self.exprs) {
+                Some(text) => Given::Text(text),
+                None => Given::Numbers { dims: Vec::new(), values: vec![None] },
+            },
+            Some(Val::Object(object)) => Given::Object(object.clone()),
+            Some(value) => {
+                let mut scalars = Vec::new();
+                value.scalars(&mut scalars);
+                let values = scalars.iter().map(|e| self.exprs.as_num(*e)).collect();
+                Given::Numbers { dims: value.dims().to_vec(), values }
+            }
+            None => Given::Numbers { dims: Vec::new(), values: Vec::new() },
+        }
+    }
+
+    /// A table from its file, where one is named.
+    fn table_given(&mut self, mut given: Vec<Given>, place: Place) -> Option<Vec<Given>> {
+        let (Some(Given::Text(file)), Some(Given::Text(name))) = (given.first(), given.get(1)) else {
+            return Some(given);
+        };
+        if file == NO_NAME {
+            return Some(given);
+        }
+        let name = if name == NO_NAME { String::new() } else { name.clone() };
+        let matrix = self.table(&file.clone(), &name, place)?;
+        let values = matrix.values.iter().copied().map(Some).collect();
+        given[2] = Given::Numbers { dims: vec![matrix.rows, matrix.columns], values };
+        Some(given)
+    }
+
+    /// The outputs of a call in the order of the C call: the result, then what is no input among the arguments.
+    fn c_outputs(&self, call: &CCall) -> Vec<Symbol> {
+        let outputs = call.arguments.iter().flatten().copied().filter(|name| self.local(*name).is_none());
+        call.result.into_iter().chain(outputs).collect()
+    }
+
+    fn external_values(&mut self, found: Vec<Given>, call: &CCall, callee: &Callee<'a>) -> Option<Val> {
+        let names = self.c_outputs(call);
+        let mut outputs = Vec::new();
+        for f in self.formals(callee, |c, _| c.prefix.causality == Some(Causality::Output)) {
+            let at = names.iter().position(|n| *n == f.name)?;
+            let ty = self.declared_local(&f)?.element_type().unwrap_or(Type::Real);
+            outputs.push(match found.get(at)? {
+                Given::Text(text) => Val::text(text.as_str()),
+                Given::Object(object) => Val::Object(object.clone()),
+                Given::Numbers { dims, values } => {
+                    let number = |x: &Option<f64>| Some(Val::Scalar(self.exprs.num((*x)?), ty));
+                    let mut numbers: Vec<Val> = values.iter().map(number).collect::<Option<_>>()?;
+                    if dims.is_empty() { numbers.pop()? } else { Val::array(dims.clone(), numbers) }
+                }
+            });
+        }
+        Self::outputs(outputs)
+    }
+
+    /// A call that stays one, or its numbers where all arguments are known.
+    fn external_function(
+        &mut self,
+        function: Arc<dyn External>,
+        key: &str,
+        call: &CCall,
+        callee: &Callee<'a>,
+        scalars: &[ExprId],
+    ) -> Option<Val> {
+        let names = self.c_outputs(call);
+        let formals = self.formals(callee, |c, _| c.prefix.causality == Some(Causality::Output));
+        let mut blanks = Vec::new();
+        for name in &names {
+            let f = formals.iter().find(|f| f.name == *name)?;
+            blanks.push((*name, self.declared_local(f)?));
+        }
+        let count: usize = blanks.iter().map(|(_, v)| v.elements().len()).sum();
+        let known: Option<Vec<f64>> = scalars.iter().map(|e| self.exprs.as_num(*e)).collect();
+        let results: Vec<ExprId> = match known {
+            Some(args) => (0..count).map(|k| self.exprs.num(function.value(k, &args))).collect(),
+            None => {
+                let id = self.external_id(function, key, &callee.name, scalars.len(), count);
+                let output = |k: usize| u32::try_from(k).expect("few outputs");
+                (0..count).map(|k| self.exprs.call(id, output(k), scalars)).collect()
+            }
+        };
+        let mut results = results.into_iter();
+        let mut filled: Vec<(Symbol, Val)> = Vec::new();
+        for (name, blank) in blanks {
+            filled.push((name, blank.map(&mut |e, _| results.next().unwrap_or(e))));
+        }
+        let output = |f: &super::call::Formal<'a>| filled.iter().find(|(n, _)| *n == f.name).map(|(_, v)| v.clone());
+        let outputs: Option<Vec<Val>> = formals.iter().map(output).collect();
+        Self::outputs(outputs?)
+    }
+
+    fn external_id(
+        &mut self,
+        function: Arc<dyn External>,
+        key: &str,
+        name: &str,
+        inputs: usize,
+        outputs: usize,
+    ) -> crate::expr::FunctionId {
+        if let Some(&id) = self.externals.get(key) {
+            return id;
+        }
+        let small = |n: usize| u32::try_from(n).expect("few arguments");
+        let handle = Handle(function);
+        let args: Vec<Term> = (0..small(inputs)).map(Term::Slot).collect();
+        let slots: Vec<u32> = (0..outputs).map(|k| small(inputs + k)).collect();
+        let assign =
+            |(k, slot): (usize, &u32)| Stmt::Assign(*slot, Term::External(handle.clone(), small(k), args.clone()));
+        let id = self.exprs.add_function(Function {
+            name: name.to_owned(),
+            inputs: small(inputs),
+            slots: small(inputs + outputs),
+            outputs: slots.clone(),
+            body: slots.iter().enumerate().map(assign).collect(),
+        });
+        self.externals.insert(key.to_owned(), id);
+        id
+    }
+
+    /// The constructor of an external object, called by the name of its class (MLS 12.9.7).
+    pub(super) fn construct_object(
+        &mut self,
+        class: &super::ClassRef<'a>,
+        given: super::vectorised::Given,
+        place: Place,
+    ) -> Option<Val> {
+        let constructor = match self.member(&super::lookup::Found::Class(class.clone()), Symbol::new("constructor")) {
+            Some(super::lookup::Found::Class(c)) => c,
+            _ => {
+                let message = format!("`{}` has no `constructor`", self.library.full_name(class.class));
+                return self.fail(Code::BadCall, &message, place.call);
+            }
+        };
+        let template = self.template(constructor.class, constructor.parent);
+        let scope = self.package(&constructor);
+        let callee = Callee { scope, template, name: self.library.full_name(constructor.class) };
+        match self.external_builtin_of(&callee) {
+            Some(how) => self.call_external(how, &callee, given.positional, given.named, place),
+            None => {
+                self.unsupported(place.call, &format!("the external function `{}`", callee.name));
+                None
+            }
+        }
+    }
+}
+
+impl Object {
+    /// Where it lies: the same for the same object.
+    fn address(&self) -> usize {
+        match self {
+            Object::Curves(table) => Arc::as_ptr(table).addr(),
+            Object::Times(table) => Arc::as_ptr(table).addr(),
+            Object::Surface(table) => Arc::as_ptr(table).addr(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn calls_are_read_as_they_are_written() {
+        let call = CCall::parse(r#""C" y = f_x(a, size(b, 1), b) annotation(Library="m")"#).expect("a call");
+        assert_eq!((call.name.as_str(), call.result), ("f_x", Some(Symbol::new("y"))));
+        assert_eq!(call.arguments, [Some(Symbol::new("a")), None, Some(Symbol::new("b"))]);
+        assert!(CCall::parse("\"C\"").is_none());
+    }
+}
