@@ -10,9 +10,10 @@ pub struct Curve {
     starts: Vec<f64>,
     /// Coefficients of each over the distance from its start, from the constant up.
     pieces: Vec<[f64; 4]>,
-    /// Where the last piece ends, and the value there.
+    /// Where the last piece ends, the value there, and the value where the first one begins: a jump may lie at both.
     end: f64,
     last: f64,
+    first: f64,
     smoothness: Smoothness,
     extrapolation: Extrapolation,
 }
@@ -32,7 +33,7 @@ impl Curve {
             starts.push(x[0]);
             pieces.push([y[y.len() - 1], 0.0, 0.0, 0.0]);
         }
-        Curve { starts, pieces, end: x[x.len() - 1], last: y[y.len() - 1], smoothness, extrapolation }
+        Curve { starts, pieces, end: x[x.len() - 1], last: y[y.len() - 1], first: y[0], smoothness, extrapolation }
     }
 
     /// The least abscissa.
@@ -56,7 +57,7 @@ impl Curve {
         match self.extrapolation {
             Extrapolation::Periodic => self.inside(self.wrapped(u, left), order, left),
             Extrapolation::None => f64::NAN,
-            Extrapolation::Hold => constant(if u < from { self.pieces[0][0] } else { self.last }, order),
+            Extrapolation::Hold => constant(if u < from { self.first } else { self.last }, order),
             Extrapolation::Slope => self.beyond(u, order),
         }
     }
@@ -69,6 +70,9 @@ impl Curve {
     }
 
     fn inside(&self, u: f64, order: usize, left: bool) -> f64 {
+        if left && u <= self.from() {
+            return constant(self.first, order);
+        }
         let before = |s: &f64| if left { *s < u } else { *s <= u };
         let at = self.starts.partition_point(before).max(1) - 1;
         let constant_at_end = self.smoothness == Smoothness::Constant && !left && u >= self.end;
@@ -81,7 +85,7 @@ impl Curve {
     /// On with the slope of the end.
     fn beyond(&self, u: f64, order: usize) -> f64 {
         let (edge, value, slope) = if u < self.from() {
-            (self.from(), self.pieces[0][0], self.pieces[0][1])
+            (self.from(), self.first, self.pieces[0][1])
         } else {
             let at = self.pieces.len() - 1;
             (self.end, self.last, cubic(&self.pieces[at], self.end - self.starts[at], 1))
@@ -263,6 +267,8 @@ mod tests {
     fn a_jump_has_two_sides() {
         let curve = Curve::new(&[0.0, 1.0, 1.0, 2.0], &[0.0, 1.0, 5.0, 6.0], Smoothness::Linear, Extrapolation::Hold);
         assert_eq!((curve.value(1.0, 0, true), curve.value(1.0, 0, false)), (1.0, 5.0));
+        let on = Curve::new(&[2.0, 2.0, 4.0], &[0.0, 1.0, 0.0], Smoothness::Constant, Extrapolation::Hold);
+        assert_eq!([1.0, 2.0, 3.0, 5.0].map(|u| on.value(u, 0, false)), [0.0, 1.0, 1.0, 0.0]);
         let steps = through(&[1.0, 2.0, 3.0], Smoothness::Constant, Extrapolation::Hold);
         assert_eq!(
             (steps.value(1.0, 0, true), steps.value(1.0, 0, false), steps.value(2.0, 0, false)),

@@ -7,7 +7,7 @@ use super::{
     Confidence, Equation, Experiment, FlatModel, InstanceInfo, Origin, OriginKind, StateSelect, Type, Variability,
     Variable,
 };
-use super::{balance, discrete, equations, ports};
+use super::{balance, discrete, equations, ports, vanish};
 use crate::diag::{Checked, Code, Diagnostic};
 use crate::expr::{ExprId, Exprs, VarId};
 use crate::instance::{ElementState, Instance, Node, ScopeId, View};
@@ -26,6 +26,7 @@ pub fn flatten(instance: &mut Instance<'_, '_>, network: &Network) -> Checked<Fl
     instance.check_texts();
     Walker::new(instance, &numbers, &mut flat).walk(&scopes);
     connections(instance, network, &numbers, &mut flat);
+    vanish::without_vanishing(instance, &mut flat);
     discrete::check(instance, &flat);
     for (v, &i) in flat.variables.iter_mut().zip(&instance.order) {
         if v.variability == Variability::Parameter && instance.variables[i as usize].structural {

@@ -10,6 +10,7 @@ mod numbers;
 mod ports;
 mod print;
 mod roots;
+mod vanish;
 
 pub use explain::explain;
 pub use flatten::flatten;

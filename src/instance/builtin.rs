@@ -252,11 +252,11 @@ impl<'a> Instance<'a, '_> {
         Some(Val::Scalar(self.exprs.sample(s, i), Type::Boolean))
     }
 
-    /// The model that runs, and the components from it to the place of the call.
+    /// The simple name of the model that runs, and the components from it to the place of the call (MLS 3.7.4.3).
     fn instance_name(&self, view: View) -> String {
-        let model = self.library.full_name(self.scope(self.root).template.class);
+        let model = self.library.class(self.scope(self.root).template.class).name.name;
         match self.scope(view.scope).name.as_str() {
-            "" => model,
+            "" => model.to_string(),
             path => format!("{model}.{path}"),
         }
     }

@@ -540,6 +540,20 @@ impl<'a> Instance<'a, '_> {
         let not = self.exprs.not(test);
         let a = self.guarded(test, |s| s.eval(value, view));
         let b = self.guarded(not, |s| s.if_expression(rest, otherwise, view, span));
+        let by_parameter =
+            self.variability(test) <= Variability::Parameter && !self.eval.procedure && self.eval.frame == 0;
+        // what is a state must be known before the run
+        if by_parameter
+            && let (Some(a), Some(b)) = (&a, &b)
+            && self.derivatives_differ(a, b)
+            && !self.found_at_start(test)
+        {
+            self.eval.calls.truncate(mark.1);
+            return match self.constant_boolean(condition, view)? {
+                true => self.eval(value, view),
+                false => self.if_expression(rest, otherwise, view, span),
+            };
+        }
         let merged = match (&a, &b) {
             (Some(a), Some(b)) => a.zip(b, &mut |x, y, _| self.exprs.if_(test, x, y)),
             _ => None,
@@ -548,7 +562,7 @@ impl<'a> Instance<'a, '_> {
             return merged;
         }
         // A branch that has no meaning here (an absent component, another size) is allowed when a parameter decides.
-        if self.variability(test) <= Variability::Parameter && !self.eval.procedure && self.eval.frame == 0 {
+        if by_parameter {
             self.diagnostics.truncate(mark.0);
             self.eval.calls.truncate(mark.1);
             return match self.constant_boolean(condition, view)? {
@@ -561,6 +575,19 @@ impl<'a> Instance<'a, '_> {
             return self.fail(Code::NotConstant, "this text must be known before the run", span);
         }
         self.sizes_differ(&a, &b, span)
+    }
+
+    /// Whether one of two values has derivatives that the other one has not.
+    fn derivatives_differ(&self, a: &Val, b: &Val) -> bool {
+        let of = |v: &Val| {
+            let mut scalars = Vec::new();
+            v.scalars(&mut scalars);
+            let mut found: Vec<_> = scalars.into_iter().flat_map(|e| self.exprs.derivatives(e)).collect();
+            found.sort_unstable();
+            found.dedup();
+            found
+        };
+        of(a) != of(b)
     }
 
     fn range(&mut self, e: &'a Expr, view: View) -> Option<Val> {

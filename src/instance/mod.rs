@@ -300,6 +300,31 @@ impl<'a> Instance<'a, '_> {
         self.variabilities[e.index()]
     }
 
+    /// The number that an expression of parameters has with their present values, if these can be told.
+    pub fn number_of(&mut self, e: ExprId) -> Option<f64> {
+        let mark = self.diagnostics.len();
+        let mut values = Vec::new();
+        for v in self.exprs.variables(e) {
+            let i = *self.order.get(v.index())?;
+            let span = self.variables[i as usize].span;
+            let value = self.known_value(i, span);
+            self.diagnostics.truncate(mark);
+            values.push((self.exprs.var(v), value?.scalar()?.0));
+        }
+        let number = self.exprs.substitute(e, &values);
+        self.exprs.as_num(number)
+    }
+
+    /// Fixes the parameters of an expression with the structure of the model.
+    pub fn fix(&mut self, e: ExprId) {
+        for v in self.exprs.variables(e) {
+            let Some(&i) = self.order.get(v.index()) else { continue };
+            self.variables[i as usize].structural = true;
+            self.variables[i as usize].constant = None;
+        }
+        self.number_of(e);
+    }
+
     /// Whether a value that stays the same through the run is only found at its start: it reads a parameter with
     /// `fixed = false`, which initial equations determine.
     pub fn found_at_start(&mut self, e: ExprId) -> bool {

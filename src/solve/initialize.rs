@@ -116,8 +116,9 @@ pub fn check_starts(system: &System, scales: &Scales, values: &[f64]) -> Result<
         let equation = &system.dae.equations[equation as usize];
         let (found, asked) = (system.eval(equation.lhs, values), system.eval(equation.rhs, values));
         let nominal = match system.dae.exprs.node(equation.lhs) {
-            Node::Var(v) => scales.nominal[v.index()],
-            _ => 0.0,
+            Node::Var(v) | Node::Der(v) => scales.nominal[v.index()],
+            // the terms of a sum cancel
+            _ => terms(system, equation, values),
         };
         let allowed = CHECK_TOLERANCE * (found.abs().max(asked.abs()) + nominal);
         if system.eval(residual, values).abs() > allowed {
@@ -125,6 +126,13 @@ pub fn check_starts(system: &System, scales: &Scales, values: &[f64]) -> Result<
         }
     }
     Ok(())
+}
+
+/// The largest value of a variable that an equation reads.
+fn terms(system: &System, equation: &Equation, values: &[f64]) -> f64 {
+    let dae = &system.dae;
+    let read = [equation.lhs, equation.rhs].into_iter().flat_map(|e| dae.exprs.variables(e));
+    read.map(|v| values[system.layout.var(v)].abs()).fold(0.0, f64::max)
 }
 
 fn contradiction(system: &System, equation: &Equation, found: f64, asked: f64) -> Diagnostic {

@@ -11,7 +11,7 @@ use super::sorting::{System, SystemRow};
 use super::{Unknown, delays, discrete, messages, parameters};
 use crate::diag::Diagnostic;
 use crate::expr::{ExprId, Exprs, Node, VarId};
-use crate::flat::{Equation, Origin, OriginKind};
+use crate::flat::{Equation, Origin, OriginKind, Variability};
 
 /// The matched system and what was decided on the way.
 pub(super) struct Start {
@@ -21,6 +21,16 @@ pub(super) struct Start {
     /// Fixed starts that hold only if they are consistent: expressions that must vanish, with their equations.
     pub checks: Vec<(ExprId, u32)>,
     pub diagnostics: Vec<Diagnostic>,
+}
+
+/// What an initial equation says that determines nothing.
+enum Redundancy {
+    /// The same as another.
+    Said,
+    /// What may follow from the equations of the model: checked at the start.
+    Follows,
+    /// Something else than another condition.
+    Contradicts,
 }
 
 /// What the other systems have found out.
@@ -50,6 +60,8 @@ struct Assembly {
     of_der: Vec<u32>,
     discrete_columns: Vec<bool>,
     rows: Vec<SystemRow>,
+    /// How many of them are the model's own equations, which come first.
+    model_rows: u32,
     incidence: Incidence,
     matching: Matching,
     augmenter: Augmenter,
@@ -85,6 +97,7 @@ impl Assembly {
             of_der,
             discrete_columns,
             rows: Vec::new(),
+            model_rows: 0,
             incidence: Incidence::default(),
             matching,
             augmenter: Augmenter::default(),
@@ -148,6 +161,7 @@ impl Assembly {
                 open.push(made);
             }
         }
+        self.model_rows = self.rows.len() as u32;
         for row in open {
             if !self.augment(row) {
                 self.report(draft, row);
@@ -162,16 +176,65 @@ impl Assembly {
 
     fn initial_equations(&mut self, draft: &mut Draft) {
         for equation in draft.initial_equations.clone() {
+            if self.takes_left_limit(draft, &equation) {
+                continue;
+            }
             draft.equations.push(equation);
             let index = draft.equations.len() as u32 - 1;
             let equation = self.mapped(equation);
             let lone = self.lone_columns(draft, &equation);
             let row = self.push(draft, equation, index, lone);
-            if !self.augment(row) {
-                self.report(draft, row);
+            if self.augment(row) {
+                continue;
+            }
+            match self.redundancy(row) {
+                Redundancy::Said => {}
+                Redundancy::Follows => self.check(draft, row),
+                Redundancy::Contradicts => self.report(draft, row),
             }
         }
         draft.kinds.resize(draft.equations.len(), RowKind::Continuous);
+    }
+
+    /// `pre(v) = value` of a discrete unknown that gets a value of its own at the start says what was before: its start
+    /// value, where that is known.
+    fn takes_left_limit(&self, draft: &mut Draft, equation: &Equation) -> bool {
+        let pre = |e: ExprId| match draft.exprs.node(e) {
+            Node::Pre(v) if !self.keeps[v.index()] => Some(v),
+            _ => None,
+        };
+        let sides = pre(equation.lhs).map(|v| (v, equation.rhs));
+        let Some((v, value)) = sides.or_else(|| pre(equation.rhs).map(|v| (v, equation.lhs))) else { return false };
+        let known = draft
+            .exprs
+            .variables(value)
+            .into_iter()
+            .all(|u| draft.variables[u.index()].variability <= Variability::Parameter);
+        if !known || !draft.exprs.derivatives(value).is_empty() {
+            return false;
+        }
+        // what reads the time is no start value, and nothing but the equation of `v` itself asks for it
+        let time = draft.exprs.time();
+        if !draft.exprs.contains(value, time) {
+            draft.variables[v.index()].start = Some(value);
+        }
+        true
+    }
+
+    /// What an initial equation that determines nothing says beside those that determine the same.
+    fn redundancy(&self, row: u32) -> Redundancy {
+        let own = self.rows[row as usize].equation;
+        // one that has no unknowns may hold as well
+        let mut follows = self.augmenter.rows_seen.iter().all(|&seen| seen == row);
+        for &seen in self.augmenter.rows_seen.iter().filter(|&&seen| seen != row) {
+            let other = self.rows[seen as usize].equation;
+            let same = [(own.lhs, own.rhs), (own.rhs, own.lhs)].contains(&(other.lhs, other.rhs));
+            if same {
+                return Redundancy::Said;
+            }
+            follows |= seen < self.model_rows;
+        }
+        if follows { Redundancy::Follows } else { Redundancy::Contradicts }
     }
 
     /// The discrete unknowns an initial equation can be solved for, if it is a discrete one.
