@@ -67,6 +67,7 @@ codes! {
     BadSet = "E023", Error, "a value given from outside does not fit";
     WrongClassKind = "E024", Error, "a class of the wrong kind stands here";
     AutomaticInner = "N025", Note, "an `inner` component was added";
+    Restricted = "E027", Error, "a class holds or extends what its kind does not allow";
     Shadowed = "N026", Note, "a class of the user hides one that ships with bramah";
     // 1xx ports
     OpenPort = "E103", Error, "a port is not connected";

@@ -207,6 +207,18 @@ fn binding(instance: &mut Instance<'_, '_>, i: u32, v: &mut Variable, flat: &mut
     let Some(value) = instance.coerce(value, v.ty, &v.name, b.expr.span) else { return };
     let Some((e, _)) = value.scalar() else { return };
     equations::watch(instance, flat, watched, v.origin.instance);
+    if v.variability == Variability::Constant && instance.variability(e) == Variability::Parameter {
+        instance.diagnostics.push(
+            Diagnostic::new(
+                Code::NotConstant,
+                format!("the constant `{}` is given a value that parameters change", v.name),
+            )
+            .at(b.expr.span, "this is no constant")
+            .at(v.origin.span, "declared here")
+            .help("declare it as `parameter`"),
+        );
+        return;
+    }
     if parameter && instance.variability(e) > Variability::Parameter {
         instance.diagnostics.push(
             Diagnostic::new(Code::NotConstant, format!("the parameter `{}` is given a value that changes", v.name))

@@ -417,7 +417,10 @@ impl<'a> Instance<'a, '_> {
         let was = self.set_no_event(true);
         let value = self.eval(condition, view);
         self.set_no_event(was);
-        let (condition, _) = value?.scalar()?;
+        let value = value?;
+        let Some((condition, Type::Boolean)) = value.scalar() else {
+            return self.wrong_type("a Boolean", &value, condition.span);
+        };
         let message = args.get(1).or_else(|| by_name("message")).and_then(|m| self.eval(m, view));
         let warning = match args.get(2).or_else(|| by_name("level")) {
             Some(level) => self.constant(level, view)?.as_number(&self.exprs) == Some(1.0),

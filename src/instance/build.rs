@@ -89,6 +89,7 @@ pub fn instantiate<'a, 'l>(library: &'l mut Library<'a>, request: &ModelRequest)
         array_values: FxHashMap::default(),
         inner_declared: FxHashMap::default(),
         functions_checked: FxHashSet::default(),
+        classes_checked: FxHashSet::default(),
         at_start: FxHashMap::default(),
         procedures: FxHashMap::default(),
         externals: FxHashMap::default(),
@@ -355,6 +356,7 @@ impl<'a> Instance<'a, '_> {
         let Kind::Component(declared) = element.kind else { return None };
         let own = View { scope, base: element.base };
         if declared.prefixes.outer && !declared.prefixes.inner {
+            self.check_outer_unmodified(scope, declared);
             return self.outer_component(scope, declared, own);
         }
         let reached = self.reached(scope, index);
@@ -449,9 +451,67 @@ impl<'a> Instance<'a, '_> {
         Some(node)
     }
 
+    /// An `outer` element is somebody else's and cannot be modified (MLS 5.4).
+    fn check_outer_unmodified(&mut self, scope: ScopeId, declared: &'a ast::Component) {
+        let name = declared.name.name;
+        let given = self.scope(scope).args.iter().find(|a| a.target() == name).map(|a| a.span);
+        let own = declared.modification.as_ref().and_then(|m| m.value.as_ref()).map(|e| e.span);
+        let Some(at) = given.or(own) else { return };
+        self.report(
+            Diagnostic::new(Code::UnknownModifier, format!("`outer {name}` cannot be modified"))
+                .at(at, "modified here")
+                .at(declared.name.span, "it means a component declared elsewhere")
+                .note("Modelica 3.6, 5.4")
+                .help(format!("modify `inner {name}`")),
+        );
+    }
+
+    /// Whether a single `inner` variable, or an array, is of the type and size of the `outer` one.
+    fn fits_outer_shape(&mut self, node: NodeId, declared: &'a ast::Component, view: View) -> bool {
+        let Some(dims) = self.dimensions(&declared.subscripts, view, None, 0) else { return false };
+        let dims: Vec<usize> = dims.iter().map(|d| d.size).collect();
+        let (have, first) = match self.node(node) {
+            Node::Array { dims, elements, .. } => (dims.clone(), elements.first().copied()),
+            _ => (Vec::new(), Some(node)),
+        };
+        let Some(Node::Var(i)) = first.map(|n| self.node(n).clone()) else { return true };
+        let found = self.lookup_path(view, &declared.class).ok();
+        let builtin = match &found {
+            Some(Found::Builtin(b)) => Some(*b),
+            Some(Found::Class(c)) => self.template(c.class, c.parent).builtin,
+            _ => None,
+        };
+        let data = &self.variables[i as usize];
+        let same_type = match builtin {
+            Some(Builtin::Real) => data.ty == Type::Real,
+            Some(Builtin::Integer) => data.ty == Type::Integer,
+            Some(Builtin::Boolean) => data.ty == Type::Boolean,
+            Some(Builtin::Enumeration(e)) => data.ty == Type::Enumeration(e),
+            _ => true,
+        };
+        let shaped = matches!(&found, Some(Found::Class(c)) if !self.template(c.class, c.parent).dims.is_empty());
+        if same_type && (shaped || have == dims) {
+            return true;
+        }
+        let (name, text) = (declared.name.name, super::value::size_text);
+        let what = if same_type {
+            format!("`inner {name}` has size {}, and `outer {name}` {}", text(&have), text(&dims))
+        } else {
+            format!("`inner {name}` and `outer {name}` are of different types")
+        };
+        let at = self.variables[i as usize].span;
+        self.report(
+            Diagnostic::new(Code::NoInner, what)
+                .at(declared.name.span, "needed here")
+                .at(at, "declared here")
+                .help("declare both alike, or give one another name"),
+        );
+        false
+    }
+
     /// Whether an `inner` component has what the class of the `outer` one promises (MLS 5.4).
     fn fits_outer(&mut self, node: NodeId, declared: &'a ast::Component, view: View) -> bool {
-        let Node::Object(inner) = *self.node(node) else { return true };
+        let Node::Object(inner) = *self.node(node) else { return self.fits_outer_shape(node, declared, view) };
         let key = (node, std::ptr::from_ref(declared));
         if let Some(&known) = self.outer_checked.get(&key) {
             return known;
@@ -635,6 +695,11 @@ impl<'a> Instance<'a, '_> {
         if !self.can_be_component(plan, template) {
             return None;
         }
+        self.check_prefixes(plan.declared, template);
+        let owner = self.scope(plan.scope).template.kind;
+        if matches!((owner, template.kind), (ClassKind::Block, ClassKind::Connector { .. })) && !plan.prefix.hidden {
+            self.check_block_port(plan.declared, template);
+        }
         let scope = self.new_scope(template.clone(), name.to_string(), args, Some(plan.scope), plan.span);
         let mut prefix = plan.prefix;
         prefix.causality = plan.prefix.causality.or(template.prefix.causality);
@@ -773,7 +838,9 @@ impl<'a> Instance<'a, '_> {
                 continue;
             }
             let Some(expr) = modification.and_then(|m| m.value.as_ref()) else { continue };
-            if attributes.iter().any(|(a, _)| *a == attribute) {
+            if let Some((_, given)) = attributes.iter().find(|(a, _)| *a == attribute) {
+                let outer = given.expr.span;
+                self.check_final(arg.final_, Some(outer), arg.span, attribute);
                 continue;
             }
             let binding = Binding { expr, view: arg.view, access: arg.access.clone(), final_: arg.final_ };
@@ -816,6 +883,19 @@ impl<'a> Instance<'a, '_> {
                     .at(component.name.span, "redeclared here")
                     .at(declared.name.span, "declared without `replaceable`")
                     .help(format!("write `replaceable` before the declaration of `{}`", declared.name.name)),
+            );
+            return;
+        }
+        if declared.prefix.variability == Some(ast::Variability::Constant) {
+            self.report(
+                Diagnostic::new(
+                    Code::BadRedeclare,
+                    format!("`{}` is constant and cannot be redeclared", declared.name.name),
+                )
+                .at(component.name.span, "redeclared here")
+                .at(declared.name.span, "declared `constant`")
+                .help("give it another value")
+                .note("Modelica 3.6, 7.3"),
             );
             return;
         }

@@ -179,6 +179,9 @@ impl<'a> Instance<'a, '_> {
         if self.eval.constant {
             return self.fail(Code::NotConstant, "a derivative is not known before the run", span);
         }
+        if matches!(v.element_type(), Some(ty) if ty != Type::Real) {
+            return self.wrong_type("a Real", v, span);
+        }
         let mut failed = false;
         let value = v.map(&mut |e, _| match self.der_scalar(e) {
             Some(d) => d,
@@ -243,6 +246,9 @@ impl<'a> Instance<'a, '_> {
         let (Some((s, _)), Some((i, _))) = (start.scalar(), interval.scalar()) else {
             return self.wrong_type("a number", &start, span);
         };
+        if self.variability(s).max(self.variability(i)) > Variability::Parameter {
+            return self.fail(Code::NotConstant, "start and interval of `sample` must be known before the run", span);
+        }
         if self.exprs.as_num(i).is_some_and(|x| x <= 0.0) {
             return self.fail(Code::OutOfRange, "the interval of `sample` must be positive", span);
         }
@@ -269,11 +275,18 @@ impl<'a> Instance<'a, '_> {
         if self.eval.constant {
             return self.fail(Code::NotConstant, "`delay` is not known before the run", span);
         }
+        let longest = args.get(2).map(|e| self.constant(e, view).and_then(|v| v.as_number(&self.exprs)));
         let (delayed, time) = (self.eval(delayed, view)?, self.eval(time, view)?);
         let Some((time, _)) = time.scalar() else { return self.wrong_type("a time", &time, span) };
         if self.variability(time) > Variability::Parameter {
             self.unsupported(span, "a `delay` whose time changes during the run");
             return None;
+        }
+        if let (Some(Some(longest)), Some(t)) = (longest, self.exprs.as_num(time))
+            && t > longest
+        {
+            let message = format!("the time of `delay` is {t} s, and its largest is {longest} s");
+            return self.fail(Code::OutOfRange, &message, span);
         }
         if self.exprs.as_num(time).is_some_and(|t| t <= 0.0) {
             return self.fail(Code::OutOfRange, "the time of `delay` must be positive", span);

@@ -355,7 +355,10 @@ impl<'a> Instance<'a, '_> {
             B::Mul => self.product(&a, &b, span),
             B::Div if b.dims().is_empty() => self.broadcast(op, &a, &b, span),
             B::Pow if !a.dims().is_empty() => self.matrix_power(&a, &b, span),
-            B::Div | B::Pow | B::ElementMul | B::ElementDiv | B::ElementPow => self.broadcast(op, &a, &b, span),
+            // arrays are divided and raised element by element with `./` and `.^` only (MLS 10.6)
+            B::Div => self.wrong_type("a single number as divisor", &b, span),
+            B::Pow if !b.dims().is_empty() => self.wrong_type("a single number as exponent", &b, span),
+            B::Pow | B::ElementMul | B::ElementDiv | B::ElementPow => self.broadcast(op, &a, &b, span),
             B::Lt | B::Le | B::Gt | B::Ge | B::Eq | B::Ne => self.relation(op, &a, &b, span),
             B::And | B::Or => {
                 let (ta, tb) = (a.element_type(), b.element_type());
@@ -685,7 +688,7 @@ impl<'a> Instance<'a, '_> {
             value = self.constant(range, view)?;
         }
         match &value {
-            Val::Array { dims, .. } => (0..dims[0]).map(|i| value.slice(i)).collect(),
+            Val::Array { dims, .. } if dims.len() == 1 => (0..dims[0]).map(|i| value.slice(i)).collect(),
             _ => self.wrong_type("a range or vector", &value, range.span),
         }
     }

@@ -377,8 +377,11 @@ impl<'a> Instance<'a, '_> {
         let (defaults, given): (Vec<_>, Vec<_>) =
             args.iter().filter(|a| a.target() == element.name).partition(|a| a.default);
         for arg in given {
+            if arg.ends_here() {
+                self.check_final(arg.final_, outer, arg.span, element.name);
+                outer = outer.or(Some(arg.span));
+            }
             reached.take(arg);
-            outer = outer.or(Some(arg.span));
         }
         if let (Some(b), Kind::Component(_), None) = (&binding, element.kind, &reached.binding) {
             let access = b.access.iter().copied().chain([super::modifiers::Access::Field(element.name)]).collect();
@@ -412,7 +415,7 @@ impl<'a> Instance<'a, '_> {
         reached
     }
 
-    fn check_final(&mut self, final_: bool, outer: Option<Span>, span: Span, name: Symbol) {
+    pub(super) fn check_final(&mut self, final_: bool, outer: Option<Span>, span: Span, name: Symbol) {
         if let (true, Some(outer)) = (final_, outer) {
             self.report(
                 Diagnostic::new(Code::FinalModified, format!("`{name}` is final and cannot be modified"))

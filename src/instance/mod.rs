@@ -19,6 +19,7 @@ pub mod lookup;
 pub mod modifiers;
 mod procedure;
 pub mod reference;
+mod restrictions;
 pub mod template;
 pub mod value;
 mod vectorised;
@@ -234,6 +235,8 @@ pub struct Instance<'a, 'l> {
     outer_checked: FxHashMap<(NodeId, *const ast::Component), bool>,
     /// Functions that were seen to keep to what functions may do.
     functions_checked: FxHashSet<ClassId>,
+    /// Classes that were seen to keep to what their kind allows.
+    classes_checked: FxHashSet<ClassId>,
     /// Parameters by whether their value is only found at the start.
     at_start: FxHashMap<VarId, bool>,
     procedures: FxHashMap<String, (crate::expr::FunctionId, Vec<Val>)>,
@@ -313,6 +316,16 @@ impl<'a> Instance<'a, '_> {
         }
         let number = self.exprs.substitute(e, &values);
         self.exprs.as_num(number)
+    }
+
+    /// The number that a parameter has, if it can be told, without fixing it.
+    pub fn peek(&mut self, i: u32) -> Option<f64> {
+        let structural: Vec<bool> = self.variables.iter().map(|v| v.structural).collect();
+        let (mark, span) = (self.diagnostics.len(), self.variables[i as usize].span);
+        let value = self.known_value(i, span);
+        self.diagnostics.truncate(mark);
+        self.variables.iter_mut().zip(structural).for_each(|(v, was)| v.structural = was);
+        value?.as_number(&self.exprs)
     }
 
     /// Fixes the parameters of an expression with the structure of the model.

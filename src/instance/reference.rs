@@ -122,7 +122,36 @@ impl<'a> Instance<'a, '_> {
             let names = self.visible_names(view);
             self.unknown_name(name.name, name.span, &names);
         }
+        if let Some(Found::Component(scope, index)) = found
+            && !r.global
+            && self.is_variable_around(view, scope, index)
+        {
+            let class = self.scope(view.scope).template.class;
+            let class = self.library.full_name(class);
+            self.report(
+                Diagnostic::new(Code::UnknownName, format!("`{}` belongs to what lies around `{class}`", name.name))
+                    .at(name.span, "only constants of enclosing classes can be read")
+                    .help("give it to the class as a parameter, an input or through `inner` and `outer`")
+                    .note("Modelica 3.6, 5.3.1"),
+            );
+            return None;
+        }
         found
+    }
+
+    /// Whether a component found around a class is a variable of an instance, which only constants may be (MLS 5.3.1).
+    fn is_variable_around(&self, view: View, scope: ScopeId, index: u32) -> bool {
+        let found = self.scope(scope);
+        if scope == view.scope || !found.component {
+            return false;
+        }
+        match found.template.elements[index as usize].kind {
+            Kind::Component(c) => {
+                let constant = Some(crate::syntax::ast::Variability::Constant);
+                c.prefix.variability != constant && found.prefix.variability != constant
+            }
+            Kind::Class(_) => false,
+        }
     }
 
     pub(super) fn unknown_name(&mut self, name: Symbol, span: Span, names: &[Symbol]) {

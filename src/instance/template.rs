@@ -193,6 +193,7 @@ impl<'a> Instance<'a, '_> {
             t.broken = true;
             return base;
         }
+        self.check_class(class);
         self.gathered += 1;
         // reported once, and then not tried to its end again
         let most = if self.tangled { DEEPEST } else { MOST_BASES };
@@ -260,6 +261,19 @@ impl<'a> Instance<'a, '_> {
         t.bases[base as usize].names.insert(name.name);
         if let Some(&i) = t.by_name.get(&name.name) {
             let old = &mut t.elements[i as usize];
+            if redeclare && old.protected != element.protected && old.base != base {
+                let class = self.library.full_name(t.bases[base as usize].class);
+                let now = if element.protected { "protected" } else { "public" };
+                self.report(
+                    Diagnostic::new(Code::BadRedeclare, format!("`{}` is redeclared as a {now} element", name.name))
+                        .at(name.span, "its visibility cannot change")
+                        .class(class)
+                        .note("Modelica 3.6, 7.3")
+                        .help("redeclare it in a section of the same visibility"),
+                );
+                return;
+            }
+            let old = &mut t.elements[i as usize];
             if redeclare {
                 let what = match kind {
                     Kind::Component(c) => What::Component(c),
@@ -321,11 +335,24 @@ impl<'a> Instance<'a, '_> {
         let arguments = modification.map_or(&[][..], |m| m.arguments.as_slice());
         match self.find_base(class, parent, path) {
             Some(Found::Builtin(b)) => {
+                if matches!(self.library.class(class).body, ClassBody::Long(_)) {
+                    self.check_builtin_base(class, b, path.span);
+                }
                 t.builtin = Some(b);
                 let sources = arguments.iter().map(|a| Source { what: What::Argument(a), base });
                 t.builtin_args.extend(sources);
             }
-            Some(Found::Class(found)) => self.gather_base(t, base, &found, arguments, chain),
+            Some(Found::Class(found)) => {
+                let long = matches!(self.library.class(class).body, ClassBody::Long(_));
+                if long {
+                    self.check_base(class, found.class, path.span);
+                }
+                let shaped = t.dims.len();
+                self.gather_base(t, base, &found, arguments, chain);
+                if long && t.dims.len() > shaped && t.builtin.is_none() {
+                    self.check_array_base(class, path.span);
+                }
+            }
             Some(_) => self.unknown_class(path, class),
             None => {
                 t.broken = true;

@@ -229,7 +229,8 @@ impl Collector {
             return;
         }
         let (x, y) = (&instance.variables[a.0 as usize], &instance.variables[b.0 as usize]);
-        if x.variability <= Variability::Parameter && y.variability <= Variability::Parameter {
+        if x.variability.min(y.variability) <= Variability::Parameter {
+            same_parameters(instance, a.0, b.0, at);
             return;
         }
         let flow = x.flow;
@@ -242,6 +243,24 @@ impl Collector {
         let j = sets.key(side(b), at.span, at.scope);
         sets.join(i, j);
     }
+}
+
+/// Constants and parameters of joined connectors are of one kind and have one value (MLS 9.3).
+fn same_parameters(instance: &mut Instance<'_, '_>, a: u32, b: u32, at: &Place) {
+    let of = |i: u32| &instance.variables[i as usize];
+    let (kinds, names) = ([a, b].map(|i| of(i).variability), [a, b].map(|i| of(i).name.clone()));
+    let message = if kinds[0] == kinds[1] {
+        let values = [a, b].map(|i| instance.peek(i));
+        let [Some(x), Some(y)] = values else { return };
+        if (x - y).abs() <= 1e-9 * x.abs().max(y.abs()) {
+            return;
+        }
+        format!("`{}` is {x} and `{}` is {y}, and joined ports need one value", names[0], names[1])
+    } else {
+        format!("`{}` and `{}` cannot be joined: one of them changes where the other one does not", names[0], names[1])
+    };
+    let d = Diagnostic::new(Code::BadConnect, message).at(at.span, "joined here").note("Modelica 3.6, 9.3");
+    instance.diagnostics.push(d.help("give both ports the same value"));
 }
 
 struct Place {
@@ -302,9 +321,43 @@ fn end<'a>(instance: &mut Instance<'a, '_>, e: &'a Expr, view: View) -> Option<O
         }
         return None;
     };
+    if let Some(part) = inner_component(instance, r, scope, index) {
+        instance.diagnostics.push(
+            Diagnostic::new(
+                Code::BadConnect,
+                format!("`{part}` is a component inside another one: its ports are joined there"),
+            )
+            .at(e.span, "a port of a component of this class is needed, or a port of the class itself")
+            .help("give the component a port of its own that is connected inside")
+            .note("Modelica 3.6, 9.3"),
+        );
+        return None;
+    }
     let outside = is_connector(instance, scope, index, view);
     let Some(selection) = instance.port_selection(r, scope, index, view)? else { return Some(None) };
     Some(Some(End { selection, outside }))
+}
+
+/// What stands between the first part of a reference and its port must be connectors (MLS 9.3).
+fn inner_component(instance: &mut Instance<'_, '_>, r: &ast::Reference, scope: ScopeId, index: u32) -> Option<String> {
+    let mut node = instance.component(scope, index)?;
+    for part in r.parts.get(1..r.parts.len().checked_sub(1)?)? {
+        let one = match instance.node(node) {
+            Node::Array { elements, .. } => *elements.first()?,
+            _ => node,
+        };
+        let Node::Object(inside) = *instance.node(one) else { return None };
+        let &i = instance.scope(inside).template.by_name.get(&part.name.name)?;
+        node = instance.component(inside, i)?;
+        let one = match instance.node(node) {
+            Node::Array { elements, .. } => *elements.first()?,
+            _ => node,
+        };
+        if !is_port(instance, one) {
+            return Some(instance.node_name(node));
+        }
+    }
+    None
 }
 
 /// Says so if an end is no port.
