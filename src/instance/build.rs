@@ -371,6 +371,7 @@ impl<'a> Instance<'a, '_> {
         };
         let found = self.class_at(view, &component.class)?;
         self.check_redeclaration(declared, own, component, &found);
+        self.check_chain(declared, own, &reached.redeclarations, &found);
         let plan = Plan {
             name: joined(&self.scope(scope).name, element.name),
             scope,
@@ -381,7 +382,8 @@ impl<'a> Instance<'a, '_> {
             depth,
         };
         let subscripts = if component.subscripts.is_empty() { &declared.subscripts } else { &component.subscripts };
-        let dims = self.dimensions(subscripts, own, reached.binding.as_ref(), 0)?;
+        let shape = reached.binding.clone().or_else(|| start_of(&reached.args));
+        let dims = self.dimensions(subscripts, own, shape.as_ref(), 0)?;
         self.build_shaped(&plan, &found, &dims, reached)
     }
 
@@ -401,6 +403,7 @@ impl<'a> Instance<'a, '_> {
         Inherited {
             variability: stricter,
             causality: component.prefix.causality.or(declared.prefix.causality).or(outer.causality),
+            flow: outer.flow || component.prefix.flow || declared.prefix.flow,
             hidden: outer.hidden || protected || hides_result(declared),
             unwanted: outer.unwanted || hides_result(declared),
             nested: outer.nested,
@@ -559,8 +562,12 @@ impl<'a> Instance<'a, '_> {
                         );
                         return None;
                     };
-                    let value = self.binding_value(b, true)?;
-                    match value.dims().get(skip + i) {
+                    let known = if b.access.is_empty() { self.shape(b.expr, b.view) } else { None };
+                    let sizes = match known {
+                        Some(sizes) => sizes,
+                        None => self.binding_value(b, true)?.dims().to_vec(),
+                    };
+                    match sizes.get(skip + i) {
                         Some(&size) => Extent { size, by: Type::Integer },
                         None => {
                             self.report(
@@ -799,7 +806,7 @@ impl<'a> Instance<'a, '_> {
             variability,
             causality,
             top: !plan.prefix.nested && causality.is_some() && !plan.prefix.hidden,
-            flow: plan.declared.prefix.flow,
+            flow: plan.prefix.flow,
             hidden: plan.prefix.hidden,
             unwanted: plan.prefix.unwanted,
             final_: part.final_,
@@ -902,6 +909,47 @@ impl<'a> Instance<'a, '_> {
         let path = declared.constraint.as_ref().map_or(&declared.class, |c| &c.path);
         let Ok(constraint) = self.lookup_path(own, path) else { return };
         self.check_subtype(&constraint, found, component.name.span, path.span);
+    }
+
+    /// A redeclaration of a redeclaration needs the inner one to be replaceable, and keeps to its constraint, which keeps
+    /// to the one before (MLS 7.3).
+    fn check_chain(&mut self, declared: &'a ast::Component, own: View, all: &[(ArgKind<'a>, View)], found: &Found<'a>) {
+        let steps: Vec<(&'a ast::Component, View)> = all
+            .iter()
+            .filter_map(|(kind, view)| match kind {
+                ArgKind::Component(c) => Some((*c, *view)),
+                _ => None,
+            })
+            .chain([(declared, own)])
+            .collect();
+        for (k, &(step, view)) in steps.iter().enumerate() {
+            if k > 0 && !step.prefixes.replaceable && !std::ptr::eq(step, declared) {
+                let outer = steps[k - 1].0;
+                self.report(
+                    Diagnostic::new(Code::BadRedeclare, format!("`{}` is not replaceable any more", step.name.name))
+                        .at(outer.name.span, "redeclared again here")
+                        .at(step.name.span, "redeclared without `replaceable`")
+                        .help("write `redeclare replaceable` at the inner one")
+                        .note("Modelica 3.6, 7.3"),
+                );
+                return;
+            }
+            let Some(constraint) = &step.constraint else { continue };
+            let Ok(promised) = self.lookup_path(view, &constraint.path) else { continue };
+            let at = step.name.span;
+            // what stands here itself, and what takes its place in the end
+            let own_class = self.lookup_path(view, &step.class).ok();
+            let fits = own_class.is_none_or(|c| self.check_subtype(&promised, &c, at, constraint.path.span))
+                && self.check_subtype(&promised, found, steps[0].0.name.span, constraint.path.span);
+            let before = steps.get(k + 1).and_then(|(s, v)| {
+                let path = s.constraint.as_ref().map_or(&s.class, |c| &c.path);
+                Some((self.lookup_path(*v, path).ok()?, path.span))
+            });
+            let keeps = before.is_none_or(|(wider, span)| !fits || self.check_subtype(&wider, &promised, at, span));
+            if !fits || !keeps {
+                return;
+            }
+        }
     }
 
     /// Every public component of the constraining class must exist in the class that takes its place (MLS 6.4).
@@ -1019,6 +1067,17 @@ fn unravel(mut flat: usize, dims: &[usize]) -> Vec<At> {
         flat /= d;
     }
     index
+}
+
+/// The start value that modifiers give an array.
+fn start_of<'a>(args: &[Arg<'a>]) -> Option<Binding<'a>> {
+    args.iter().find_map(|arg| match arg.kind {
+        ArgKind::Modify([name], Some(m)) if name.name == "start" && !arg.each => {
+            let expr = m.value.as_ref()?;
+            Some(Binding { expr, view: arg.view, access: arg.access.clone(), final_: arg.final_ })
+        }
+        _ => None,
+    })
 }
 
 fn hides_result(c: &ast::Component) -> bool {

@@ -100,9 +100,17 @@ impl<'a> Instance<'a, '_> {
         let Found::Component(scope, index) = self.lookup(view, function.parts[0].name.name)? else { return None };
         let mut node = self.component(scope, index)?;
         let (last, middle) = function.parts[1..].split_last()?;
-        for part in middle {
+        for (k, part) in middle.iter().enumerate() {
             let super::Node::Object(s) = *self.node(node) else { return None };
             let &i = self.scope(s).template.by_name.get(&part.name.name)?;
+            if matches!(self.scope(s).template.elements[i as usize].kind, Kind::Class(_)) {
+                let mut found = self.lookup(View { scope: s, base: 0 }, part.name.name)?;
+                for next in middle[k + 1..].iter().chain([last]) {
+                    found = self.member(&found, next.name.name)?;
+                }
+                let Found::Class(class) = found else { return None };
+                return Some(class);
+            }
             node = self.component(s, i)?;
         }
         let super::Node::Object(s) = *self.node(node) else { return None };
@@ -132,8 +140,19 @@ impl<'a> Instance<'a, '_> {
         for (name, e) in named {
             by_name.push((*name, self.argument(e, text, view)?));
         }
+        let mut positional = positional?;
+        if !bound.is_empty() {
+            let inputs =
+                template.elements.iter().filter(|e| matches!(e.kind, Kind::Component(c) if is_input(c, e.protected)));
+            let open: Vec<Ident> = inputs
+                .filter(|e| bound.iter().all(|(n, _)| n.name != e.name))
+                .map(|e| Ident { name: e.name, span })
+                .collect();
+            if positional.len() <= open.len() {
+                by_name.extend(open.into_iter().zip(std::mem::take(&mut positional)));
+            }
+        }
         by_name.extend_from_slice(bound);
-        let positional = positional?;
         if template.builtin == Some(Builtin::Object) {
             let place = Place { call: span, given: None };
             return self.construct_object(&class, Given { positional, named: by_name }, place);

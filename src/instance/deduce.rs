@@ -4,6 +4,7 @@
 use super::evaluate::Extent;
 use super::lookup::Found;
 use super::{Instance, Node, View};
+use crate::diag::{Code, Diagnostic};
 use crate::flat::Type;
 use crate::syntax::ast::{Equation, EquationKind, Expr, ExprKind, Reference, Statement, StatementKind, Subscript};
 use crate::syntax::symbol::Symbol;
@@ -28,7 +29,24 @@ impl<'a> Instance<'a, '_> {
                 found.extend(part.subscripts.iter().position(|s| is_name(s, name)).map(|k| (r, p, k)));
             }
         });
-        found.into_iter().find_map(|(r, part, dimension)| self.indexed_size(r, part, dimension, view))
+        let mut first: Option<Extent> = None;
+        for (r, part, dimension) in found {
+            let Some(size) = self.indexed_size(r, part, dimension, view) else { continue };
+            match first {
+                None => first = Some(size),
+                Some(other) if other.size != size.size => {
+                    let message = format!(
+                        "the loop over `{name}` indexes arrays of {} and of {} elements",
+                        other.size, size.size
+                    );
+                    let d = Diagnostic::new(Code::SizeMismatch, message).at(r.span, "of another size");
+                    self.report(d.help(format!("write `for {name} in 1:n`")).note("Modelica 3.6, 11.2.2.1"));
+                    return None;
+                }
+                Some(_) => {}
+            }
+        }
+        first
     }
 
     /// The size of the array that `parts[..=part]` names without its subscripts.

@@ -684,7 +684,10 @@ impl<'a> Instance<'a, '_> {
             _ => self.eval(range, view)?,
         };
         // Indices and counts must be known; other elements may change during the run.
-        if !inside && !matches!(value.element_type(), Some(Type::Real) | None) {
+        let mut scalars = Vec::new();
+        value.scalars(&mut scalars);
+        let fixed = scalars.iter().all(|e| self.variability(*e) <= Variability::Parameter);
+        if !inside && fixed && !matches!(value.element_type(), Some(Type::Real) | None) {
             value = self.constant(range, view)?;
         }
         match &value {

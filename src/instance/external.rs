@@ -19,8 +19,42 @@ struct CCall {
     name: String,
     /// The output to which the result goes.
     result: Option<Symbol>,
-    /// The arguments, `None` for anything but a name.
-    arguments: Vec<Option<Symbol>>,
+    arguments: Vec<Argument>,
+}
+
+/// An argument of a C call.
+#[derive(Clone, Debug, PartialEq)]
+enum Argument {
+    /// An input or output of the function.
+    Name(Symbol),
+    /// A text.
+    Text(String),
+    /// A number or truth value.
+    Number(f64),
+    /// Anything else, such as `size(table, 1)`, which Rust knows by itself.
+    Other,
+}
+
+impl Argument {
+    fn parse(text: &str) -> Self {
+        match text {
+            "true" => Argument::Number(1.0),
+            "false" => Argument::Number(0.0),
+            _ if is_name(text) => Argument::Name(Symbol::new(text)),
+            _ => match (text.parse(), text.strip_prefix('"').and_then(|t| t.strip_suffix('"'))) {
+                (Ok(number), _) => Argument::Number(number),
+                (_, Some(words)) => Argument::Text(words.to_owned()),
+                _ => Argument::Other,
+            },
+        }
+    }
+
+    fn name(&self) -> Option<Symbol> {
+        match self {
+            Argument::Name(name) => Some(*name),
+            _ => None,
+        }
+    }
 }
 
 impl CCall {
@@ -40,16 +74,18 @@ impl CCall {
         Some(CCall {
             name: name.to_owned(),
             result: result.map(Symbol::new),
-            arguments: arguments(rest).into_iter().map(|a| is_name(a).then(|| Symbol::new(a))).collect(),
+            arguments: arguments(rest).into_iter().map(Argument::parse).collect(),
         })
     }
 }
 
 /// What stands between commas, up to the bracket that closes.
 fn arguments(text: &str) -> Vec<&str> {
-    let (mut depth, mut begin, mut found) = (0, 0, Vec::new());
+    let (mut depth, mut begin, mut found, mut quoted) = (0, 0, Vec::new(), false);
     for (at, c) in text.char_indices() {
+        quoted ^= c == '"';
         match c {
+            _ if quoted => {}
             '(' | '[' | '{' => depth += 1,
             ')' if depth == 0 => {
                 found.push(text[begin..at].trim());
@@ -103,7 +139,7 @@ impl<'a> Instance<'a, '_> {
 
     fn carry_out_external(&mut self, how: Builtin, callee: &Callee<'a>, place: Place) -> Option<Val> {
         let call = self.c_call(callee)?;
-        let values: Vec<Option<Val>> = call.arguments.iter().map(|name| self.input_of_c(*name)).collect();
+        let values: Vec<Option<Val>> = call.arguments.iter().map(|a| self.input_of_c(a)).collect();
         let given: Vec<Given> = values.iter().map(|v| self.given(v.as_ref())).collect();
         match how {
             Builtin::Nothing => Some(Val::Tuple(Vec::new().into())),
@@ -138,9 +174,14 @@ impl<'a> Instance<'a, '_> {
         }
     }
 
-    /// The value of an input of the function; nothing for outputs and for what is no name.
-    fn input_of_c(&self, name: Option<Symbol>) -> Option<Val> {
-        self.local(name?).map(|i| self.eval.locals[i].1.clone())
+    /// The value of an argument that is an input of the function or written out.
+    fn input_of_c(&mut self, argument: &Argument) -> Option<Val> {
+        match argument {
+            Argument::Name(name) => self.local(*name).map(|i| self.eval.locals[i].1.clone()),
+            Argument::Text(words) => Some(Val::text(words.as_str())),
+            Argument::Number(x) => Some(Val::Scalar(self.exprs.num(*x), Type::Real)),
+            Argument::Other => None,
+        }
     }
 
     fn given(&self, value: Option<&Val>) -> Given {
@@ -177,7 +218,7 @@ impl<'a> Instance<'a, '_> {
 
     /// The outputs of a call in the order of the C call: the result, then what is no input among the arguments.
     fn c_outputs(&self, call: &CCall) -> Vec<Symbol> {
-        let outputs = call.arguments.iter().flatten().copied().filter(|name| self.local(*name).is_none());
+        let outputs = call.arguments.iter().filter_map(Argument::name).filter(|name| self.local(*name).is_none());
         call.result.into_iter().chain(outputs).collect()
     }
 
@@ -310,7 +351,10 @@ mod tests {
     fn calls_are_read_as_they_are_written() {
         let call = CCall::parse(r#""C" y = f_x(a, size(b, 1), b) annotation(Library="m")"#).expect("a call");
         assert_eq!((call.name.as_str(), call.result), ("f_x", Some(Symbol::new("y"))));
-        assert_eq!(call.arguments, [Some(Symbol::new("a")), None, Some(Symbol::new("b"))]);
+        let name = |n| Argument::Name(Symbol::new(n));
+        assert_eq!(call.arguments, [name("a"), Argument::Other, name("b")]);
+        let literal = CCall::parse(r#"f("x, y", 2.5, true)"#).expect("a call");
+        assert_eq!(literal.arguments, [Argument::Text("x, y".into()), Argument::Number(2.5), Argument::Number(1.0)]);
         assert!(CCall::parse("\"C\"").is_none());
     }
 }

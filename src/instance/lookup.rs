@@ -118,10 +118,15 @@ impl<'a> Instance<'a, '_> {
 
     fn lookup_full(&mut self, parts: &[ast::Ident], last: Option<Symbol>) -> Option<Found<'a>> {
         let mut found = self.lookup_top(parts[0].name)?;
-        for name in parts[1..].iter().map(|p| p.name).chain(last) {
-            found = self.member(&found, name)?;
+        for part in &parts[1..] {
+            let inside = self.member(&found, part.name)?;
+            self.check_member(&found, &inside, *part);
+            found = inside;
         }
-        Some(found)
+        match last {
+            Some(name) => self.member(&found, name),
+            None => Some(found),
+        }
     }
 
     /// The meaning of an element: its class, or the component itself.
@@ -156,6 +161,7 @@ impl<'a> Instance<'a, '_> {
         }
         let mut found = ClassRef { class, parent, args: args.into() };
         self.scope_mut(scope).elements[index as usize] = ElementState::Class(found.clone());
+        self.check_class_chain(declared, own, textual, &reached.redeclarations);
         if redeclared && !self.fits_declared(declared, own, textual, ast.name.span, &found) {
             // what follows is said of the declared class, which the rest of the text was written for
             let class = self.library.enter(declared, Some(textual));
@@ -163,6 +169,37 @@ impl<'a> Instance<'a, '_> {
             self.scope_mut(scope).elements[index as usize] = ElementState::Class(found.clone());
         }
         found
+    }
+
+    /// Classes that redeclarations put in each other's place keep to the constraints said on the way (MLS 7.3).
+    fn check_class_chain(
+        &mut self,
+        declared: &'a ast::Class,
+        own: View,
+        textual: ClassId,
+        all: &[(ArgKind<'a>, View)],
+    ) {
+        let steps = all.iter().filter_map(|(kind, view)| match kind {
+            ArgKind::Class(c) => Some((*c, *view)),
+            _ => None,
+        });
+        let steps: Vec<(&'a ast::Class, View)> = steps.chain([(declared, own)]).collect();
+        let outermost = self.class_of(steps[0].0, steps[0].1, textual);
+        for &(step, view) in &steps {
+            let Some(constraint) = &step.constraint else { continue };
+            let Ok(promised) = self.lookup_path(view, &constraint.path) else { continue };
+            let itself = self.class_of(step, view, textual);
+            if !self.check_subtype(&promised, &itself, step.name.span, constraint.path.span)
+                || !self.check_subtype(&promised, &outermost, steps[0].0.name.span, constraint.path.span)
+            {
+                return;
+            }
+        }
+    }
+
+    fn class_of(&mut self, ast: &'a ast::Class, parent: View, textual: ClassId) -> Found<'a> {
+        let class = self.library.enter(ast, Some(textual));
+        Found::Class(ClassRef { class, parent, args: Rc::from([]) })
     }
 
     /// Whether a class that takes the place of a declared one has what the constraining class promises (MLS 6.4).
@@ -187,6 +224,43 @@ impl<'a> Instance<'a, '_> {
             }
         };
         constraint.is_none_or(|c| self.check_subtype(&c, &Found::Class(found.clone()), at, place))
+    }
+
+    /// What a dotted name may reach: nothing protected, and in a class that is used as a package only what does not depend
+    /// on its components (MLS 4.1, 5.3.2).
+    fn check_member(&mut self, around: &Found<'a>, inside: &Found<'a>, part: ast::Ident) {
+        let Found::Class(class) = around else { return };
+        if self.gathering.iter().any(|(c, _)| *c == class.class) {
+            return;
+        }
+        let template = self.template(class.class, class.parent);
+        let element = template.by_name.get(&part.name).map(|&i| &template.elements[i as usize]);
+        let name = self.library.full_name(class.class);
+        let (message, label, help) = if element.is_some_and(|e| e.protected) {
+            let message = format!("`{}` of `{name}` is protected", part.name);
+            (
+                message,
+                "cannot be reached from outside",
+                "declare it above `protected`, or use it in a class that extends this one",
+            )
+        } else if let (Found::Class(c), false) = (inside, template.is_package()) {
+            if self.library.class(c.class).prefixes.encapsulated {
+                return;
+            }
+            let message = format!("`{}` stands in `{name}`, which is no package", part.name);
+            (
+                message,
+                "this class may depend on components around it",
+                "declare it `encapsulated`, or move it into a package",
+            )
+        } else {
+            return;
+        };
+        if self.diagnostics.iter().any(|d| d.labels.first().is_some_and(|l| l.span == part.span)) {
+            return;
+        }
+        let d = Diagnostic::new(Code::UnknownName, message).at(part.span, label).class(name);
+        self.report(d.help(help).note("Modelica 3.6, 4.1 and 5.3.2"));
     }
 
     /// A member of something found: a class in a package, a constant, an inherited class.
@@ -220,7 +294,9 @@ impl<'a> Instance<'a, '_> {
         let start = if path.global { self.lookup_top(first) } else { self.lookup(view, first) };
         let mut found = start.ok_or(0usize)?;
         for (i, part) in path.parts.iter().enumerate().skip(1) {
-            found = self.member(&found, part.name).ok_or(i)?;
+            let inside = self.member(&found, part.name).ok_or(i)?;
+            self.check_member(&found, &inside, *part);
+            found = inside;
         }
         Ok(found)
     }

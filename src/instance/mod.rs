@@ -135,6 +135,8 @@ pub struct Inherited {
     pub variability: Option<ast::Variability>,
     /// input, output
     pub causality: Option<ast::Causality>,
+    /// flow
+    pub flow: bool,
     /// Inside a protected element.
     pub hidden: bool,
     /// Inside an element annotated `HideResult`.

@@ -116,6 +116,8 @@ pub struct Reached<'a> {
     pub no_binding: bool,
     /// The outermost redeclaration of it.
     pub redeclare: Option<(ArgKind<'a>, View, Rc<[Access]>, bool)>,
+    /// All of them, outermost first, with where their names are looked up.
+    pub redeclarations: Vec<(ArgKind<'a>, View)>,
     /// A `final` modification reached it, from here on outer ones are errors.
     pub final_: bool,
     /// Where the value was given.
@@ -133,11 +135,21 @@ impl<'a> Reached<'a> {
             ArgKind::Modify(_, Some(m)) => self.modification(m, arg.view, &arg.access, false, arg.final_, arg.span),
             ArgKind::Modify(_, None) => self.final_ |= arg.final_,
             ArgKind::Component(_) | ArgKind::Class(_) => {
-                if self.redeclare.is_none() {
+                let outermost = self.redeclare.is_none();
+                self.redeclarations.push((arg.kind, arg.view));
+                if outermost {
                     self.redeclare = Some((arg.kind, arg.view, arg.access.clone(), arg.each));
                 }
+                // what a redeclaration says of its constraint holds for whatever takes its place
+                let constraint = match arg.kind {
+                    ArgKind::Component(c) => c.constraint.as_ref(),
+                    _ => None,
+                };
+                if let Some(m) = constraint.and_then(|c| c.modification.as_ref()) {
+                    self.modification(m, arg.view, &arg.access, false, arg.final_, arg.span);
+                }
                 if let ArgKind::Component(c) = arg.kind
-                    && let Some(m) = &c.modification
+                    && let Some(m) = c.modification.as_ref().filter(|_| outermost || constraint.is_none())
                 {
                     self.modification(m, arg.view, &arg.access, false, arg.final_, arg.span);
                 }

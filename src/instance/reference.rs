@@ -140,9 +140,15 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// Whether a component found around a class is a variable of an instance, which only constants may be (MLS 5.3.1).
-    fn is_variable_around(&self, view: View, scope: ScopeId, index: u32) -> bool {
-        let found = self.scope(scope);
-        if scope == view.scope || !found.component {
+    ///
+    /// A function called through a component, as in `oil.density(p)`, reads what that holds; no other function is found there.
+    fn is_variable_around(&self, mut view: View, scope: ScopeId, index: u32) -> bool {
+        // the modifiers of a short class stand around it
+        while let Some(base) = self.scope(view.scope).template.bases.get(view.base as usize).filter(|b| b.short) {
+            view = base.parent;
+        }
+        let (found, from) = (self.scope(scope), self.scope(view.scope));
+        if scope == view.scope || !found.component || matches!(from.template.kind, ClassKind::Function { .. }) {
             return false;
         }
         match found.template.elements[index as usize].kind {
@@ -249,6 +255,42 @@ impl<'a> Instance<'a, '_> {
             }
         }
         Some(at.dims)
+    }
+
+    /// Sizes of an expression whose value may change, where its form tells them.
+    pub(super) fn shape(&mut self, e: &'a Expr, view: View) -> Option<Vec<usize>> {
+        let before = std::mem::replace(&mut self.eval.constant, true);
+        let found = self.shape_inside(e, view);
+        self.eval.constant = before;
+        found
+    }
+
+    fn shape_inside(&mut self, e: &'a Expr, view: View) -> Option<Vec<usize>> {
+        use crate::syntax::ast::BinaryOp as B;
+        match &e.kind {
+            ExprKind::Reference(_) => self.declared_dims(e, view),
+            ExprKind::Integer(_) | ExprKind::Real(_) | ExprKind::Boolean(_) => Some(Vec::new()),
+            ExprKind::Unary(_, a) => self.shape_inside(a, view),
+            ExprKind::Binary(op, a, b) => {
+                let (a, b) = (self.shape_inside(a, view)?, self.shape_inside(b, view)?);
+                match (op, a.len(), b.len()) {
+                    (_, 0, 0) | (B::Pow, ..) => Some(a),
+                    (_, 0, _) => Some(b),
+                    (_, _, 0) => Some(a),
+                    (B::Mul, 2, 2) => Some(vec![a[0], b[1]]),
+                    (B::Mul, 2, 1) => Some(vec![a[0]]),
+                    (B::Mul, 1, 2) => Some(vec![b[1]]),
+                    (B::Mul, 1, 1) => Some(Vec::new()),
+                    _ => Some(a),
+                }
+            }
+            ExprKind::Array(items) => {
+                let inner = self.shape_inside(items.first()?, view)?;
+                Some(std::iter::once(items.len()).chain(inner).collect())
+            }
+            ExprKind::If { branches, .. } => self.shape_inside(&branches.first()?.1, view),
+            _ => None,
+        }
     }
 
     fn dynamic_selection(&mut self, at: &Selection, r: &'a Reference, part: usize, view: View) -> Option<Val> {
@@ -403,6 +445,18 @@ impl<'a> Instance<'a, '_> {
             }
             match self.member(&found, part.name.name) {
                 Some(Found::Component(scope, index)) => {
+                    if let Found::Class(c) = &found
+                        && self.library.class(c.class).prefixes.partial
+                    {
+                        let name = self.library.full_name(c.class);
+                        let d = Diagnostic::new(
+                            Code::Partial,
+                            format!("`{name}` is partial: its constants may be missing"),
+                        );
+                        let d = d.at(r.span, "read here").help("name a package that extends it");
+                        self.report(d.note("Modelica 3.6, 5.3.2"));
+                        return None;
+                    }
                     let node = self.element_node(scope, index, r)?;
                     return self.package_constant(node, r, i, view);
                 }

@@ -53,6 +53,18 @@ pub struct Base<'a> {
     pub broken_components: Vec<Symbol>,
 }
 
+impl Template<'_> {
+    /// Whether a class holds what a package holds: classes and constants. Other kinds than models are never used as one.
+    pub(super) fn is_package(&self) -> bool {
+        let model = matches!(self.kind, ast::ClassKind::Model | ast::ClassKind::Block | ast::ClassKind::Class);
+        let constant = |e: &Element<'_>| match e.kind {
+            Kind::Component(c) => c.prefix.variability == Some(ast::Variability::Constant),
+            Kind::Class(_) => true,
+        };
+        !model || self.builtin.is_some() || self.elements.iter().all(constant)
+    }
+}
+
 impl<'a> Base<'a> {
     /// A class before its elements are known.
     pub(super) fn of(class: ClassId, ast: &'a ast::Class, parent: View) -> Self {
@@ -243,7 +255,9 @@ impl<'a> Instance<'a, '_> {
                 }
                 ElementKind::Class(c) => {
                     self.library.enter(c, Some(t.bases[base as usize].class));
-                    self.add_element(t, base, element, c.name, Kind::Class(c), c.prefixes.redeclare);
+                    // `model extends M` takes the place of the inherited class, with or without `redeclare`
+                    let extends = matches!(&c.body, ClassBody::Long(body) if body.class_extends.is_some());
+                    self.add_element(t, base, element, c.name, Kind::Class(c), c.prefixes.redeclare || extends);
                 }
             }
         }
