@@ -12,9 +12,10 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("syntax", &["diag"]),
     ("resolve", &["diag", "syntax", "world"]),
     ("expr", &["diag", "syntax"]),
+    ("external", &["expr"]),
     ("units", &["diag", "expr", "flat"]),
     // Instances speak of variables with the types of the flat model.
-    ("instance", &["diag", "expr", "flat", "resolve", "results", "syntax", "units"]),
+    ("instance", &["diag", "expr", "external", "flat", "resolve", "results", "syntax", "units"]),
     ("network", &["diag", "flat", "instance", "syntax", "units"]),
     ("flat", &["diag", "expr", "instance", "network", "syntax", "units"]),
     ("structure", &["diag", "expr", "flat"]),

@@ -6,7 +6,7 @@ model Brusselator "Two substances that react and diffuse along a line"
   Real u[N](start = {1 + sin(2*Modelica.Constants.pi*i/(N + 1)) for i in 1:N}, each fixed = true);
   Real v[N](each start = 3, each fixed = true);
 protected
-  constant Real d = alpha*(N + 1)^2;
+  final parameter Real d = alpha*(N + 1)^2;
 equation
   for i in 1:N loop
     der(u[i]) = A + u[i]^2*v[i] - (B + 1)*u[i]

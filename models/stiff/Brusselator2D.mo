@@ -5,7 +5,7 @@ model Brusselator2D "Two substances that react and diffuse on a square whose edg
   Real v[N, N](start = {{27*(i - 1)/N*(1 - (i - 1)/N)^1.5 for j in 1:N} for i in 1:N}, each fixed = true);
 protected
   Real f[N, N] "What is fed in a disk, from a time on";
-  constant Real d = alpha*N^2;
+  final parameter Real d = alpha*N^2;
 equation
   for i in 1:N, j in 1:N loop
     f[i, j] = if ((i - 1)/N - 0.3)^2 + ((j - 1)/N - 0.6)^2 <= 0.01 then (if time >= 1.1 then 5 else 0) else 0;

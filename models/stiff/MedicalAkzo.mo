@@ -6,7 +6,7 @@ model MedicalAkzo "Radioactive antibodies diffuse into tissue hit by a tumour: a
   Real v[N](each start = 1, each fixed = true, each nominal = 1e-3) "Concentration of the tissue";
   Real phi "Concentration at the edge, cut off after a while";
 protected
-  constant Real d = 1/N "Distance of the grid points";
+  final parameter Real d = 1/N "Distance of the grid points";
   Real left[N], right[N] "Neighbours";
 equation
   phi = if time <= 5 then 2 else 0;

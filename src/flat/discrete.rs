@@ -1,6 +1,6 @@
 //! What changes at events only must be given so: a `discrete` or Integer variable by its equation, `pre` by its argument.
 
-use super::{Equation, FlatModel, Type, Variability, When, WhenAction};
+use super::{Equation, FlatModel, OriginKind, Type, Variability, When, WhenAction};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::expr::{ExprId, Node, Unary, VarId};
 use crate::instance::Instance;
@@ -38,6 +38,25 @@ fn check_equations(instance: &mut Instance<'_, '_>, flat: &FlatModel, assigned: 
                 given.insert(v);
             } else if !matches!(instance.exprs.node(other), Node::Var(_)) && is_smooth(instance, other) {
                 doubtful.push((v, e.origin.span));
+            }
+        }
+    }
+    for e in &flat.equations {
+        for (v, other) in bare(instance, e) {
+            let variable = &flat.variables[v.index()];
+            let real = variable.variability == Variability::Discrete && variable.ty == Type::Real;
+            let own = real
+                && !variable.input
+                && !assigned.contains(&v)
+                && !matches!(instance.exprs.node(other), Node::Var(_));
+            if own && e.origin.kind == OriginKind::Declared && instance.variability(other) <= Variability::Discrete {
+                let message = format!("`{}` is `discrete` and gets its value outside `when`", variable.name);
+                let d = Diagnostic::new(Code::TypeMismatch, message).at(e.origin.span, "this equation");
+                instance.diagnostics.push(
+                    d.at(variable.origin.span, "declared here")
+                        .help("drop `discrete`, or give the value in a `when`")
+                        .note("Modelica 3.6, 4.4.4"),
+                );
             }
         }
     }

@@ -7,7 +7,7 @@ use super::{
     Confidence, Equation, Experiment, FlatModel, InstanceInfo, Origin, OriginKind, StateSelect, Type, Variability,
     Variable,
 };
-use super::{balance, discrete, equations, ports, vanish};
+use super::{balance, discrete, equations, ports, streams, vanish};
 use crate::diag::{Checked, Code, Diagnostic};
 use crate::expr::{ExprId, Exprs, VarId};
 use crate::instance::{ElementState, Instance, Node, ScopeId, View};
@@ -22,10 +22,12 @@ pub fn flatten(instance: &mut Instance<'_, '_>, network: &Network) -> Checked<Fl
     let numbers = Numbers::new(&scopes);
     flat.instances = scopes.iter().map(|&s| instance_info(instance, s, &numbers)).collect();
     flat.experiment = experiment(instance);
+    streams::prepare(instance, network);
     variables(instance, &numbers, &mut flat);
     instance.check_texts();
     Walker::new(instance, &numbers, &mut flat).walk(&scopes);
     connections(instance, network, &numbers, &mut flat);
+    streams::equations(instance, network, &numbers, &mut flat);
     vanish::without_vanishing(instance, &mut flat);
     discrete::check(instance, &flat);
     for (v, &i) in flat.variables.iter_mut().zip(&instance.order) {
@@ -286,6 +288,12 @@ fn connections(instance: &mut Instance<'_, '_>, network: &Network, numbers: &Num
         }
         let origin = Origin { span: set.span, instance: numbers.of(set.scope), kind: OriginKind::ConnectFlow };
         flat.equations.push(Equation { lhs: sum.unwrap_or(Exprs::ZERO), rhs: Exprs::ZERO, origin });
+    }
+    for &i in &network.unused {
+        let data = &instance.variables[i as usize];
+        let origin = Origin { span: data.span, instance: numbers.of(data.scope), kind: OriginKind::OpenPort };
+        let lhs = instance.exprs.var(data.id);
+        flat.equations.push(Equation { lhs, rhs: Exprs::ZERO, origin });
     }
     for &i in &network.open {
         let data = &instance.variables[i as usize];

@@ -10,6 +10,7 @@ mod numbers;
 mod ports;
 mod print;
 mod roots;
+mod streams;
 mod vanish;
 
 pub use explain::explain;

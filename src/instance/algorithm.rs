@@ -260,21 +260,21 @@ impl<'a> Instance<'a, '_> {
         span: Span,
     ) -> Option<Val> {
         let name = r.parts[part].name;
-        let Val::Record(fields) = old else {
+        let Val::Record(record) = old else {
             return self.fail(
                 Code::UnknownName,
                 &format!("{} has no field `{}`", old.describe(), name.name),
                 name.span,
             );
         };
-        let mut fields = fields.to_vec();
+        let mut fields = record.fields.clone();
         let Some(i) = fields.iter().position(|(n, _)| *n == name.name) else {
             let names: Vec<Symbol> = fields.iter().map(|(n, _)| *n).collect();
             self.unknown_name(name.name, name.span, &names);
             return None;
         };
         fields[i].1 = self.replaced(&fields[i].1.clone(), r, part, value, view, span)?;
-        Some(Val::Record(Rc::new(fields)))
+        Some(Val::Record(Rc::new(super::value::Record { fields, class: record.class })))
     }
 
     /// What the subscripts of a target pick, all dimensions of the array included.

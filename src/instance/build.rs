@@ -94,7 +94,9 @@ pub fn instantiate<'a, 'l>(library: &'l mut Library<'a>, request: &ModelRequest)
         procedures: FxHashMap::default(),
         externals: FxHashMap::default(),
         outer_checked: FxHashMap::default(),
+        streams: super::Streams::default(),
         variabilities: Vec::new(),
+        operator_records: Vec::new(),
         functions: Vec::new(),
         tables: FxHashMap::default(),
         given_elements: Vec::new(),
@@ -127,8 +129,23 @@ impl<'a> Instance<'a, '_> {
         let scope = self.scope_mut(root);
         (scope.template, scope.args, scope.elements, scope.component) = (template, args, elements, true);
         self.build_elements(root, 0);
+        self.expand_connectors();
+        self.check_streams();
         self.elements_not_met();
         self.number_variables();
+    }
+
+    /// A stream belongs to a connector with one flow (MLS 15.1).
+    fn check_streams(&mut self) {
+        for i in 0..u32::try_from(self.variables.len()).expect("limited above") {
+            if !self.variables[i as usize].stream || self.stream_flow(i).is_some() {
+                continue;
+            }
+            let (name, at) = (self.variables[i as usize].name.clone(), self.variables[i as usize].span);
+            let d = Diagnostic::new(Code::Restricted, format!("`{name}` is a stream without a flow"));
+            let d = d.at(at, "no connector with one `flow` variable around it").instance(name);
+            self.report(d.note("Modelica 3.6, 15.1").help("declare it in a connector that has a `flow` variable"));
+        }
     }
 
     /// The view from which a class given by its full name sees its surroundings.
@@ -404,6 +421,7 @@ impl<'a> Instance<'a, '_> {
             variability: stricter,
             causality: component.prefix.causality.or(declared.prefix.causality).or(outer.causality),
             flow: outer.flow || component.prefix.flow || declared.prefix.flow,
+            stream: outer.stream || component.prefix.stream || declared.prefix.stream,
             hidden: outer.hidden || protected || hides_result(declared),
             unwanted: outer.unwanted || hides_result(declared),
             nested: outer.nested,
@@ -586,7 +604,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// Builds a component with the array dimensions of its declaration and of its type.
-    fn build_shaped(
+    pub(super) fn build_shaped(
         &mut self,
         plan: &Plan<'a>,
         found: &Found<'a>,
@@ -741,10 +759,6 @@ impl<'a> Instance<'a, '_> {
         let d = match template.kind {
             ClassKind::Package => Diagnostic::new(Code::WrongClassKind, format!("`{}` is a package", class())),
             ClassKind::Function { .. } => Diagnostic::new(Code::WrongClassKind, format!("`{}` is a function", class())),
-            ClassKind::Connector { expandable: true } => {
-                Diagnostic::new(Code::Unsupported, format!("`{}` is an expandable connector", class()))
-                    .help("use a connector with declared variables")
-            }
             _ if ast.prefixes.partial => {
                 Diagnostic::new(Code::Partial, format!("`{}` is partial and cannot be a component", class()))
                     .help("use a class that extends it, or redeclare the component")
@@ -779,9 +793,6 @@ impl<'a> Instance<'a, '_> {
             None if ty != Type::Real => Variability::Discrete,
             None => Variability::Continuous,
         };
-        if plan.declared.prefix.stream {
-            self.unsupported(plan.declared.name.span, "a `stream` variable");
-        }
         let mut attributes = self.attributes(args.iter().chain(chain), builtin);
         let mut binding = part.binding;
         if !self.given_elements.is_empty() {
@@ -807,6 +818,7 @@ impl<'a> Instance<'a, '_> {
             causality,
             top: !plan.prefix.nested && causality.is_some() && !plan.prefix.hidden,
             flow: plan.prefix.flow,
+            stream: plan.prefix.stream,
             hidden: plan.prefix.hidden,
             unwanted: plan.prefix.unwanted,
             final_: part.final_,
@@ -1024,15 +1036,15 @@ impl<'a> Instance<'a, '_> {
 
 /// What is the same for all elements of a component array.
 #[derive(Clone)]
-struct Plan<'a> {
-    name: String,
-    scope: ScopeId,
+pub(super) struct Plan<'a> {
+    pub name: String,
+    pub scope: ScopeId,
     /// Which element of the scope; none for what was added.
-    index: Option<u32>,
-    declared: &'a ast::Component,
-    prefix: Inherited,
-    span: Span,
-    depth: usize,
+    pub index: Option<u32>,
+    pub declared: &'a ast::Component,
+    pub prefix: Inherited,
+    pub span: Span,
+    pub depth: usize,
 }
 
 /// Value of a component.

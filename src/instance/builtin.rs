@@ -32,18 +32,8 @@ fn mathematical(name: &str) -> Option<Unary> {
 }
 
 /// Names that are built in and valid, but not supported.
-const UNSUPPORTED: [&str; 10] = [
-    "spatialDistribution",
-    "inStream",
-    "actualStream",
-    "previous",
-    "hold",
-    "subSample",
-    "superSample",
-    "shiftSample",
-    "backSample",
-    "interval",
-];
+const UNSUPPORTED: [&str; 8] =
+    ["spatialDistribution", "previous", "hold", "subSample", "superSample", "shiftSample", "backSample", "interval"];
 
 impl<'a> Instance<'a, '_> {
     /// A built-in function; `None` if the name is not one, `Some(None)` after a message.
@@ -82,6 +72,7 @@ impl<'a> Instance<'a, '_> {
             "initial" => self.moment(Node::Initial, span),
             "terminal" => self.moment(Node::Terminal, span),
             "sample" => self.sample(args, view, span),
+            "inStream" | "actualStream" => self.stream(name, args, view, span),
             "getInstanceName" => Some(Val::text(self.instance_name(view))),
             "delay" => self.delay(args, view, span),
             "homotopy" => self.homotopy_call(args, named, view, span),
@@ -180,7 +171,7 @@ impl<'a> Instance<'a, '_> {
             return self.fail(Code::NotConstant, "a derivative is not known before the run", span);
         }
         if matches!(v.element_type(), Some(ty) if ty != Type::Real) {
-            return self.wrong_type("a Real", v, span);
+            return self.fail(Code::TypeMismatch, "only a Real has a derivative, and this has no derivative", span);
         }
         let mut failed = false;
         let value = v.map(&mut |e, _| match self.der_scalar(e) {
@@ -265,6 +256,30 @@ impl<'a> Instance<'a, '_> {
             "" => model.to_string(),
             path => format!("{model}.{path}"),
         }
+    }
+
+    /// `inStream(h)`, `actualStream(h)`.
+    fn stream(&mut self, name: &str, args: &'a [Expr], view: View, span: Span) -> Option<Val> {
+        let value = self.one(name, args, view, span)?;
+        if self.eval.constant {
+            return self.fail(Code::NotConstant, "this is not known before the run", span);
+        }
+        let mut scalars = Vec::new();
+        value.scalars(&mut scalars);
+        let mut results = Vec::with_capacity(scalars.len());
+        for e in scalars {
+            let found = match self.exprs.node(e) {
+                Node::Var(v) => self.order.get(v.index()).copied(),
+                _ => None,
+            };
+            let flow = found.filter(|i| self.variables[*i as usize].stream).and_then(|i| self.stream_flow(i));
+            let (Some(i), Some(flow)) = (found, flow) else {
+                return self.fail(Code::BadCall, &format!("`{name}` needs a stream variable of a connector"), span);
+            };
+            results.push(if name == "inStream" { self.in_stream(i) } else { self.actual_stream(i, flow) });
+        }
+        let mut results = results.into_iter();
+        Some(value.map(&mut |e, _| results.next().unwrap_or(e)))
     }
 
     /// `delay(expression, time)`; the largest time as a third argument says nothing that a fixed time does not.

@@ -157,6 +157,12 @@ impl<'a> Instance<'a, '_> {
             let place = Place { call: span, given: None };
             return self.construct_object(&class, Given { positional, named: by_name }, place);
         }
+        if matches!(template.kind, ClassKind::Record { operator: true }) {
+            let given = Given { positional: positional.clone(), named: by_name.clone() };
+            if let Some(made) = self.overloaded_constructor(&class, &given, span) {
+                return made;
+            }
+        }
         let scope = self.package(&class);
         let name = self.library.full_name(class.class);
         let callee = Callee { scope, template, name };
@@ -250,7 +256,11 @@ impl<'a> Instance<'a, '_> {
         self.leave_frame(before);
         bound?;
         let fields: Option<Vec<_>> = fields.into_iter().map(|(n, v)| Some((n, v?))).collect();
-        Some(Val::Record(Rc::new(fields?)))
+        let fields = fields?;
+        let class =
+            callee.template.bases.first().map(|b| ClassRef { class: b.class, parent: b.parent, args: Rc::from([]) });
+        let class = class.and_then(|c| self.operator_class(&c));
+        Some(Val::Record(Rc::new(super::value::Record { fields, class })))
     }
 
     pub(super) fn enter_frame(&mut self) -> (usize, usize, bool) {
@@ -666,7 +676,8 @@ impl<'a> Instance<'a, '_> {
                     let value = self.blank_field(&f)?;
                     fields.push((f.name, value));
                 }
-                Some(Val::Record(Rc::new(fields)))
+                let class = self.operator_class(c);
+                Some(Val::Record(Rc::new(super::value::Record { fields, class })))
             }
             Found::Component(..) => self.fail(Code::WrongClassKind, "a type is needed here", span),
         }

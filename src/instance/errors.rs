@@ -30,7 +30,6 @@ impl<'a> Instance<'a, '_> {
     pub(super) fn unsupported_function(&mut self, span: Span, name: &str) {
         let advice = match name {
             "spatialDistribution" => "cut the line into a chain of volumes and resistances",
-            "inStream" | "actualStream" => "give the connector a potential and a flow for what is carried along",
             _ => "use `when sample(start, interval) then`, with `pre` for the value before",
         };
         self.report(

@@ -249,7 +249,7 @@ impl<'a> Instance<'a, '_> {
                 }
                 Access::Index(_) => None,
                 Access::Field(name) => match &value {
-                    Val::Record(fields) => fields.iter().find(|(n, _)| n == name).map(|(_, v)| v.clone()),
+                    Val::Record(record) => record.fields.iter().find(|(n, _)| n == name).map(|(_, v)| v.clone()),
                     _ => None,
                 },
             };
@@ -330,6 +330,9 @@ impl<'a> Instance<'a, '_> {
     }
 
     fn unary(&mut self, op: UnaryOp, value: Val, span: Span) -> Option<Val> {
+        if let Some(result) = self.overloaded_unary(op, &value, span) {
+            return result;
+        }
         let ty = value.element_type();
         match op {
             UnaryOp::Not => match ty {
@@ -345,8 +348,11 @@ impl<'a> Instance<'a, '_> {
         }
     }
 
-    fn binary(&mut self, op: BinaryOp, a: Val, b: Val, span: Span) -> Option<Val> {
+    pub(super) fn binary(&mut self, op: BinaryOp, a: Val, b: Val, span: Span) -> Option<Val> {
         use BinaryOp as B;
+        if let Some(result) = self.overloaded_binary(op, &a, &b, span) {
+            return result;
+        }
         if let (Val::Text(x), Val::Text(y)) = (&a, &b) {
             return self.texts(op, x, y, span);
         }

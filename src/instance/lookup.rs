@@ -228,7 +228,7 @@ impl<'a> Instance<'a, '_> {
 
     /// What a dotted name may reach: nothing protected, and in a class that is used as a package only what does not depend
     /// on its components (MLS 4.1, 5.3.2).
-    fn check_member(&mut self, around: &Found<'a>, inside: &Found<'a>, part: ast::Ident) {
+    pub(super) fn check_member(&mut self, around: &Found<'a>, inside: &Found<'a>, part: ast::Ident) {
         let Found::Class(class) = around else { return };
         if self.gathering.iter().any(|(c, _)| *c == class.class) {
             return;

@@ -12,11 +12,13 @@ pub mod call;
 pub mod deduce;
 mod errors;
 pub mod evaluate;
+mod expandable;
 mod external;
 mod files;
 mod functional;
 pub mod lookup;
 pub mod modifiers;
+mod overload;
 mod procedure;
 pub mod reference;
 mod restrictions;
@@ -137,6 +139,8 @@ pub struct Inherited {
     pub causality: Option<ast::Causality>,
     /// flow
     pub flow: bool,
+    /// stream
+    pub stream: bool,
     /// Inside a protected element.
     pub hidden: bool,
     /// Inside an element annotated `HideResult`.
@@ -163,6 +167,8 @@ pub struct VarData<'a> {
     pub top: bool,
     /// `flow`
     pub flow: bool,
+    /// `stream`
+    pub stream: bool,
     /// protected or hidden
     pub hidden: bool,
     /// annotated `HideResult`
@@ -189,6 +195,28 @@ pub struct VarData<'a> {
     pub busy: bool,
     /// Number in the flat model, given after the tree is complete.
     pub id: VarId,
+}
+
+/// A stream variable of a connection set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StreamMember {
+    /// The variable: index into `Instance::variables`.
+    pub variable: u32,
+    /// The flow of its connector.
+    pub flow: u32,
+    /// A port of the component itself, seen from inside.
+    pub outside: bool,
+}
+
+/// Joined stream variables, known once the network is.
+#[derive(Default)]
+pub struct Streams {
+    /// The connection sets.
+    pub sets: Vec<Vec<StreamMember>>,
+    /// The set in which a variable is a part's port.
+    pub inside: FxHashMap<u32, usize>,
+    /// The set in which it is the component's own.
+    pub outside: FxHashMap<u32, usize>,
 }
 
 /// An enumeration type.
@@ -244,10 +272,14 @@ pub struct Instance<'a, 'l> {
     procedures: FxHashMap<String, (crate::expr::FunctionId, Vec<Val>)>,
     /// External functions that stay calls, by what they are.
     externals: FxHashMap<String, crate::expr::FunctionId>,
+    /// Classes of operator records, by the numbers that their values carry.
+    operator_records: Vec<ClassRef<'a>>,
     /// Functions that were given as arguments.
     functions: Vec<ClassRef<'a>>,
     /// Tables read from files, by file and name.
     tables: FxHashMap<(FileId, String), Rc<Matrix>>,
+    /// Joined stream variables.
+    pub streams: Streams,
     variabilities: Vec<Variability>,
     /// Values given from outside for single elements of arrays.
     given_elements: Vec<build::GivenElement<'a>>,
@@ -303,6 +335,25 @@ impl<'a> Instance<'a, '_> {
             self.variabilities.push(v);
         }
         self.variabilities[e.index()]
+    }
+
+    /// The flow variable of the connector that a stream variable belongs to.
+    pub fn stream_flow(&self, variable: u32) -> Option<u32> {
+        let mut scope = Some(self.variables[variable as usize].scope);
+        while let Some(s) = scope {
+            let around = self.scope(s);
+            if matches!(around.template.kind, ast::ClassKind::Connector { .. }) {
+                return around.elements.iter().find_map(|e| match e {
+                    ElementState::Node(n) => match self.node(*n) {
+                        Node::Var(i) if self.variables[*i as usize].flow => Some(*i),
+                        _ => None,
+                    },
+                    _ => None,
+                });
+            }
+            scope = around.owner;
+        }
+        None
     }
 
     /// The number that an expression of parameters has with their present values, if these can be told.

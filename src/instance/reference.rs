@@ -95,10 +95,10 @@ impl<'a> Instance<'a, '_> {
     /// A field of a record, or of every record of an array.
     pub(super) fn field(&mut self, value: &Val, name: Symbol, span: Span) -> Option<Val> {
         match value {
-            Val::Record(fields) => match fields.iter().find(|(n, _)| *n == name) {
+            Val::Record(record) => match record.fields.iter().find(|(n, _)| *n == name) {
                 Some((_, v)) => Some(v.clone()),
                 None => {
-                    let names: Vec<Symbol> = fields.iter().map(|(n, _)| *n).collect();
+                    let names: Vec<Symbol> = record.fields.iter().map(|(n, _)| *n).collect();
                     self.unknown_name(name, span, &names);
                     None
                 }
@@ -268,6 +268,7 @@ impl<'a> Instance<'a, '_> {
     fn shape_inside(&mut self, e: &'a Expr, view: View) -> Option<Vec<usize>> {
         use crate::syntax::ast::BinaryOp as B;
         match &e.kind {
+            ExprKind::Reference(r) if r.parts.len() == 1 && r.parts[0].name.name == "time" => Some(Vec::new()),
             ExprKind::Reference(_) => self.declared_dims(e, view),
             ExprKind::Integer(_) | ExprKind::Real(_) | ExprKind::Boolean(_) => Some(Vec::new()),
             ExprKind::Unary(_, a) => self.shape_inside(a, view),
@@ -285,10 +286,25 @@ impl<'a> Instance<'a, '_> {
                 }
             }
             ExprKind::Array(items) => {
-                let inner = self.shape_inside(items.first()?, view)?;
+                let inner = items.iter().find_map(|e| self.shape_inside(e, view))?;
                 Some(std::iter::once(items.len()).chain(inner).collect())
             }
             ExprKind::If { branches, .. } => self.shape_inside(&branches.first()?.1, view),
+            ExprKind::Call { function, args, .. } if function.parts.len() == 1 => {
+                match function.parts[0].name.name.as_str() {
+                    "fill" => {
+                        let inner = self.shape_inside(args.first()?, view)?;
+                        let mark = self.diagnostics.len();
+                        let outer: Option<Vec<usize>> = args[1..].iter().map(|e| self.dimension(e, view)).collect();
+                        self.diagnostics.truncate(mark);
+                        Some(outer?.into_iter().chain(inner).collect())
+                    }
+                    "noEvent" | "pre" | "der" | "abs" | "sqrt" | "sin" | "cos" | "exp" => {
+                        self.shape_inside(args.first()?, view)
+                    }
+                    _ => None,
+                }
+            }
             _ => None,
         }
     }
@@ -303,7 +319,7 @@ impl<'a> Instance<'a, '_> {
         Some(value)
     }
 
-    fn subscript_selection(
+    pub(super) fn subscript_selection(
         &mut self,
         at: &Selection,
         p: &'a ReferencePart,
@@ -443,7 +459,11 @@ impl<'a> Instance<'a, '_> {
             if let Some(v) = self.literal(&found, part.name.name) {
                 return Some(v);
             }
-            match self.member(&found, part.name.name) {
+            let inside = self.member(&found, part.name.name);
+            if let Some(inside) = &inside {
+                self.check_member(&found, inside, part.name);
+            }
+            match inside {
                 Some(Found::Component(scope, index)) => {
                     if let Found::Class(c) = &found
                         && self.library.class(c.class).prefixes.partial
@@ -587,7 +607,10 @@ impl<'a> Instance<'a, '_> {
                 fields.push((element.name, self.node_value(node, span)?));
             }
         }
-        Some(Val::Record(Rc::new(fields)))
+        let class =
+            template.bases.first().map(|b| super::ClassRef { class: b.class, parent: b.parent, args: Rc::from([]) });
+        let class = class.and_then(|c| self.operator_class(&c));
+        Some(Val::Record(Rc::new(super::value::Record { fields, class })))
     }
 
     /// The value of a scalar variable: itself, or its number where values count.

@@ -69,7 +69,10 @@ impl<'a> Instance<'a, '_> {
     /// A class of one kind may extend only some others (MLS 7.1.3).
     pub(super) fn check_base(&mut self, class: ClassId, base: ClassId, at: Span) {
         let (derived, base_class) = (self.library.class(class), self.library.class(base));
-        if base_class.prefixes.replaceable && !matches!(derived.body, ClassBody::Short { .. }) {
+        if base_class.prefixes.replaceable
+            && !base_class.prefixes.redeclare
+            && !matches!(derived.body, ClassBody::Short { .. })
+        {
             let what = format!("`{}` is replaceable and cannot be a base class", base_class.name.name);
             self.refuse(breach(what, at, "what it holds would not be known", "7.1.4"), Some(class));
         }
@@ -273,6 +276,9 @@ fn elements(class: &ast::Class, body: &ast::LongBody, found: &mut Vec<Breach>) {
     for e in &body.elements {
         let modification = match &e.kind {
             ElementKind::Component(c) => {
+                if matches!(class.kind, ClassKind::Operator) {
+                    found.push(breach("an operator holds functions only", c.name.span, "no function", "14"));
+                }
                 if structure && e.protected {
                     let what = format!("a {kind} cannot have protected elements");
                     found.push(breach(what, c.name.span, "protected", "4.6"));

@@ -10,6 +10,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use std::rc::Rc;
 
 /// The elements of a class.
+#[derive(Clone)]
 pub struct Template<'a> {
     /// The class.
     pub class: ClassId,
@@ -34,6 +35,7 @@ pub struct Template<'a> {
 }
 
 /// A class that contributes elements, equations and a place to look up names.
+#[derive(Clone)]
 pub struct Base<'a> {
     /// The class.
     pub class: ClassId,
@@ -82,6 +84,7 @@ impl<'a> Base<'a> {
 }
 
 /// One element.
+#[derive(Clone)]
 pub struct Element<'a> {
     /// Its name.
     pub name: Symbol,
@@ -284,6 +287,22 @@ impl<'a> Instance<'a, '_> {
                         .class(class)
                         .note("Modelica 3.6, 7.3")
                         .help("redeclare it in a section of the same visibility"),
+                );
+                return;
+            }
+            let closed = t.elements[i as usize].modified.first().is_some_and(|s| match s.what {
+                What::Class(c) => s.base != base && !c.prefixes.replaceable,
+                What::Component(c) => s.base != base && !c.prefixes.replaceable,
+                What::Argument(_) => false,
+            });
+            if redeclare && closed {
+                let class = self.library.full_name(t.bases[base as usize].class);
+                self.report(
+                    Diagnostic::new(Code::BadRedeclare, format!("`{}` is not replaceable any more", name.name))
+                        .at(name.span, "redeclared again here")
+                        .class(class)
+                        .note("Modelica 3.6, 7.3")
+                        .help("write `redeclare replaceable` at the inner one"),
                 );
                 return;
             }

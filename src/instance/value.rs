@@ -22,13 +22,22 @@ pub enum Val {
         elements: Rc<Vec<Val>>,
     },
     /// A record.
-    Record(Rc<Vec<(Symbol, Val)>>),
+    Record(Rc<Record>),
     /// Several outputs of a function.
     Tuple(Rc<Vec<Val>>),
     /// What a constructor of an external object made.
     Object(Object),
     /// A function given as an argument: its number in the instance, and inputs that it was given already.
     Function(u32, Rc<Vec<(Ident, Val)>>),
+}
+
+/// A record: its fields, and the class of an operator record among those of the instance.
+#[derive(Clone, Debug)]
+pub struct Record {
+    /// Names and values in the order of their declaration.
+    pub fields: Vec<(Symbol, Val)>,
+    /// Number of its class, for an operator record.
+    pub class: Option<u32>,
 }
 
 impl Val {
@@ -121,7 +130,7 @@ impl Val {
         match self {
             Val::Scalar(e, _) => out.push(*e),
             Val::Array { elements, .. } => elements.iter().for_each(|v| v.scalars(out)),
-            Val::Record(fields) => fields.iter().for_each(|(_, v)| v.scalars(out)),
+            Val::Record(record) => record.fields.iter().for_each(|(_, v)| v.scalars(out)),
             Val::Tuple(values) => values.iter().for_each(|v| v.scalars(out)),
             Val::Function(_, bound) => bound.iter().for_each(|(_, v)| v.scalars(out)),
             Val::Text(_) | Val::Object(_) => {}
@@ -135,7 +144,10 @@ impl Val {
             Val::Array { dims, elements } => {
                 Val::Array { dims: dims.clone(), elements: Rc::new(elements.iter().map(|v| v.map(change)).collect()) }
             }
-            Val::Record(fields) => Val::Record(Rc::new(fields.iter().map(|(n, v)| (*n, v.map(change))).collect())),
+            Val::Record(record) => {
+                let fields = record.fields.iter().map(|(n, v)| (*n, v.map(change))).collect();
+                Val::Record(Rc::new(Record { fields, class: record.class }))
+            }
             Val::Tuple(values) => Val::Tuple(Rc::new(values.iter().map(|v| v.map(change)).collect())),
             Val::Function(f, bound) => {
                 Val::Function(*f, Rc::new(bound.iter().map(|(n, v)| (*n, v.map(change))).collect()))
@@ -155,13 +167,13 @@ impl Val {
                 let elements: Option<Vec<_>> = a.iter().zip(b.iter()).map(|(a, b)| a.zip(b, combine)).collect();
                 Val::array(da.clone(), elements?)
             }
-            (Val::Record(a), Val::Record(b)) if a.len() == b.len() => {
-                let mut fields = Vec::with_capacity(a.len());
-                for (name, value) in a.iter() {
-                    let (_, other) = b.iter().find(|(n, _)| n == name)?;
+            (Val::Record(a), Val::Record(b)) if a.fields.len() == b.fields.len() => {
+                let mut fields = Vec::with_capacity(a.fields.len());
+                for (name, value) in &a.fields {
+                    let (_, other) = b.fields.iter().find(|(n, _)| n == name)?;
                     fields.push((*name, value.zip(other, combine)?));
                 }
-                Val::Record(Rc::new(fields))
+                Val::Record(Rc::new(Record { fields, class: a.class }))
             }
             (Val::Tuple(a), Val::Tuple(b)) if a.len() == b.len() => {
                 let values: Option<Vec<_>> = a.iter().zip(b.iter()).map(|(a, b)| a.zip(b, combine)).collect();

@@ -1,16 +1,16 @@
 //! `connect` equations to connection sets (MLS 9.2).
 
-use super::{Connection, FlowSet, Network, PotentialSet, SignalPair};
+use super::{Connection, FlowSet, Network, PotentialSet, SignalPair, StreamSet};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::flat::{Type, Variability};
 use crate::instance::deduce::Body;
 use crate::instance::lookup::Found;
 use crate::instance::reference::Selection;
 use crate::instance::template::{Base, Kind, same_pair};
-use crate::instance::{Instance, Node, NodeId, ScopeId, View};
+use crate::instance::{Instance, Node, NodeId, ScopeId, StreamMember, View};
 use crate::syntax::ast::{self, ClassBody, ClassKind, Equation, EquationKind, Expr, ExprKind};
 use crate::syntax::symbol::Symbol;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Disjoint sets over numbers given on demand.
 #[derive(Default)]
@@ -58,6 +58,11 @@ impl Sets {
     }
 }
 
+/// Whether a variable stands in an expandable connector.
+fn in_bus(instance: &Instance<'_, '_>, scope: ScopeId) -> bool {
+    matches!(instance.scope(scope).template.kind, ClassKind::Connector { expandable: true })
+}
+
 /// One end of a connection.
 struct End {
     selection: Selection,
@@ -69,6 +74,7 @@ pub(super) struct Collector {
     network: Network,
     potentials: Sets,
     flows: Sets,
+    streams: Sets,
 }
 
 impl Collector {
@@ -78,6 +84,13 @@ impl Collector {
         }
         let inside: std::collections::BTreeSet<u32> =
             self.flows.keys.iter().filter(|(k, ..)| !k.1).map(|(k, ..)| k.0).collect();
+        let joined: FxHashSet<u32> = self.potentials.keys.iter().chain(&self.flows.keys).map(|(k, ..)| k.0).collect();
+        self.network.unused = (0u32..)
+            .zip(&instance.variables)
+            .filter(|(i, v)| !joined.contains(i) && v.id.0 != u32::MAX && in_bus(instance, v.scope))
+            .filter(|(_, v)| v.variability > Variability::Parameter && v.binding.is_none())
+            .map(|(i, _)| i)
+            .collect();
         self.network.potentials = self
             .potentials
             .groups()
@@ -90,6 +103,14 @@ impl Collector {
             .into_iter()
             .map(|g| FlowSet { span: g[0].1, scope: g[0].2, members: g.into_iter().map(|(k, ..)| k).collect() })
             .collect();
+        for group in self.streams.groups() {
+            let (span, scope) = (group[0].1, group[0].2);
+            let member = |((variable, outside), ..): ((u32, bool), Span, ScopeId)| {
+                Some(StreamMember { variable, flow: instance.stream_flow(variable)?, outside })
+            };
+            let members = group.into_iter().filter_map(member).collect();
+            self.network.streams.push(StreamSet { members, span, scope });
+        }
         let all = 0..u32::try_from(instance.variables.len()).expect("limited sizes");
         self.network.open = all
             .filter(|i| {
@@ -237,8 +258,13 @@ impl Collector {
         if x.causality.is_some() || y.causality.is_some() {
             self.network.signals.push(SignalPair { a: a.0, b: b.0, span: at.span, scope: at.scope });
         }
-        let sets = if flow { &mut self.flows } else { &mut self.potentials };
-        let side = |s: (u32, bool)| if flow { s } else { (s.0, false) };
+        let stream = x.stream;
+        let sets = match (flow, stream) {
+            (true, _) => &mut self.flows,
+            (_, true) => &mut self.streams,
+            _ => &mut self.potentials,
+        };
+        let side = |s: (u32, bool)| if flow || stream { s } else { (s.0, false) };
         let i = sets.key(side(a), at.span, at.scope);
         let j = sets.key(side(b), at.span, at.scope);
         sets.join(i, j);
@@ -321,43 +347,9 @@ fn end<'a>(instance: &mut Instance<'a, '_>, e: &'a Expr, view: View) -> Option<O
         }
         return None;
     };
-    if let Some(part) = inner_component(instance, r, scope, index) {
-        instance.diagnostics.push(
-            Diagnostic::new(
-                Code::BadConnect,
-                format!("`{part}` is a component inside another one: its ports are joined there"),
-            )
-            .at(e.span, "a port of a component of this class is needed, or a port of the class itself")
-            .help("give the component a port of its own that is connected inside")
-            .note("Modelica 3.6, 9.3"),
-        );
-        return None;
-    }
     let outside = is_connector(instance, scope, index, view);
     let Some(selection) = instance.port_selection(r, scope, index, view)? else { return Some(None) };
     Some(Some(End { selection, outside }))
-}
-
-/// What stands between the first part of a reference and its port must be connectors (MLS 9.3).
-fn inner_component(instance: &mut Instance<'_, '_>, r: &ast::Reference, scope: ScopeId, index: u32) -> Option<String> {
-    let mut node = instance.component(scope, index)?;
-    for part in r.parts.get(1..r.parts.len().checked_sub(1)?)? {
-        let one = match instance.node(node) {
-            Node::Array { elements, .. } => *elements.first()?,
-            _ => node,
-        };
-        let Node::Object(inside) = *instance.node(one) else { return None };
-        let &i = instance.scope(inside).template.by_name.get(&part.name.name)?;
-        node = instance.component(inside, i)?;
-        let one = match instance.node(node) {
-            Node::Array { elements, .. } => *elements.first()?,
-            _ => node,
-        };
-        if !is_port(instance, one) {
-            return Some(instance.node_name(node));
-        }
-    }
-    None
 }
 
 /// Says so if an end is no port.

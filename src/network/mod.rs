@@ -7,7 +7,7 @@ mod graph;
 pub use graph::{ComponentBox, Graph, Wire};
 
 use crate::diag::Span;
-use crate::instance::{Instance, NodeId, ScopeId};
+use crate::instance::{Instance, NodeId, ScopeId, StreamMember};
 
 /// One `connect` equation between two single ports.
 #[derive(Clone, Debug)]
@@ -42,6 +42,17 @@ pub struct FlowSet {
     pub scope: ScopeId,
 }
 
+/// Joined stream variables.
+#[derive(Clone, Debug)]
+pub struct StreamSet {
+    /// The variables with the flows of their connectors.
+    pub members: Vec<StreamMember>,
+    /// The `connect` that joined the first two.
+    pub span: Span,
+    /// The instance in which it stands.
+    pub scope: ScopeId,
+}
+
 /// Two signals joined by a `connect`: indices into `Instance::variables`.
 #[derive(Clone, Copy, Debug)]
 pub struct SignalPair {
@@ -64,8 +75,12 @@ pub struct Network {
     pub potentials: Vec<PotentialSet>,
     /// Flow sums.
     pub flows: Vec<FlowSet>,
+    /// Joined streams.
+    pub streams: Vec<StreamSet>,
     /// Joined inputs and outputs.
     pub signals: Vec<SignalPair>,
+    /// Variables of expandable connectors that nothing is connected to.
+    pub unused: Vec<u32>,
     /// Flow variables of ports that nothing is connected to from outside.
     pub open: Vec<u32>,
 }

@@ -1,7 +1,8 @@
-//! E010 at 9: "`C` has no class `A`"
-//! E010 at 9: "`C.A` has no class `A`"
-//! E014 at 10: "look for their bases inside each other: T.B.A"
-//! E010 at 27: "`B.A` has no class `A`"
+//! E010 at 10: "`C` has no class `A`"
+//! E010 at 10: "`C.A` has no class `A`"
+//! E014 at 11: "look for their bases inside each other: T.B.A"
+//! E010 at 28: "`B.A` has no class `A`"
+//! E027 at 27: "a model cannot extend a package"
 //! model T.M
 package T
   package B
