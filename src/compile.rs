@@ -27,6 +27,8 @@ pub struct Request {
     pub libraries: Vec<PathBuf>,
     /// Further files and packages whose classes `source` may name.
     pub beside: Vec<PathBuf>,
+    /// Parameters will take other values in the same model: one that is 0 takes no derivative out of the equations.
+    pub varied: bool,
 }
 
 /// What became of a [`Request`]: texts for messages, messages, and the value if there were no errors.
@@ -126,9 +128,7 @@ pub fn inspect<T>(
 ) -> Outcome<T> {
     let trees = Trees::new();
     let shipped = Shipped;
-    let mut roots: Vec<(&dyn World, PathBuf)> = request.libraries.iter().map(|l| (world, l.clone())).collect();
-    roots.extend(Shipped::roots().map(|r| (&shipped as &dyn World, r)));
-    let mut library = Library::new(&trees, roots);
+    let mut library = Library::new(&trees, roots(world, &shipped, request));
     library.set_data_folder(world, data_folder(world, &request.source));
     let mut diagnostics = Vec::new();
     let value = find_model(world, &mut library, request)
@@ -148,6 +148,12 @@ pub fn inspect<T>(
     Outcome { sources: std::mem::take(&mut library.sources), diagnostics: all, value: value.filter(|_| !failed) }
 }
 
+/// Folders with packages, in order: the request's, then what ships with bramah.
+fn roots<'a>(world: &'a dyn World, shipped: &'a Shipped, request: &Request) -> Vec<(&'a dyn World, PathBuf)> {
+    let own = request.libraries.iter().map(|l| (world, l.clone()));
+    own.chain(Shipped::roots().map(|r| (shipped as &dyn World, r))).collect()
+}
+
 /// Where relative names of data files begin: the folder of the model's file.
 fn data_folder(world: &dyn World, source: &Path) -> PathBuf {
     let folder = if world.list(source).is_some() { Some(source) } else { source.parent() };
@@ -163,6 +169,7 @@ fn flatten_class<T>(
 ) -> Option<T> {
     let wanted = ModelRequest { class, overrides: request.overrides.clone() };
     let mut instance = instance::instantiate(library, &wanted);
+    instance.varied = request.varied;
     let network = network::network(&mut instance);
     if instance.diagnostics.iter().any(Diagnostic::is_error) {
         diagnostics.append(&mut instance.diagnostics);
@@ -253,6 +260,27 @@ fn listed(intro: &str, names: &[String]) -> String {
     let shown: Vec<String> = names.iter().take(10).map(|n| format!("`{n}`")).collect();
     let more = if names.len() > 10 { format!(" and {} more", names.len() - 10) } else { String::new() };
     format!("{intro} {}{more}", shown.join(", "))
+}
+
+/// Names of the models of a request's source that can run: those with an `experiment` annotation, or all where none has
+/// one; of the request's class alone and what stands in it, where one is named.
+///
+/// # Errors
+/// The source cannot be read, or there is no such class.
+pub fn runnable(world: &dyn World, request: &Request) -> Result<Vec<String>, Vec<Diagnostic>> {
+    let trees = Trees::new();
+    let shipped = Shipped;
+    let mut library = Library::new(&trees, roots(world, &shipped, request));
+    let given = match &request.model {
+        Some(_) => find_model(world, &mut library, request).map(|id| vec![id]),
+        None => library.add_path(world, &request.source),
+    };
+    let given = given.map_err(|d| vec![*d])?;
+    let mut all = Vec::new();
+    given.iter().for_each(|&id| collect_runnable(&mut library, id, &mut all));
+    let with_experiment: Vec<ClassId> = all.iter().copied().filter(|&id| has_experiment(library.class(id))).collect();
+    let chosen = if with_experiment.is_empty() { all } else { with_experiment };
+    Ok(chosen.into_iter().map(|id| library.full_name(id)).collect())
 }
 
 /// Without a name: the one class with an `experiment`, or the one model there is.

@@ -92,7 +92,9 @@ pub mod lower;
 
 mod compile;
 
-pub use compile::{Flattened, Model, Outcome, Request, analyze, compile, flatten, flatten_text, inspect, sort};
+pub use compile::{
+    Flattened, Model, Outcome, Request, analyze, compile, flatten, flatten_text, inspect, runnable, sort,
+};
 
 pub mod results;
 

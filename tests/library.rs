@@ -61,6 +61,7 @@ fn every_model_and_example_is_silent() {
                 overrides: vec![],
                 libraries: vec![],
                 beside: vec![],
+                varied: false,
             };
             tried += 1;
             let said = remarks(&request);

@@ -11,7 +11,18 @@ use std::path::Path;
 
 /// Parts of the book with their chapters: files below `docs`, without `.md`.
 pub const PARTS: [(&str, &[&str]); 4] = [
-    ("Circuits", &["first_circuit", "oil_and_volumes", "drives", "friction_and_events", "initialization", "long_runs"]),
+    (
+        "Circuits",
+        &[
+            "first_circuit",
+            "oil_and_volumes",
+            "drives",
+            "friction_and_events",
+            "initialization",
+            "long_runs",
+            "libraries",
+        ],
+    ),
     ("Model and bench", &["study", "identify", "gap", "validation/gap", "sensitivity", "sweep", "linearize"]),
     ("The two papers", &["papers/servo_pump", "papers/closed_circuit"]),
     ("Solver and messages", &["bench", "errors/README"]),

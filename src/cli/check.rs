@@ -8,6 +8,7 @@ use super::request::ModelArgs;
 use super::{Ending, Failure, model};
 use crate::Flattened;
 use crate::diag::Code;
+use crate::experiment::Experiment;
 use crate::flat::FlatModel;
 use crate::plot::{network, png};
 use crate::structure::{Block, Dae};
@@ -20,11 +21,15 @@ Examples:
   bramah check Press.mo --set N=100 --deny-warnings
   bramah check Press.mo --emit svg -o press.svg       the network as a picture, also .png
   bramah check Press.mo --emit blt                    the sorted equations
+  bramah check Library --all                          every model that can run, a row each
 
 Exit status: 0 the model is complete, 1 it is wrong, 2 bad arguments or files.")]
 pub(super) struct CheckArgs {
     #[command(flatten)]
     model: ModelArgs,
+    /// Check every model of a package that can run: those with an `experiment`, or all; one row each
+    #[arg(long, conflicts_with_all = ["emit", "output_file"])]
+    all: bool,
     /// Also write what a stage makes of the model
     #[arg(long, value_enum, value_name = "STAGE")]
     emit: Option<Emit>,
@@ -52,6 +57,9 @@ pub(super) fn run(args: &CheckArgs, messages: &mut Messages) -> Result<Ending, F
         super::files::ending(std::path::Path::new(file), "this", endings(args.emit))?;
     }
     let experiment = args.model.experiment(None, messages)?;
+    if args.all {
+        return check_all(&experiment, messages);
+    }
     // The network can be looked at even when the equations do not fit together.
     if let Some(emit @ (Emit::Network | Emit::Svg | Emit::Flat)) = args.emit {
         let flattened = model::flatten(&experiment, &mut Messages::silent())?;
@@ -65,6 +73,27 @@ pub(super) fn run(args: &CheckArgs, messages: &mut Messages) -> Result<Ending, F
     }
     messages.remark(&summary(&flat, &dae));
     Ok(Ending::Fine)
+}
+
+/// A row for each model: `ok` with its size, or the first error.
+fn check_all(experiment: &Experiment, messages: &mut Messages) -> Result<Ending, Failure> {
+    let names = model::runnable(experiment)?;
+    let width = names.iter().map(String::len).max().unwrap_or(0);
+    let mut wrong = 0;
+    for name in &names {
+        let one = Experiment { model: Some(name.clone()), ..experiment.clone() };
+        let row = match model::sort(&one, &mut Messages::silent()) {
+            Ok((flat, _, dae)) => format!("ok     {} equations, {} states", flat.equations.len(), dae.states.len()),
+            Err(failure) => {
+                wrong += 1;
+                let first = failure.diagnostics.iter().find(|d| d.is_error()).or(failure.diagnostics.first());
+                first.map_or_else(|| "failed".into(), |d| format!("{}   {}", d.code, d.message))
+            }
+        };
+        write_text("-", &format!("{name:width$}  {row}\n"))?;
+    }
+    messages.remark(&format!("{} of {} models are fine", names.len() - wrong, names.len()));
+    Ok(if wrong == 0 { Ending::Fine } else { Ending::Wrong })
 }
 
 fn write(args: &CheckArgs, text: &str) -> Result<(), Failure> {

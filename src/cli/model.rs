@@ -26,6 +26,11 @@ pub(super) fn sort(experiment: &Experiment, messages: &mut Messages) -> Result<(
     pass(outcome, experiment, messages)
 }
 
+/// Names of all models of a source that can run.
+pub(super) fn runnable(experiment: &Experiment) -> Result<Vec<String>, Failure> {
+    crate::runnable(&DiskWorld, &request(experiment)?).map_err(|diagnostics| Failure { diagnostics })
+}
+
 /// The whole way to a system that can run.
 pub(super) fn compile(experiment: &Experiment, messages: &mut Messages) -> Result<Model, Failure> {
     let outcome = crate::compile(&DiskWorld, &request(experiment)?, &Options { native: true });
@@ -39,6 +44,7 @@ fn request(experiment: &Experiment) -> Result<Request, Failure> {
         overrides: overrides(experiment),
         libraries: library_folders(experiment)?,
         beside: Vec::new(),
+        varied: false,
     })
 }
 

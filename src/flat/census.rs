@@ -83,6 +83,8 @@ impl Census {
             let role = match (v.variability <= Variability::Parameter, data.causality) {
                 (true, _) => Role::Fixed,
                 (_, Some(Causality::Input)) if public => Role::Input,
+                // what leaves through a port is the component's to say
+                _ if data.stream => Role::Own,
                 (_, None) if port.is_some() && public && v.flow => Role::Flow,
                 (_, None) if port.is_some() && public => Role::Potential,
                 _ => Role::Own,
@@ -95,7 +97,11 @@ impl Census {
         }
         for (port, difference) in pairs {
             if difference != 0 {
-                self.uneven.push((port, difference));
+                // a bus has no pairs
+                let kind = instance.scope(scopes[port as usize]).template.kind;
+                if !matches!(kind, ClassKind::Connector { expandable: true }) {
+                    self.uneven.push((port, difference));
+                }
                 self.doubt(self.owner[port as usize]);
             }
         }
@@ -169,6 +175,10 @@ impl Census {
                     self.brought[self.holder[v.index()] as usize] += 1;
                 }
             }
+        }
+        for member in network.streams.iter().flat_map(|s| &s.members).filter(|m| m.outside) {
+            let v = instance.variables[member.variable as usize].id;
+            self.brought[self.holder[v.index()] as usize] += 1;
         }
         for &i in &network.open {
             let v = instance.variables[i as usize].id;

@@ -7,6 +7,9 @@ use crate::instance::Instance;
 
 /// Takes them out of all equations.
 pub(super) fn without_vanishing(instance: &mut Instance<'_, '_>, flat: &mut FlatModel) {
+    if instance.varied {
+        return;
+    }
     let roots: Vec<ExprId> =
         flat.equations.iter().chain(&flat.initial_equations).flat_map(|e| [e.lhs, e.rhs]).collect();
     let candidates = products(instance, &roots);

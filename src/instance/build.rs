@@ -94,6 +94,7 @@ pub fn instantiate<'a, 'l>(library: &'l mut Library<'a>, request: &ModelRequest)
         procedures: FxHashMap::default(),
         externals: FxHashMap::default(),
         outer_checked: FxHashMap::default(),
+        varied: false,
         streams: super::Streams::default(),
         variabilities: Vec::new(),
         operator_records: Vec::new(),

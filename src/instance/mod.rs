@@ -278,6 +278,8 @@ pub struct Instance<'a, 'l> {
     functions: Vec<ClassRef<'a>>,
     /// Tables read from files, by file and name.
     tables: FxHashMap<(FileId, String), Rc<Matrix>>,
+    /// Parameters will take other values without compiling again.
+    pub varied: bool,
     /// Joined stream variables.
     pub streams: Streams,
     variabilities: Vec<Variability>,

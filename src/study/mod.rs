@@ -161,7 +161,7 @@ impl Study {
             Some(model) => self.folder.join(model),
             None => PathBuf::from(class.clone().unwrap_or_default()),
         };
-        crate::Request { source, model: class, ..crate::Request::default() }
+        crate::Request { source, model: class, varied: true, ..crate::Request::default() }
     }
 
     /// The recordings of one role.
