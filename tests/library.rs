@@ -84,7 +84,8 @@ fn nominal_models_of_the_blind_bench_are_silent() {
     assert!(!files.is_empty());
     for file in files {
         let model = file.file_stem().map(|s| s.to_string_lossy().into_owned());
-        let request = Request { source: file, model, overrides: vec![], libraries: vec![], beside: vec![] };
+        let request =
+            Request { source: file, model, overrides: vec![], libraries: vec![], beside: vec![], varied: false };
         assert_eq!(remarks(&request), "");
     }
 }
