@@ -337,7 +337,7 @@ fn flatten_all(world: &dyn World, folder: Option<&Path>, names: &[&str]) -> Outc
     text.push_str("end Catalogue;\n");
     let source = PathBuf::from("(effects)/Catalogue.mo");
     let overlay = Overlay { base: world, files: MemoryWorld::single(&source, text) };
-    let mut request = Request { source, model: Some("Catalogue".into()), ..Request::default() };
+    let mut request = Request { source, model: Some("Catalogue".into()), varied: true, ..Request::default() };
     own_classes(world, folder, &mut request);
     let Outcome { sources, diagnostics, value } = flatten(&overlay, &request);
     Outcome { sources, diagnostics, value: value.map(|f| f.flat) }

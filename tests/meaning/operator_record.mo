@@ -1,16 +1,17 @@
+//! model M
 //! c.re(1) = 4
 //! c.im(1) = 3
 //! d.re(1) = -2
 //! p.re(1) = 0
 //! p.im(1) = 5
 //! f[2].re(1) = 3
-model M
+package P
   operator record Complex
     Real re;
     Real im;
     encapsulated operator 'constructor'
       function fromReal
-        import M.Complex;
+        import P.Complex;
         input Real re;
         input Real im = 0;
         output Complex result(re = re, im = im);
@@ -19,14 +20,14 @@ model M
     end 'constructor';
     encapsulated operator '-'
       function negate
-        import M.Complex;
+        import P.Complex;
         input Complex a;
         output Complex b;
       algorithm
         b := Complex(-a.re, -a.im);
       end negate;
       function subtract
-        import M.Complex;
+        import P.Complex;
         input Complex a, b;
         output Complex c;
       algorithm
@@ -34,20 +35,23 @@ model M
       end subtract;
     end '-';
     encapsulated operator function '+'
-      import M.Complex;
+      import P.Complex;
       input Complex a, b;
       output Complex c;
     algorithm
       c := Complex(a.re + b.re, a.im + b.im);
     end '+';
     encapsulated operator function '*'
-      import M.Complex;
+      import P.Complex;
       input Complex a, b;
       output Complex c;
     algorithm
       c := Complex(a.re*b.re - a.im*b.im, a.re*b.im + a.im*b.re);
     end '*';
   end Complex;
+end P;
+model M
+  import P.Complex;
   Complex a = Complex(2, 1);
   Complex b = Complex(1, 2);
   Complex c = a + b + 1 - Complex(0);
