@@ -626,7 +626,14 @@ impl<'a> Instance<'a, '_> {
 
     /// Zeros in the declared shape.
     fn blank(&mut self, f: &Formal<'a>, value: Option<&Val>) -> Option<Val> {
-        let found = self.class_at(f.view, &f.component.class)?;
+        let mut found = self.class_at(f.view, &f.component.class)?;
+        // `output R r(x = u)`: fields take what the declaration says of them
+        let given = self.reached(f.view.scope, f.index).args;
+        if let Found::Class(c) = &mut found
+            && !given.is_empty()
+        {
+            c.args = given.into_iter().chain(c.args.iter().cloned()).collect();
+        }
         let one = self.blank_one(&found, f.component.name.span)?;
         let mut dims = Vec::new();
         for (i, s) in f.component.subscripts.iter().enumerate() {
