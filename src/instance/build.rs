@@ -418,13 +418,15 @@ impl<'a> Instance<'a, '_> {
             (Some(a), Some(b)) => Some(a.min(b)),
             (a, b) => a.or(b),
         };
+        // `HideResult = false` shows what is protected, too (MLS 18.3)
+        let said = hides_result(declared);
         Inherited {
             variability: stricter,
             causality: component.prefix.causality.or(declared.prefix.causality).or(outer.causality),
             flow: outer.flow || component.prefix.flow || declared.prefix.flow,
             stream: outer.stream || component.prefix.stream || declared.prefix.stream,
-            hidden: outer.hidden || protected || hides_result(declared),
-            unwanted: outer.unwanted || hides_result(declared),
+            hidden: said.unwrap_or(outer.hidden || protected),
+            unwanted: said.unwrap_or(outer.unwanted),
             nested: outer.nested,
         }
     }
@@ -1093,12 +1095,17 @@ fn start_of<'a>(args: &[Arg<'a>]) -> Option<Binding<'a>> {
     })
 }
 
-fn hides_result(c: &ast::Component) -> bool {
+/// What the annotation `HideResult` says.
+fn hides_result(c: &ast::Component) -> Option<bool> {
     let arguments = c.annotation.iter().flat_map(|m| &m.arguments);
-    arguments.into_iter().any(|a| {
-        matches!(&a.kind, ast::ArgumentKind::Modify { path, modification: Some(m), .. }
-            if path.parts[0].name == "HideResult"
-                && matches!(m.value.as_ref().map(|v| &v.kind), Some(ast::ExprKind::Boolean(true))))
+    arguments.into_iter().find_map(|a| match &a.kind {
+        ast::ArgumentKind::Modify { path, modification: Some(m), .. } if path.parts[0].name == "HideResult" => {
+            match m.value.as_ref().map(|v| &v.kind) {
+                Some(ast::ExprKind::Boolean(hide)) => Some(*hide),
+                _ => None,
+            }
+        }
+        _ => None,
     })
 }
 
