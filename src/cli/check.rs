@@ -83,7 +83,10 @@ fn check_all(experiment: &Experiment, messages: &mut Messages) -> Result<Ending,
     for name in &names {
         let one = Experiment { model: Some(name.clone()), ..experiment.clone() };
         let row = match model::sort(&one, &mut Messages::silent()) {
-            Ok((flat, _, dae)) => format!("ok     {} equations, {} states", flat.equations.len(), dae.states.len()),
+            Ok((flat, _, dae)) => {
+                let (equations, states) = (flat.equations.len(), dae.states.len());
+                format!("ok     {}, {}", count(equations, "equation"), count(states, "state"))
+            }
             Err(failure) => {
                 wrong += 1;
                 let first = failure.diagnostics.iter().find(|d| d.is_error()).or(failure.diagnostics.first());
@@ -94,6 +97,10 @@ fn check_all(experiment: &Experiment, messages: &mut Messages) -> Result<Ending,
     }
     messages.remark(&format!("{} of {} models are fine", names.len() - wrong, names.len()));
     Ok(if wrong == 0 { Ending::Fine } else { Ending::Wrong })
+}
+
+fn count(n: usize, what: &str) -> String {
+    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }
 
 fn write(args: &CheckArgs, text: &str) -> Result<(), Failure> {
