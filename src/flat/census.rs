@@ -98,8 +98,7 @@ impl Census {
         for (port, difference) in pairs {
             if difference != 0 {
                 // a bus has no pairs
-                let kind = instance.scope(scopes[port as usize]).template.kind;
-                if !matches!(kind, ClassKind::Connector { expandable: true }) {
+                if !instance.scope(scopes[port as usize]).template.is_expandable() {
                     self.uneven.push((port, difference));
                 }
                 self.doubt(self.owner[port as usize]);

@@ -8,7 +8,8 @@ use crate::network::Network;
 
 use super::numbers::Numbers;
 
-/// Flow that counts at least, so that there is a mixture where nothing flows.
+/// Flow that counts at least, in the unit of the connector's flow, so that there is a mixture where nothing flows: far below
+/// what a solver resolves.
 const LEAST_FLOW: f64 = 1e-10;
 
 /// Tells the instance which stream variables are joined, so that `inStream` has a meaning in its equations.
@@ -16,8 +17,9 @@ pub(super) fn prepare(instance: &mut Instance<'_, '_>, network: &Network) {
     for set in &network.streams {
         let number = instance.streams.sets.len();
         for member in &set.members {
-            let of = if member.outside { &mut instance.streams.outside } else { &mut instance.streams.inside };
-            of.insert(member.variable, number);
+            if !member.outside {
+                instance.streams.inside.insert(member.variable, number);
+            }
         }
         instance.streams.sets.push(set.members.clone());
     }

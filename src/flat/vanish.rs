@@ -16,10 +16,9 @@ pub(super) fn without_vanishing(instance: &mut Instance<'_, '_>, flat: &mut Flat
     if candidates.is_empty() {
         return;
     }
-    let structural: Vec<bool> = instance.variables.iter().map(|v| v.structural).collect();
+    let is_zero = |i: &mut Instance<'_, '_>, factor| i.number_of(factor) == Some(0.0);
     let zero: Vec<(ExprId, ExprId)> =
-        candidates.into_iter().filter(|(_, factor)| instance.number_of(*factor) == Some(0.0)).collect();
-    instance.variables.iter_mut().zip(structural).for_each(|(v, was)| v.structural = was);
+        instance.without_fixing(|i| candidates.into_iter().filter(|(_, factor)| is_zero(i, *factor)).collect());
     if zero.is_empty() {
         return;
     }

@@ -257,9 +257,7 @@ impl<'a> Instance<'a, '_> {
         bound?;
         let fields: Option<Vec<_>> = fields.into_iter().map(|(n, v)| Some((n, v?))).collect();
         let fields = fields?;
-        let class =
-            callee.template.bases.first().map(|b| ClassRef { class: b.class, parent: b.parent, args: Rc::from([]) });
-        let class = class.and_then(|c| self.operator_class(&c));
+        let class = self.operator_class_of(&callee.template);
         Some(Val::Record(Rc::new(super::value::Record { fields, class })))
     }
 
@@ -273,6 +271,22 @@ impl<'a> Instance<'a, '_> {
     pub(super) fn leave_frame(&mut self, before: (usize, usize, bool)) {
         self.eval.locals.truncate(before.1);
         (self.eval.frame, _, self.eval.no_event) = before;
+    }
+
+    /// Does something in a frame of its own, with the arguments of a call bound to the inputs of its function.
+    pub(super) fn with_inputs<T>(
+        &mut self,
+        callee: &Callee<'a>,
+        positional: Vec<Val>,
+        named: Vec<(Ident, Val)>,
+        span: Span,
+        f: impl FnOnce(&mut Self) -> Option<T>,
+    ) -> Option<T> {
+        let inputs = self.formals(callee, is_input);
+        let before = self.enter_frame();
+        let value = self.bind(callee, &inputs, positional, named, span).and_then(|()| f(self));
+        self.leave_frame(before);
+        value
     }
 
     /// Binds arguments to inputs in a fresh frame; defaults may use inputs before them.

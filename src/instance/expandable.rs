@@ -5,10 +5,10 @@ use super::build::Plan;
 use super::deduce::Body;
 use super::lookup::{Builtin, Found};
 use super::modifiers::Reached;
-use super::template::{Element, Kind, Template};
+use super::template::{Element, Kind};
 use super::{ClassRef, ElementState, Inherited, Instance, Node, NodeId, ScopeId, View};
 use crate::flat::Type;
-use crate::syntax::ast::{self, ClassBody, ClassKind, Equation, EquationKind, Expr, ExprKind};
+use crate::syntax::ast::{self, ClassBody, Equation, EquationKind, Expr, ExprKind};
 use crate::syntax::symbol::Symbol;
 use std::rc::Rc;
 
@@ -28,7 +28,7 @@ enum Side {
 impl<'a> Instance<'a, '_> {
     /// Gives all buses the members that connections ask for.
     pub(super) fn expand_connectors(&mut self) {
-        if !self.scopes.iter().any(|s| s.component && is_expandable(&s.template)) {
+        if !self.scopes.iter().any(|s| s.component && s.template.is_expandable()) {
             return;
         }
         for _ in 0..ROUNDS {
@@ -93,7 +93,7 @@ impl<'a> Instance<'a, '_> {
                 let template = self.scope(s).template.clone();
                 match template.by_name.get(&part.name.name) {
                     Some(&k) => node = self.component(s, k)?,
-                    None if is_expandable(&template) && i == last && part.subscripts.is_empty() => {
+                    None if template.is_expandable() && i == last && part.subscripts.is_empty() => {
                         return Some(Side::Missing(s, part.name.name));
                     }
                     None => return None,
@@ -107,7 +107,7 @@ impl<'a> Instance<'a, '_> {
             }
         }
         match self.node(node) {
-            Node::Object(s) if is_expandable(&self.scope(*s).template) => Some(Side::Bus(*s)),
+            Node::Object(s) if self.scope(*s).template.is_expandable() => Some(Side::Bus(*s)),
             _ => Some(Side::Port(node)),
         }
     }
@@ -232,9 +232,4 @@ impl<'a> Instance<'a, '_> {
             _ => {}
         }
     }
-}
-
-/// Whether a class is an expandable connector.
-pub(super) fn is_expandable(template: &Template<'_>) -> bool {
-    matches!(template.kind, ClassKind::Connector { expandable: true })
 }

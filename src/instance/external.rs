@@ -2,7 +2,7 @@
 //! of the C call in its order.
 
 use super::Instance;
-use super::call::{Callee, is_input};
+use super::call::Callee;
 use super::files::Place;
 use super::value::Val;
 use crate::diag::Code;
@@ -129,12 +129,7 @@ impl<'a> Instance<'a, '_> {
         named: Vec<(Ident, Val)>,
         place: Place,
     ) -> Option<Val> {
-        let inputs = self.formals(callee, is_input);
-        let before = self.enter_frame();
-        let bound = self.bind(callee, &inputs, positional, named, place.call);
-        let value = bound.and_then(|()| self.carry_out_external(how, callee, place));
-        self.leave_frame(before);
-        value
+        self.with_inputs(callee, positional, named, place.call, |s| s.carry_out_external(how, callee, place))
     }
 
     fn carry_out_external(&mut self, how: Builtin, callee: &Callee<'a>, place: Place) -> Option<Val> {

@@ -1,7 +1,7 @@
 //! Tables that models read from files: the external functions behind `Signal.Functions.readTable` and `tableSize`,
 //! carried out while the model is built, so that sizes may depend on them.
 
-use super::call::{Callee, is_input};
+use super::call::Callee;
 use super::value::Val;
 use super::{Instance, Node, View};
 use crate::diag::{Code, Diagnostic, Span};
@@ -70,12 +70,7 @@ impl<'a> Instance<'a, '_> {
         named: Vec<(Ident, Val)>,
         place: Place,
     ) -> Option<Val> {
-        let inputs = self.formals(callee, is_input);
-        let before = self.enter_frame();
-        let bound = self.bind(callee, &inputs, positional, named, place.call);
-        let value = bound.and_then(|()| self.carry_out(function, callee, place));
-        self.leave_frame(before);
-        value
+        self.with_inputs(callee, positional, named, place.call, |s| s.carry_out(function, callee, place))
     }
 
     fn carry_out(&mut self, function: FileFunction, callee: &Callee<'a>, place: Place) -> Option<Val> {

@@ -215,8 +215,6 @@ pub struct Streams {
     pub sets: Vec<Vec<StreamMember>>,
     /// The set in which a variable is a part's port.
     pub inside: FxHashMap<u32, usize>,
-    /// The set in which it is the component's own.
-    pub outside: FxHashMap<u32, usize>,
 }
 
 /// An enumeration type.
@@ -375,12 +373,18 @@ impl<'a> Instance<'a, '_> {
 
     /// The number that a parameter has, if it can be told, without fixing it.
     pub fn peek(&mut self, i: u32) -> Option<f64> {
-        let structural: Vec<bool> = self.variables.iter().map(|v| v.structural).collect();
         let (mark, span) = (self.diagnostics.len(), self.variables[i as usize].span);
-        let value = self.known_value(i, span);
+        let value = self.without_fixing(|s| s.known_value(i, span));
         self.diagnostics.truncate(mark);
-        self.variables.iter_mut().zip(structural).for_each(|(v, was)| v.structural = was);
         value?.as_number(&self.exprs)
+    }
+
+    /// Looks at values of parameters without fixing any with the structure.
+    pub fn without_fixing<T>(&mut self, look: impl FnOnce(&mut Self) -> T) -> T {
+        let structural: Vec<bool> = self.variables.iter().map(|v| v.structural).collect();
+        let found = look(self);
+        self.variables.iter_mut().zip(structural).for_each(|(v, was)| v.structural = was);
+        found
     }
 
     /// Fixes the parameters of an expression with the structure of the model.

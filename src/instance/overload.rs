@@ -2,6 +2,7 @@
 
 use super::call::{Callee, Formal, is_input};
 use super::lookup::{Builtin, Found};
+use super::template::Template;
 use super::value::Val;
 use super::vectorised::Given;
 use super::{ClassRef, Instance};
@@ -35,14 +36,19 @@ impl<'a> Instance<'a, '_> {
     /// The number of a class of operator records; `None` for other classes.
     pub(super) fn operator_class(&mut self, class: &ClassRef<'a>) -> Option<u32> {
         let template = self.template(class.class, class.parent);
+        self.operator_class_of(&template)
+    }
+
+    /// The same by what the class holds.
+    pub(super) fn operator_class_of(&mut self, template: &Template<'a>) -> Option<u32> {
         if !matches!(template.kind, ClassKind::Record { operator: true }) {
             return None;
         }
         // `record C = Complex(...)` is `Complex` with values
-        let own = template.bases.last().map_or(class.class, |b| b.class);
+        let base = template.bases.last()?;
+        let (own, parent) = (base.class, base.parent);
         let known = self.operator_records.iter().position(|c| c.class == own);
         let at = known.unwrap_or_else(|| {
-            let parent = template.bases.last().map_or(class.parent, |b| b.parent);
             self.operator_records.push(ClassRef { class: own, parent, args: [].into() });
             self.operator_records.len() - 1
         });

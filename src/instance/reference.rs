@@ -607,9 +607,7 @@ impl<'a> Instance<'a, '_> {
                 fields.push((element.name, self.node_value(node, span)?));
             }
         }
-        let class =
-            template.bases.first().map(|b| super::ClassRef { class: b.class, parent: b.parent, args: Rc::from([]) });
-        let class = class.and_then(|c| self.operator_class(&c));
+        let class = self.operator_class_of(&template);
         Some(Val::Record(Rc::new(super::value::Record { fields, class })))
     }
 

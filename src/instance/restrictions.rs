@@ -76,10 +76,10 @@ impl<'a> Instance<'a, '_> {
             let what = format!("`{}` is replaceable and cannot be a base class", base_class.name.name);
             self.refuse(breach(what, at, "what it holds would not be known", "7.1.4"), Some(class));
         }
-        let (of, from) = (self.kind_of(class), self.kind_of(base));
+        let (of, from) = (derived.kind, base_class.kind);
         if !may_extend(of, from) {
-            let what = format!("a {} cannot extend a {}", kind_name(of), kind_name(from));
-            let label = format!("`{}` is a {}", base_class.name.name, kind_name(from));
+            let what = format!("a {} cannot extend a {}", of.word(), from.word());
+            let label = format!("`{}` is a {}", base_class.name.name, from.word());
             self.refuse(breach(what, at, label, "7.1.3"), Some(class));
         }
     }
@@ -91,7 +91,7 @@ impl<'a> Instance<'a, '_> {
             matches!(kind, ClassKind::Type | ClassKind::Connector { .. } | ClassKind::Class) || base == Builtin::Object;
         if !fine {
             let name = super::errors::builtin_name(base);
-            let what = format!("a {} cannot extend `{name}`", kind_name(kind));
+            let what = format!("a {} cannot extend `{name}`", kind.word());
             self.refuse(breach(what, at, "a predefined type", "7.1.3"), Some(class));
         }
     }
@@ -100,11 +100,6 @@ impl<'a> Instance<'a, '_> {
     pub(super) fn check_array_base(&mut self, class: ClassId, at: Span) {
         let what = "a class of arrays cannot be extended by one with elements";
         self.refuse(breach(what, at, "this class is an array", "4.5.2"), Some(class));
-    }
-
-    /// The kind of a class; of `type T = Real` and the like that at the end of the chain does not count, the word does.
-    fn kind_of(&self, class: ClassId) -> ClassKind {
-        self.library.class(class).kind
     }
 
     /// Prefixes of a component whose class is a model or block, or of a connector (MLS 4.4.2, 4.4.4).
@@ -116,7 +111,7 @@ impl<'a> Instance<'a, '_> {
         match template.kind {
             ClassKind::Model | ClassKind::Block | ClassKind::Class if words.is_some() && template.builtin.is_none() => {
                 let word = words.unwrap_or_default();
-                let what = format!("`{name}` is a component of a {} and cannot be `{word}`", kind_name(template.kind));
+                let what = format!("`{name}` is a component of a {} and cannot be `{word}`", template.kind.word());
                 self.refuse(breach(what, at, "such prefixes belong to types, records and connectors", "4.4.2"), None);
             }
             ClassKind::Connector { .. } if template.builtin.is_none() => {
@@ -157,9 +152,7 @@ impl<'a> Instance<'a, '_> {
             return;
         }
         let open = template.elements.iter().find_map(|e| match e.kind {
-            super::template::Kind::Component(c) if self.is_open(c, template, e.base) && !directed(c) => {
-                Some(c.name.name)
-            }
+            super::template::Kind::Component(c) if is_open(c) && !directed(c) => Some(c.name.name),
             _ => None,
         });
         if let Some(open) = open {
@@ -168,27 +161,11 @@ impl<'a> Instance<'a, '_> {
             self.refuse(breach(what, declared.name.span, label, "4.6"), None);
         }
     }
-
-    /// Whether a member of a connector is a plain variable.
-    fn is_open(&self, c: &ast::Component, _: &super::template::Template<'a>, _: u32) -> bool {
-        c.class.parts.len() == 1 && matches!(c.class.parts[0].name.as_str(), "Real" | "Integer" | "Boolean" | "String")
-    }
 }
 
-fn kind_name(kind: ClassKind) -> &'static str {
-    match kind {
-        ClassKind::Class => "class",
-        ClassKind::Model => "model",
-        ClassKind::Block => "block",
-        ClassKind::Record { operator: false } => "record",
-        ClassKind::Record { operator: true } => "operator record",
-        ClassKind::Connector { expandable: false } => "connector",
-        ClassKind::Connector { expandable: true } => "expandable connector",
-        ClassKind::Type => "type",
-        ClassKind::Package => "package",
-        ClassKind::Function { .. } => "function",
-        ClassKind::Operator => "operator",
-    }
+/// Whether a member of a connector is a plain variable.
+fn is_open(c: &ast::Component) -> bool {
+    c.class.parts.len() == 1 && matches!(c.class.parts[0].name.as_str(), "Real" | "Integer" | "Boolean" | "String")
 }
 
 /// The table of MLS 7.1.3, in which a `class` is free to be anything.
@@ -256,7 +233,7 @@ fn sections(class: &ast::Class, body: &ast::LongBody, found: &mut Vec<Breach>) {
     match class.kind {
         ClassKind::Record { .. } | ClassKind::Connector { .. } | ClassKind::Package => {
             if let Some(at) = first_equation.or(first_statement) {
-                let what = format!("a {} cannot have equations or algorithms", kind_name(class.kind));
+                let what = format!("a {} cannot have equations or algorithms", class.kind.word());
                 found.push(breach(what, at, "not allowed here", "4.6"));
             }
         }
@@ -270,7 +247,7 @@ fn sections(class: &ast::Class, body: &ast::LongBody, found: &mut Vec<Breach>) {
 
 /// Elements that a kind of class does not have (MLS 4.6), and `time` where nothing runs.
 fn elements(class: &ast::Class, body: &ast::LongBody, found: &mut Vec<Breach>) {
-    let kind = kind_name(class.kind);
+    let kind = class.kind.word();
     let structure = matches!(class.kind, ClassKind::Record { .. } | ClassKind::Connector { .. });
     let timeless = structure || matches!(class.kind, ClassKind::Package);
     for e in &body.elements {

@@ -56,6 +56,11 @@ pub struct Base<'a> {
 }
 
 impl Template<'_> {
+    /// Whether this is an expandable connector.
+    pub fn is_expandable(&self) -> bool {
+        matches!(self.kind, ast::ClassKind::Connector { expandable: true })
+    }
+
     /// Whether a class holds what a package holds: classes and constants. Other kinds than models are never used as one.
     pub(super) fn is_package(&self) -> bool {
         let model = matches!(self.kind, ast::ClassKind::Model | ast::ClassKind::Block | ast::ClassKind::Class);

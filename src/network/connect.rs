@@ -58,11 +58,6 @@ impl Sets {
     }
 }
 
-/// Whether a variable stands in an expandable connector.
-fn in_bus(instance: &Instance<'_, '_>, scope: ScopeId) -> bool {
-    matches!(instance.scope(scope).template.kind, ClassKind::Connector { expandable: true })
-}
-
 /// One end of a connection.
 struct End {
     selection: Selection,
@@ -87,7 +82,9 @@ impl Collector {
         let joined: FxHashSet<u32> = self.potentials.keys.iter().chain(&self.flows.keys).map(|(k, ..)| k.0).collect();
         self.network.unused = (0u32..)
             .zip(&instance.variables)
-            .filter(|(i, v)| !joined.contains(i) && v.id.0 != u32::MAX && in_bus(instance, v.scope))
+            .filter(|(i, v)| {
+                !joined.contains(i) && v.id.0 != u32::MAX && instance.scope(v.scope).template.is_expandable()
+            })
             .filter(|(_, v)| v.variability > Variability::Parameter && v.binding.is_none())
             .map(|(i, _)| i)
             .collect();

@@ -62,6 +62,25 @@ pub enum ClassKind {
     Operator,
 }
 
+impl ClassKind {
+    /// The keywords without the purity of functions.
+    pub fn word(self) -> &'static str {
+        match self {
+            ClassKind::Class => "class",
+            ClassKind::Model => "model",
+            ClassKind::Block => "block",
+            ClassKind::Record { operator: false } => "record",
+            ClassKind::Record { operator: true } => "operator record",
+            ClassKind::Connector { expandable: false } => "connector",
+            ClassKind::Connector { expandable: true } => "expandable connector",
+            ClassKind::Type => "type",
+            ClassKind::Package => "package",
+            ClassKind::Function { .. } => "function",
+            ClassKind::Operator => "operator",
+        }
+    }
+}
+
 /// Prefixes of classes and components.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[allow(missing_docs, reason = "the Modelica keywords")]

@@ -308,16 +308,6 @@ impl Printer {
 
 fn keywords(kind: ClassKind) -> &'static str {
     match kind {
-        ClassKind::Class => "class",
-        ClassKind::Model => "model",
-        ClassKind::Block => "block",
-        ClassKind::Record { operator: false } => "record",
-        ClassKind::Record { operator: true } => "operator record",
-        ClassKind::Connector { expandable: false } => "connector",
-        ClassKind::Connector { expandable: true } => "expandable connector",
-        ClassKind::Type => "type",
-        ClassKind::Package => "package",
-        ClassKind::Operator => "operator",
         ClassKind::Function { operator, purity } => match (purity, operator) {
             (None, false) => "function",
             (None, true) => "operator function",
@@ -326,5 +316,6 @@ fn keywords(kind: ClassKind) -> &'static str {
             (Some(false), false) => "impure function",
             (Some(false), true) => "impure operator function",
         },
+        other => other.word(),
     }
 }
