@@ -51,7 +51,13 @@ pub(super) struct Census {
 }
 
 impl Census {
-    pub(super) fn take(instance: &Instance<'_, '_>, network: &Network, flat: &FlatModel, scopes: &[ScopeId]) -> Self {
+    pub(super) fn take(
+        instance: &Instance<'_, '_>,
+        network: &Network,
+        flat: &FlatModel,
+        scopes: &[ScopeId],
+        constraints: &[(Vec<u32>, usize)],
+    ) -> Self {
         let components = components(instance, flat, scopes);
         let n = scopes.len();
         let around = (0..n).map(|i| components[flat.instances[components[i] as usize].parent as usize]).collect();
@@ -66,14 +72,20 @@ impl Census {
             uneven: Vec::new(),
             unjudged: vec![false; n],
         };
-        census.roles(instance, flat, scopes);
+        census.roles(instance, flat, scopes, constraints);
         census.equations(flat);
         census.connections(instance, network, scopes);
         census.debts();
         census
     }
 
-    fn roles(&mut self, instance: &Instance<'_, '_>, flat: &FlatModel, scopes: &[ScopeId]) {
+    fn roles(
+        &mut self,
+        instance: &Instance<'_, '_>,
+        flat: &FlatModel,
+        scopes: &[ScopeId],
+        constraints: &[(Vec<u32>, usize)],
+    ) {
         // Potentials less flows of each port.
         let mut pairs: BTreeMap<u32, i64> = BTreeMap::new();
         for (i, v) in flat.variables.iter().enumerate() {
@@ -95,6 +107,9 @@ impl Census {
             self.role.push(role);
             self.holder.push(holder);
         }
+        for (variables, size) in constraints {
+            self.overconstrained(instance, flat, scopes, variables, *size, &mut pairs);
+        }
         for (port, difference) in pairs {
             if difference != 0 {
                 // a bus has no pairs
@@ -103,6 +118,26 @@ impl Census {
                 }
                 self.doubt(self.owner[port as usize]);
             }
+        }
+    }
+
+    /// Overconstrained components of ports count by their constraints, and components with such ports cannot be judged
+    /// alone, for branches tell which of their equations hold (MLS 9.4.1).
+    fn overconstrained(
+        &mut self,
+        instance: &Instance<'_, '_>,
+        flat: &FlatModel,
+        scopes: &[ScopeId],
+        variables: &[u32],
+        size: usize,
+        pairs: &mut BTreeMap<u32, i64>,
+    ) {
+        let first = variables.first().map(|&i| &instance.variables[i as usize]);
+        let Some(data) = first.filter(|d| d.id.0 != u32::MAX) else { return };
+        let origin = flat.variables[data.id.index()].origin.instance;
+        if let (Some(port), true) = self.place(instance, flat, scopes, origin, &data.name) {
+            self.doubt(self.owner[port as usize]);
+            *pairs.entry(port).or_default() += count(size) - count(variables.len());
         }
     }
 
@@ -217,6 +252,10 @@ impl Census {
             }
         }
     }
+}
+
+fn count(n: usize) -> i64 {
+    i64::try_from(n).expect("limited sizes")
 }
 
 /// The variable that an expression is.

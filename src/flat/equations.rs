@@ -10,6 +10,7 @@ use crate::expr::{ExprId, Exprs, Node, VarId};
 use crate::instance::algorithm::{AlgorithmCall, AlgorithmWhen, Asserted, assigned};
 use crate::instance::value::Val;
 use crate::instance::{Instance, ScopeId, View};
+use crate::network;
 use crate::syntax::ast::{self, ClassBody, EquationKind, Expr, ExprKind, Statement};
 use crate::syntax::symbol::Symbol;
 
@@ -527,15 +528,8 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
                         .help("write `when condition then ... end when;` around it"),
                 );
             }
-            "Connections" => {
-                self.instance.diagnostics.push(
-                    Diagnostic::new(
-                        Code::Unsupported,
-                        "overconstrained connectors (`Connections...`) are not supported",
-                    )
-                    .at(span, "valid Modelica that bramah cannot use yet"),
-                );
-            }
+            // said of the network, which has heard it
+            "Connections" if network::is_said(function) => {}
             _ => {
                 self.instance.eval_all(call, view);
             }
@@ -706,7 +700,7 @@ pub(super) fn watch(instance: &mut Instance<'_, '_>, flat: &mut FlatModel, calls
     }
 }
 
-fn message(text: Option<Val>) -> Message {
+pub(super) fn message(text: Option<Val>) -> Message {
     match text {
         Some(Val::Text(parts)) => {
             let mut joined: Vec<MessagePart> = Vec::new();

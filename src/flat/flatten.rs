@@ -7,7 +7,7 @@ use super::{
     Confidence, Equation, Experiment, FlatModel, InstanceInfo, Origin, OriginKind, StateSelect, Type, Variability,
     Variable,
 };
-use super::{balance, discrete, equations, ports, streams, vanish};
+use super::{balance, discrete, equations, overconstrained, ports, streams, vanish};
 use crate::diag::{Checked, Code, Diagnostic};
 use crate::expr::{ExprId, Exprs, VarId};
 use crate::instance::{ElementState, Instance, Node, ScopeId, View};
@@ -27,6 +27,7 @@ pub fn flatten(instance: &mut Instance<'_, '_>, network: &Network) -> Checked<Fl
     instance.check_texts();
     Walker::new(instance, &numbers, &mut flat).walk(&scopes);
     connections(instance, network, &numbers, &mut flat);
+    overconstrained::equations(instance, network, &numbers, &mut flat);
     streams::equations(instance, network, &numbers, &mut flat);
     vanish::without_vanishing(instance, &mut flat);
     discrete::check(instance, &flat);
@@ -40,10 +41,11 @@ pub fn flatten(instance: &mut Instance<'_, '_>, network: &Network) -> Checked<Fl
         .iter()
         .map(|e| (e.name.clone(), e.literals.iter().map(|l| l.as_str().to_string()).collect()))
         .collect();
+    let constraints = instance.constraint_sizes();
     flat.exprs = std::mem::take(&mut instance.exprs);
     let mut diagnostics = std::mem::take(&mut instance.diagnostics);
     if !diagnostics.iter().any(Diagnostic::is_error) {
-        let census = Census::take(instance, network, &flat, &scopes);
+        let census = Census::take(instance, network, &flat, &scopes, &constraints);
         let signals = ports::Signals::new(instance, network, &flat, &census, &scopes);
         let doubts = balance::doubts(instance, &signals, &flat, &census, &scopes);
         diagnostics.extend(ports::open_lines(&flat, &census));

@@ -7,6 +7,7 @@ mod equations;
 mod explain;
 mod flatten;
 mod numbers;
+mod overconstrained;
 mod ports;
 mod print;
 mod roots;

@@ -354,7 +354,7 @@ impl<'a> Instance<'a, '_> {
     fn statement_call(&mut self, call: &'a Expr, view: View) -> Option<Flow> {
         if let ExprKind::Call { function, args, .. } = &call.kind {
             match function.parts[0].name.name.as_str() {
-                "assert" if self.eval.frame > 0 || self.eval.depth > 0 => {
+                "assert" if (self.eval.frame > 0 || self.eval.depth > 0) && !self.eval.keep_asserts => {
                     let c = self.eval(args.first()?, view)?;
                     return match c.as_number(&self.exprs) {
                         Some(x) if x != 0.0 => Some(Flow::Next),

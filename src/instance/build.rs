@@ -96,6 +96,8 @@ pub fn instantiate<'a, 'l>(library: &'l mut Library<'a>, request: &ModelRequest)
         outer_checked: FxHashMap::default(),
         varied: false,
         streams: super::Streams::default(),
+        connected: FxHashMap::default(),
+        overconstrained: super::overconstrained::Overconstrained::default(),
         variabilities: Vec::new(),
         operator_records: Vec::new(),
         functions: Vec::new(),
@@ -643,7 +645,11 @@ impl<'a> Instance<'a, '_> {
             args.extend(class.args.iter().cloned());
         }
         let part = Part { binding: reached.binding, final_: reached.final_ };
-        self.build_array(plan, found, template.as_ref(), (&all, dims.len()), &args.into(), part)
+        let node = self.build_array(plan, found, template.as_ref(), (&all, dims.len()), &args.into(), part)?;
+        if let Some(template) = template {
+            self.note_constraints(node, dims.is_empty(), found, &template);
+        }
+        Some(node)
     }
 
     fn build_array(

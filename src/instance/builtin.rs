@@ -6,7 +6,7 @@ use crate::diag::{Code, Diagnostic, Span};
 use crate::expr::differentiate::Leaf;
 use crate::expr::{Binary, ExprId, Exprs, Node, Rel, Unary};
 use crate::flat::{MessagePart, Type, Variability};
-use crate::syntax::ast::{Expr, Ident, Reference};
+use crate::syntax::ast::{Expr, ExprKind, Ident, Reference};
 use std::rc::Rc;
 
 /// Mathematical functions of one argument.
@@ -45,6 +45,11 @@ impl<'a> Instance<'a, '_> {
         view: View,
         span: Span,
     ) -> Option<Option<Val>> {
+        if let [package, query] = function.parts.as_slice() {
+            let name = query.name.name.as_str();
+            let asked = package.name.name == "Connections" && matches!(name, "isRoot" | "rooted");
+            return asked.then(|| self.connection_query(name, args, view, span));
+        }
         if function.parts.len() != 1 {
             return None;
         }
@@ -94,10 +99,7 @@ impl<'a> Instance<'a, '_> {
             }
             "String" => self.string(args, view, span),
             "Integer" => self.one(name, args, view, span).map(|v| v.map(&mut |e, _| e)).map(as_integer),
-            "cardinality" => {
-                self.unsupported(span, "`cardinality`, which Modelica has given up,");
-                None
-            }
+            "cardinality" => self.cardinality(args, view, span),
             _ => {
                 let op = mathematical(name)?;
                 self.one(name, args, view, span).and_then(|v| self.mathematics(op, &v, span))
@@ -129,6 +131,17 @@ impl<'a> Instance<'a, '_> {
                 None
             }
         }
+    }
+
+    /// `cardinality(c)`: the number of connections of a port (MLS 3.7.4.3).
+    fn cardinality(&mut self, args: &'a [Expr], view: View, span: Span) -> Option<Val> {
+        let node = match args {
+            [Expr { kind: ExprKind::Reference(r), .. }] => self.named_node(r, view),
+            _ => None,
+        };
+        let Some(node) = node else { return self.fail(Code::BadCall, "`cardinality` takes one port", span) };
+        let count = self.connected.get(&node).copied().unwrap_or(0);
+        Some(self.integer(f64::from(count)))
     }
 
     fn one(&mut self, name: &str, args: &'a [Expr], view: View, span: Span) -> Option<Val> {

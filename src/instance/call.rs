@@ -50,7 +50,9 @@ impl<'a> Instance<'a, '_> {
         if let Some((class, bound)) = self.functional_input(function) {
             return self.call_bound(class, args, named, &bound, view, span);
         }
-        if let Some(v) = self.builtin_call(function, args, named, view, span) {
+        if !self.is_redefined(function, view)
+            && let Some(v) = self.builtin_call(function, args, named, view, span)
+        {
             return v;
         }
         let path = ast::Path {
@@ -69,6 +71,13 @@ impl<'a> Instance<'a, '_> {
                 }
             },
         }
+    }
+
+    /// Whether a class that is visible here bears the name of a built-in function, as after
+    /// `import Modelica.ComplexMath.abs`: it is nearer (MLS 5.3.1).
+    fn is_redefined(&mut self, function: &Reference, view: View) -> bool {
+        let [part] = function.parts.as_slice() else { return false };
+        !function.global && matches!(self.lookup_nested(view, part.name.name), Some(Found::Class(_)))
     }
 
     /// Calls a function some of whose inputs were given before.
@@ -662,16 +671,10 @@ impl<'a> Instance<'a, '_> {
                 },
             });
         }
-        let inner = one.dims().to_vec();
-        if dims.is_empty() {
-            return Some(one);
-        }
-        let count: usize = dims.iter().product();
-        if count > 1_000_000 {
+        if dims.iter().product::<usize>() > 1_000_000 {
             return self.fail(Code::TooLarge, "this array has more than a million elements", f.component.name.span);
         }
-        let elements = (0..count).flat_map(|_| one.elements().to_vec()).collect();
-        Some(Val::array(dims.into_iter().chain(inner).collect(), elements))
+        Some(repeated(&one, dims))
     }
 
     fn blank_one(&mut self, found: &Found<'a>, span: Span) -> Option<Val> {
@@ -687,26 +690,49 @@ impl<'a> Instance<'a, '_> {
             Found::Builtin(b) => Some(of(*b)),
             Found::Class(c) => {
                 let t = self.template(c.class, c.parent);
-                if let (Some(b), true) = (t.builtin, t.dims.is_empty()) {
-                    return Some(of(b));
+                let dims = self.type_dims(&t)?;
+                if let Some(b) = t.builtin {
+                    return Some(repeated(&of(b), dims));
                 }
                 let mut fields = Vec::new();
                 let scope = self.package(c);
                 let callee = Callee { scope, template: t, name: String::new() };
                 for f in self.formals(&callee, |_, _| true) {
-                    let value = self.blank_field(&f)?;
+                    let value = self.declared_local(&f)?;
                     fields.push((f.name, value));
                 }
                 let class = self.operator_class(c);
-                Some(Val::Record(Rc::new(super::value::Record { fields, class })))
+                let one = Val::Record(Rc::new(super::value::Record { fields, class }));
+                Some(repeated(&one, dims))
             }
             Found::Component(..) => self.fail(Code::WrongClassKind, "a type is needed here", span),
         }
     }
 
-    fn blank_field(&mut self, f: &Formal<'a>) -> Option<Val> {
-        self.declared_local(f)
+    /// The dimensions that a type brings, as `type Orientation = Real[3, 3]` does.
+    fn type_dims(&mut self, t: &Template<'a>) -> Option<Vec<usize>> {
+        let mut dims = Vec::new();
+        for (subscripts, base) in t.dims.iter().rev() {
+            let view = t.bases[*base as usize].parent;
+            for s in *subscripts {
+                dims.push(match s {
+                    ast::Subscript::All(span) => return self.fail(Code::NoValue, "this size is not given", *span),
+                    ast::Subscript::Expr(e) => self.extent(e, view)?.size,
+                });
+            }
+        }
+        Some(dims)
     }
+}
+
+/// An array of these dimensions, all elements of which are one value.
+fn repeated(one: &Val, dims: Vec<usize>) -> Val {
+    if dims.is_empty() {
+        return one.clone();
+    }
+    let inner = one.dims().to_vec();
+    let elements = (0..dims.iter().product()).flat_map(|_| one.elements().to_vec()).collect();
+    Val::array(dims.into_iter().chain(inner).collect(), elements)
 }
 
 /// Whether a function has no output.

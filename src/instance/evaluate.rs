@@ -48,6 +48,8 @@ pub struct State {
     pub section: std::ops::Range<usize>,
     /// Inside `pre`: variables of the section mean themselves, not what the section has made of them.
     pub before: bool,
+    /// Assertions of the function being carried out are kept for the run.
+    pub keep_asserts: bool,
     /// The text of values given from outside.
     pub override_file: Option<FileId>,
     /// These values as they were given, by the names of the variables.

@@ -67,7 +67,12 @@ fn builtin(name: Symbol) -> Option<Builtin> {
 
 impl<'a> Instance<'a, '_> {
     /// What a simple name means at a place.
-    pub fn lookup(&mut self, mut view: View, name: Symbol) -> Option<Found<'a>> {
+    pub fn lookup(&mut self, view: View, name: Symbol) -> Option<Found<'a>> {
+        self.lookup_nested(view, name).or_else(|| self.lookup_top(name))
+    }
+
+    /// What a name means below the top level.
+    pub(super) fn lookup_nested(&mut self, mut view: View, name: Symbol) -> Option<Found<'a>> {
         while view != ROOT {
             let template = self.scope(view.scope).template.clone();
             let base = &template.bases[view.base as usize];
@@ -86,7 +91,7 @@ impl<'a> Instance<'a, '_> {
             }
             view = if base.ast.prefixes.encapsulated { ROOT } else { base.parent };
         }
-        self.lookup_top(name)
+        None
     }
 
     fn lookup_top(&mut self, name: Symbol) -> Option<Found<'a>> {
@@ -459,9 +464,15 @@ impl<'a> Instance<'a, '_> {
             }
             reached.take(arg);
         }
-        if let (Some(b), Kind::Component(_), None) = (&binding, element.kind, &reached.binding) {
+        let of_record = binding.filter(|_| matches!(element.kind, Kind::Component(_))).map(|b| {
             let access = b.access.iter().copied().chain([super::modifiers::Access::Field(element.name)]).collect();
-            reached.binding = Some(super::modifiers::Binding { access, ..b.clone() });
+            super::modifiers::Binding { access, ..b }
+        });
+        // constants come with the class, not with a value of it (MLS 12.6)
+        let constant =
+            matches!(element.kind, Kind::Component(c) if c.prefix.variability == Some(ast::Variability::Constant));
+        if !constant && reached.binding.is_none() {
+            reached.binding = of_record.clone();
         }
         let none: Rc<[_]> = Rc::from([]);
         let redeclaration = |s: &&Source<'a>| s.base == 0 && template.bases[0].short;
@@ -487,6 +498,9 @@ impl<'a> Instance<'a, '_> {
             if let Some(m) = c.modification.as_ref().filter(|_| !(redeclared && c.constraint.is_some())) {
                 reached.modification(m, view, &none, false, c.prefixes.final_, element.span);
             }
+        }
+        if reached.binding.is_none() && !reached.no_binding {
+            reached.binding = of_record;
         }
         reached
     }

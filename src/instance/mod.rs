@@ -18,6 +18,7 @@ mod files;
 mod functional;
 pub mod lookup;
 pub mod modifiers;
+mod overconstrained;
 mod overload;
 mod procedure;
 pub mod reference;
@@ -280,6 +281,10 @@ pub struct Instance<'a, 'l> {
     pub varied: bool,
     /// Joined stream variables.
     pub streams: Streams,
+    /// How many connections name each port, once the network is known.
+    pub connected: FxHashMap<NodeId, u32>,
+    /// Overconstrained connectors.
+    pub overconstrained: overconstrained::Overconstrained<'a>,
     variabilities: Vec<Variability>,
     /// Values given from outside for single elements of arrays.
     given_elements: Vec<build::GivenElement<'a>>,

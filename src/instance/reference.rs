@@ -289,7 +289,31 @@ impl<'a> Instance<'a, '_> {
                 let inner = items.iter().find_map(|e| self.shape_inside(e, view))?;
                 Some(std::iter::once(items.len()).chain(inner).collect())
             }
-            ExprKind::If { branches, .. } => self.shape_inside(&branches.first()?.1, view),
+            ExprKind::Matrix(rows) => {
+                let mut all = [0, 0];
+                for row in rows {
+                    let mut width = 0;
+                    let mut height = 1;
+                    for e in row {
+                        let part = self.shape_inside(e, view)?;
+                        height = part.first().copied().unwrap_or(1);
+                        width += part.get(1).copied().unwrap_or(1);
+                    }
+                    all = [all[0] + height, width];
+                }
+                Some(all.to_vec())
+            }
+            ExprKind::If { branches, otherwise } => {
+                for (condition, value) in branches {
+                    let mark = self.diagnostics.len();
+                    let known = self.constant_boolean(condition, view);
+                    self.diagnostics.truncate(mark);
+                    if known != Some(false) {
+                        return self.shape_inside(value, view);
+                    }
+                }
+                self.shape_inside(otherwise, view)
+            }
             ExprKind::Call { function, args, .. } if function.parts.len() == 1 => {
                 match function.parts[0].name.name.as_str() {
                     "fill" => {
@@ -478,7 +502,7 @@ impl<'a> Instance<'a, '_> {
                         return None;
                     }
                     let node = self.element_node(scope, index, r)?;
-                    return self.package_constant(node, r, i, view);
+                    return self.select_value(node, r, i, view);
                 }
                 Some(next) => found = next,
                 None => {
@@ -511,10 +535,6 @@ impl<'a> Instance<'a, '_> {
             }
         }
         self.fail(Code::WrongClassKind, "this is a class, and a value is needed here", r.span)
-    }
-
-    fn package_constant(&mut self, node: NodeId, r: &'a Reference, part: usize, view: View) -> Option<Val> {
-        self.by_value(|s| s.select_value(node, r, part, view))
     }
 
     fn by_value<T>(&mut self, f: impl FnOnce(&mut Self) -> T) -> T {
@@ -913,6 +933,26 @@ impl<'a> Instance<'a, '_> {
             }
         }
         Some(Some(at))
+    }
+
+    /// The one component that a reference names.
+    pub(super) fn named_node(&mut self, r: &'a Reference, view: View) -> Option<NodeId> {
+        let from = if r.global { super::ROOT } else { view };
+        let Found::Component(scope, index) = self.lookup(from, r.parts[0].name.name)? else { return None };
+        let mut node = self.component(scope, index)?;
+        for (i, part) in r.parts.iter().enumerate() {
+            if i > 0 {
+                let Node::Object(s) = *self.node(node) else { return None };
+                let index = *self.scope(s).template.by_name.get(&part.name.name)?;
+                node = self.component(s, index)?;
+            }
+            if !part.subscripts.is_empty() {
+                let at = self.selection(node);
+                let [one] = self.subscript_selection(&at, part, view, r.span)?.ok()?.nodes[..] else { return None };
+                node = one;
+            }
+        }
+        Some(node)
     }
 
     fn any_absent(&mut self, at: &Selection, name: Symbol) -> bool {

@@ -148,7 +148,9 @@ impl<'a> Instance<'a, '_> {
             c.prefix.causality.is_some()
                 || matches!(c.prefix.variability, Some(Variability::Parameter | Variability::Constant))
         };
-        if declared.prefix.causality.is_some() || template.prefix.causality.is_some() || template.builtin.is_some() {
+        let directed_itself = declared.prefix.causality.is_some() || template.prefix.causality.is_some();
+        // what joins a bus gives its members their directions (MLS 9.1.3)
+        if directed_itself || template.builtin.is_some() || template.is_expandable() {
             return;
         }
         let open = template.elements.iter().find_map(|e| match e.kind {

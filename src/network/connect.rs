@@ -1,5 +1,6 @@
 //! `connect` equations to connection sets (MLS 9.2).
 
+use super::overconstrained::{Forest, Link, is_said};
 use super::{Connection, FlowSet, Network, PotentialSet, SignalPair, StreamSet};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::flat::{Type, Variability};
@@ -70,6 +71,7 @@ pub(super) struct Collector {
     potentials: Sets,
     flows: Sets,
     streams: Sets,
+    forest: Forest,
 }
 
 impl Collector {
@@ -77,6 +79,7 @@ impl Collector {
         for scope in component_scopes(instance) {
             self.scope(instance, scope);
         }
+        self.overconstrained(instance);
         let inside: std::collections::BTreeSet<u32> =
             self.flows.keys.iter().filter(|(k, ..)| !k.1).map(|(k, ..)| k.0).collect();
         let joined: FxHashSet<u32> = self.potentials.keys.iter().chain(&self.flows.keys).map(|(k, ..)| k.0).collect();
@@ -118,6 +121,20 @@ impl Collector {
         self.network
     }
 
+    /// Joins overconstrained components along the spanning trees of their graph; the other ones are equal by constraint.
+    fn overconstrained(&mut self, instance: &mut Instance<'_, '_>) {
+        let (links, spanned) = std::mem::take(&mut self.forest).span(instance);
+        for (link, kept) in links.into_iter().zip(spanned.kept) {
+            if kept {
+                let at = Place { span: link.span, scope: link.scope, a: link.span, b: link.span };
+                self.join_alike(instance, (link.a, false), (link.b, false), &at);
+            } else {
+                self.network.constrained.push(link);
+            }
+        }
+        (instance.overconstrained.roots, instance.overconstrained.rooted) = (spanned.roots, spanned.rooted);
+    }
+
     fn scope<'a>(&mut self, instance: &mut Instance<'a, '_>, scope: ScopeId) {
         let template = instance.scope(scope).template.clone();
         for (base, i) in template.bases.iter().zip(0u32..) {
@@ -138,6 +155,13 @@ impl Collector {
             match &e.kind {
                 EquationKind::Connect(a, b) if !is_broken(base, a, b) => {
                     self.connect(instance, a, b, view, e.span);
+                }
+                EquationKind::Call(call) => {
+                    if let ExprKind::Call { function, args, .. } = &call.kind
+                        && is_said(function)
+                    {
+                        self.forest.say(instance, function, args, view, e.span);
+                    }
                 }
                 EquationKind::For { iterators, body } if has_connect(body) => {
                     instance.for_each(iterators, Body::Equations(body), view, &mut |instance| {
@@ -182,11 +206,22 @@ impl Collector {
         for (&m, &n) in x.selection.nodes.iter().zip(y.selection.nodes.iter()) {
             let place = Place { span, scope: view.scope, a: a.span, b: b.span };
             self.join(instance, (m, x.outside), (n, y.outside), &place);
+            for port in [m, n] {
+                *instance.connected.entry(port).or_default() += 1;
+            }
             self.network.connections.push(Connection { a: m, b: n, span, scope: view.scope });
         }
     }
 
     fn join(&mut self, instance: &mut Instance<'_, '_>, a: (NodeId, bool), b: (NodeId, bool), at: &Place) {
+        if instance.is_overconstrained(a.0) && instance.is_overconstrained(b.0) {
+            self.forest.links.push(Link { a: a.0, b: b.0, span: at.span, scope: at.scope });
+            return;
+        }
+        self.join_alike(instance, a, b, at);
+    }
+
+    fn join_alike(&mut self, instance: &mut Instance<'_, '_>, a: (NodeId, bool), b: (NodeId, bool), at: &Place) {
         match (instance.node(a.0).clone(), instance.node(b.0).clone()) {
             (Node::Var(x), Node::Var(y)) => self.join_variables(instance, (x, a.1), (y, b.1), at),
             (Node::Array { dims: da, elements: x, .. }, Node::Array { dims: db, elements: y, .. }) if da == db => {
@@ -302,6 +337,7 @@ pub fn component_scopes(instance: &Instance<'_, '_>) -> Vec<ScopeId> {
 fn has_connect(equations: &[Equation]) -> bool {
     equations.iter().any(|e| match &e.kind {
         EquationKind::Connect(..) => true,
+        EquationKind::Call(call) => matches!(&call.kind, ExprKind::Call { function, .. } if is_said(function)),
         EquationKind::For { body, .. } => has_connect(body),
         EquationKind::If { branches, otherwise } => {
             branches.iter().any(|(_, b)| has_connect(b)) || has_connect(otherwise)

@@ -3,8 +3,11 @@
 mod connect;
 pub use connect::component_scopes;
 mod graph;
+mod overconstrained;
 
 pub use graph::{ComponentBox, Graph, Wire};
+pub use overconstrained::Link;
+pub(crate) use overconstrained::is_said;
 
 use crate::diag::Span;
 use crate::instance::{Instance, NodeId, ScopeId, StreamMember};
@@ -77,6 +80,8 @@ pub struct Network {
     pub flows: Vec<FlowSet>,
     /// Joined streams.
     pub streams: Vec<StreamSet>,
+    /// Overconstrained components that are equal by their types' constraint.
+    pub constrained: Vec<Link>,
     /// Joined inputs and outputs.
     pub signals: Vec<SignalPair>,
     /// Variables of expandable connectors that nothing is connected to.
