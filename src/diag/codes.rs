@@ -100,6 +100,7 @@ codes! {
     // 4xx initialization
     InitialOver = "E401", Error, "start values contradict each other";
     InitialUnder = "W402", Warning, "start values were chosen";
+    StartMissed = "W404", Warning, "a start value that the constraints do not allow";
     InitialFailed = "E403", Error, "no consistent initial state";
     // 5xx run
     StepTooSmall = "E501", Error, "the step size collapsed";

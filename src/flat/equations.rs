@@ -7,7 +7,7 @@ use super::{
 };
 use crate::diag::{Code, Diagnostic, Span};
 use crate::expr::{ExprId, Exprs, Node, VarId};
-use crate::instance::algorithm::{AlgorithmCall, AlgorithmWhen, Asserted, assigned};
+use crate::instance::algorithm::{AlgorithmBranch, AlgorithmCall, AlgorithmWhen, Asserted, assigned};
 use crate::instance::value::Val;
 use crate::instance::{Instance, ScopeId, View};
 use crate::network;
@@ -570,7 +570,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
             return;
         }
         self.section_results(&originals, &results, &whens, &in_when, view, section, initial);
-        for when in whens {
+        for when in in_order(self.instance, whens, &originals) {
             self.algorithm_when(when, &originals, view);
         }
         for call in calls {
@@ -685,6 +685,57 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
         }
         self.flat.whens.push(made);
     }
+}
+
+fn scalars(v: &Val) -> Vec<ExprId> {
+    let mut found = Vec::new();
+    v.scalars(&mut found);
+    found
+}
+
+/// Several `when`s of an algorithm that assign one variable become one: of those that fire at once the last one counts
+/// (MLS 11.2.7). Where one of them reads what another one assigns, or a branch leaves the variable alone, they stay as they
+/// are, and the variable is determined twice.
+fn in_order(
+    instance: &Instance<'_, '_>,
+    mut whens: Vec<AlgorithmWhen>,
+    originals: &[(Symbol, Val)],
+) -> Vec<AlgorithmWhen> {
+    let assigned = |w: &AlgorithmWhen| -> Vec<Symbol> {
+        w.branches.iter().flat_map(|b| &b.values).map(|(name, _)| *name).collect()
+    };
+    let read = |w: &AlgorithmWhen, name: Symbol| {
+        let own = originals.iter().find(|(n, _)| *n == name).map(|(_, v)| scalars(v)).unwrap_or_default();
+        let values: Vec<ExprId> = w.branches.iter().flat_map(|b| &b.values).flat_map(|(_, v)| scalars(v)).collect();
+        let before = instance.exprs.dependencies(&values).pres;
+        own.iter().any(|&e| matches!(instance.exprs.node(e), Node::Var(v) if before.contains(&v)))
+    };
+    let mut seen: Vec<Symbol> = Vec::new();
+    for name in whens.iter().flat_map(assigned).collect::<Vec<_>>() {
+        if seen.contains(&name) {
+            continue;
+        }
+        seen.push(name);
+        let of: Vec<usize> = (0..whens.len()).filter(|&i| assigned(&whens[i]).contains(&name)).collect();
+        let all = of.iter().all(|&i| whens[i].branches.iter().all(|b| b.values.iter().any(|(n, _)| *n == name)));
+        let [first, .., last] = of[..] else { continue };
+        if !all || of[1..].iter().any(|&i| read(&whens[i], name)) {
+            continue;
+        }
+        let mut branches = Vec::new();
+        for &i in of.iter().rev() {
+            for branch in &mut whens[i].branches {
+                let at = branch.values.iter().position(|(n, _)| *n == name).expect("seen above");
+                let value = branch.values.remove(at);
+                let conditions = branch.conditions.clone();
+                branches.push(AlgorithmBranch { conditions, values: vec![value], calls: Vec::new() });
+            }
+        }
+        let span = whens[first].span;
+        whens.insert(last + 1, AlgorithmWhen { branches, span });
+    }
+    whens.retain(|w| w.branches.iter().any(|b| !b.values.is_empty() || !b.calls.is_empty()));
+    whens
 }
 
 /// What expressions of an instance need to have a meaning, each once.

@@ -350,6 +350,11 @@ impl<'a> Instance<'a, '_> {
         }
     }
 
+    /// Whether a value that changes decides if the present statement is carried out.
+    fn may_not_come_here(&self) -> bool {
+        !self.eval.guards.is_empty() || self.eval.procedure || self.eval.under_procedure
+    }
+
     /// `assert` in a function: known to hold, known to fail, or left to a procedure.
     fn statement_call(&mut self, call: &'a Expr, view: View) -> Option<Flow> {
         if let ExprKind::Call { function, args, .. } = &call.kind {
@@ -358,9 +363,12 @@ impl<'a> Instance<'a, '_> {
                     let c = self.eval(args.first()?, view)?;
                     return match c.as_number(&self.exprs) {
                         Some(x) if x != 0.0 => Some(Flow::Next),
+                        Some(_) if self.may_not_come_here() => {
+                            (self.eval.not_inline, self.eval.may_fail) = (true, true);
+                            None
+                        }
                         Some(_) => {
-                            let text =
-                                args.get(1).and_then(|m| self.eval(m, view)).and_then(|v| v.as_text(&self.exprs));
+                            let text = args.get(1).and_then(|m| self.eval(m, view)).map(|v| v.in_words(&self.exprs));
                             let text = text.unwrap_or_else(|| "an assertion".into());
                             self.fail(Code::Evaluation, &format!("an assertion of a function fails: {text}"), call.span)
                         }

@@ -505,18 +505,36 @@ impl<'a> Instance<'a, '_> {
         if value.is_some() || !refused {
             return value;
         }
-        if known {
+        if known && !std::mem::take(&mut self.eval.may_fail) {
             let message = format!("`{}` does not come to an end", callee.name);
             return self.fail(Code::Recursion, &message, span);
         }
-        if gives_nothing(&callee.template) {
-            let what = format!("a call of `{}`, which has no output, with arguments that change,", callee.name);
-            self.unsupported(span, &what);
-            return None;
-        }
         self.diagnostics.truncate(mark.0);
         self.eval.calls.truncate(mark.1);
+        if gives_nothing(&callee.template) {
+            return self.call_for_effect(callee, positional, named, span);
+        }
         self.call_procedure(callee, positional, named, span)
+    }
+
+    /// A call of a function without outputs whose assertions values that change decide: part of the procedure around it.
+    fn call_for_effect(
+        &mut self,
+        callee: &Callee<'a>,
+        positional: Vec<Val>,
+        named: Vec<(Ident, Val)>,
+        span: Span,
+    ) -> Option<Val> {
+        if self.eval.procedure {
+            return self.procedure_body(callee, positional, named, span);
+        }
+        if self.eval.depth > 0 {
+            (self.eval.not_inline, self.eval.may_fail) = (true, true);
+            return None;
+        }
+        let what = format!("a call of `{}`, which has no output, with arguments that change,", callee.name);
+        self.unsupported(span, &what);
+        None
     }
 
     /// Whether a function keeps to what functions may do (MLS 12.2).
@@ -574,11 +592,13 @@ impl<'a> Instance<'a, '_> {
         span: Span,
     ) -> Option<Val> {
         let was = std::mem::replace(&mut self.eval.procedure, false);
+        let under = self.eval.under_procedure;
+        self.eval.under_procedure |= was;
         let before = self.enter_frame();
         self.eval.budget = if known { MOST_KNOWN_STEPS } else { MOST_STEPS };
         let value = self.inline_body(callee, positional, named, span);
         self.leave_frame(before);
-        self.eval.procedure = was;
+        (self.eval.procedure, self.eval.under_procedure) = (was, under);
         value
     }
 

@@ -32,6 +32,10 @@ pub struct State {
     pub not_inline: bool,
     /// A procedure is being translated.
     pub procedure: bool,
+    /// What a procedure calls is being written out.
+    pub under_procedure: bool,
+    /// An assertion fails where the run may not come: the function around it must become a procedure.
+    pub may_fail: bool,
     /// Statements executed, to end what never ends.
     pub steps: usize,
     /// Most statements allowed.

@@ -342,11 +342,44 @@ impl<'a> Instance<'a, '_> {
         {
             let c = self.eval(args.first()?, view)?;
             let test = self.boolean_term(&c, call.span)?;
-            let text = args.get(1).and_then(|m| self.eval(m, view)).and_then(|v| v.as_text(&self.exprs));
+            let text = args.get(1).and_then(|m| self.eval(m, view)).map(|v| v.in_words(&self.exprs));
             self.emit(Stmt::Assert(test, text.unwrap_or_default()));
             return Some(());
         }
-        self.eval(call, view).map(|_| ())
+        self.eval_all(call, view).map(|_| ())
+    }
+
+    /// The statements of a function without outputs as part of the procedure being translated.
+    pub(super) fn procedure_body(
+        &mut self,
+        callee: &Callee<'a>,
+        positional: Vec<Val>,
+        named: Vec<(Ident, Val)>,
+        span: Span,
+    ) -> Option<Val> {
+        let before = self.enter_frame();
+        let inputs = self.formals(callee, is_input);
+        let done = self.bind(callee, &inputs, positional, named, span).and_then(|()| {
+            for f in self.formals(callee, |c, p| !is_input(c, p)) {
+                let value = self.declared_local(&f)?;
+                let slots = self.slots_like(&value);
+                self.store(&slots, &value);
+                self.eval.locals.push((f.name, slots));
+            }
+            for (base, i) in callee.template.bases.iter().zip(0u32..) {
+                let ast::ClassBody::Long(body) = &base.ast.body else { continue };
+                let view = View { scope: callee.scope, base: i };
+                for section in &body.algorithms {
+                    if let Some(s) = section.iter().find(|s| returns(s)) {
+                        return self.fail(Code::Unsupported, "a `return` of a function without outputs", s.span);
+                    }
+                    self.procedure_statements(section, view)?;
+                }
+            }
+            Some(Val::Tuple(Vec::new().into()))
+        });
+        self.leave_frame(before);
+        done
     }
 
     fn boolean_term(&mut self, v: &Val, span: Span) -> Option<Term> {
@@ -593,5 +626,17 @@ impl<'a> Instance<'a, '_> {
             captures.len() - 1
         });
         Term::Slot(u32::try_from(at).expect("limited sizes"))
+    }
+}
+
+/// Whether a statement may end its function.
+fn returns(s: &Statement) -> bool {
+    match &s.kind {
+        StatementKind::Return => true,
+        StatementKind::If { branches, otherwise } => {
+            branches.iter().flat_map(|(_, body)| body).chain(otherwise).any(returns)
+        }
+        StatementKind::For { body, .. } | StatementKind::While(_, body) => body.iter().any(returns),
+        _ => false,
     }
 }

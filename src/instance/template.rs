@@ -446,7 +446,13 @@ impl<'a> Instance<'a, '_> {
             match t.by_name.get(&target.name).filter(|_| t.bases[inner as usize].names.contains(&target.name)) {
                 Some(&i) => {
                     let place = at.entry(target.name).or_insert(0);
-                    let modified = &mut t.elements[i as usize].modified;
+                    // an element inherited twice takes what the first of two equal `extends` says of it (MLS 5.6.1.2)
+                    let element = &mut t.elements[i as usize];
+                    let twice = element.base < inner && element.modified.iter().any(|s| matches!(s.what, What::Argument(a) if says_the_same(a, argument)));
+                    if twice {
+                        continue;
+                    }
+                    let modified = &mut element.modified;
                     modified.insert(*place, Source { what: What::Argument(argument), base });
                     *place += 1;
                 }
@@ -538,7 +544,30 @@ fn same_declaration(a: Kind<'_>, b: Kind<'_>) -> bool {
             let last = |p: &ast::Path| p.parts.last().map(|i| i.name);
             last(&a.class) == last(&b.class) && a.prefix == b.prefix && a.subscripts.len() == b.subscripts.len()
         }
-        (Kind::Class(a), Kind::Class(b)) => std::ptr::eq(a, b),
+        (Kind::Class(a), Kind::Class(b)) => std::ptr::eq(a, b) || same_short_class(a, b),
         _ => false,
     }
+}
+
+/// Whether two short classes are declared alike, as in `replaceable package Medium = Media.PartialMedium`.
+fn same_short_class(a: &ast::Class, b: &ast::Class) -> bool {
+    let (ClassBody::Short { base: x, .. }, ClassBody::Short { base: y, .. }) = (&a.body, &b.body) else { return false };
+    let last = |p: &ast::Path| p.parts.last().map(|i| i.name);
+    a.kind == b.kind && last(x) == last(y)
+}
+
+/// Whether a modifier of an element says what another one says already.
+fn says_the_same(a: &ast::Argument, b: &ast::Argument) -> bool {
+    let (ArgumentKind::Modify { path: p, modification: x, .. }, ArgumentKind::Modify { path: q, modification: y, .. }) =
+        (&a.kind, &b.kind)
+    else {
+        return false;
+    };
+    let value = |m: &Option<ast::Modification>| m.as_ref().and_then(|m| m.value.as_ref()).map(ToString::to_string);
+    let inner = |m: &'_ Option<ast::Modification>| m.as_ref().map_or(0, |m| m.arguments.len());
+    let pairs = |m: &Option<ast::Modification>, n: &Option<ast::Modification>| match (m, n) {
+        (Some(m), Some(n)) => m.arguments.iter().zip(&n.arguments).all(|(a, b)| says_the_same(a, b)),
+        _ => true,
+    };
+    p.dotted() == q.dotted() && value(x) == value(y) && inner(x) == inner(y) && pairs(x, y)
 }

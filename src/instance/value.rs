@@ -84,20 +84,13 @@ impl Val {
     /// The words, if it is a text without symbolic values.
     pub fn as_text(&self, exprs: &Exprs) -> Option<String> {
         let Val::Text(parts) = self else { return None };
-        let mut out = String::new();
-        for part in parts.iter() {
-            match part {
-                MessagePart::Text(words) => out.push_str(words),
-                MessagePart::Value(e, ty) => {
-                    let x = exprs.as_num(*e)?;
-                    match ty {
-                        Type::Boolean => out.push_str(if x == 0.0 { "false" } else { "true" }),
-                        _ => out.push_str(&crate::expr::print::number(x, Some(6))),
-                    }
-                }
-            }
-        }
-        Some(out)
+        parts.iter().map(|part| words(part, exprs)).collect()
+    }
+
+    /// A text for messages, with `...` for values that are not known.
+    pub fn in_words(&self, exprs: &Exprs) -> String {
+        let Val::Text(parts) = self else { return String::new() };
+        parts.iter().map(|part| words(part, exprs).unwrap_or_else(|| "...".to_owned())).collect()
     }
 
     /// The type of the first scalar inside.
@@ -242,4 +235,18 @@ fn unify(mut elements: Vec<Val>) -> Vec<Val> {
 pub fn size_text(dims: &[usize]) -> String {
     let parts: Vec<String> = dims.iter().map(usize::to_string).collect();
     format!("[{}]", parts.join(", "))
+}
+
+/// A part of a text, where its value is known.
+fn words(part: &MessagePart, exprs: &Exprs) -> Option<String> {
+    match part {
+        MessagePart::Text(words) => Some(words.clone()),
+        MessagePart::Value(e, ty) => {
+            let x = exprs.as_num(*e)?;
+            Some(match ty {
+                Type::Boolean => if x == 0.0 { "false" } else { "true" }.to_owned(),
+                _ => crate::expr::print::number(x, Some(6)),
+            })
+        }
+    }
 }

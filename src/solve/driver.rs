@@ -223,7 +223,7 @@ fn prepare<'a, 'c>(
             state.restore(system, &mut values);
             system.parameters_changed(&mut values);
             modes.after = true;
-            Ok(())
+            Ok(Vec::new())
         }
         None => initialize::check_parameters(system, settings, &values)
             .and_then(|()| {
@@ -231,6 +231,10 @@ fn prepare<'a, 'c>(
                 found.map_err(|f| report::block_failure(system, Code::InitialFailed, &f, &values, "at the start"))
             })
             .and_then(|()| initialize::check_starts(system, &scales, &values)),
+    };
+    let (solved, missed) = match solved {
+        Ok(missed) => (Ok(()), missed),
+        Err(d) => (Err(d), Vec::new()),
     };
     let solved = solved.and(delays.map(|delays| playback.delays = delays).map_err(|(i, time)| {
         let origin = system.dae.delays[i].origin;
@@ -272,7 +276,7 @@ fn prepare<'a, 'c>(
         next_crossing: f64::INFINITY,
         roots: Vec::new(),
         statistics: Statistics::default(),
-        diagnostics: Vec::new(),
+        diagnostics: missed,
         clocks: Clocks::default(),
         ida: None,
         system,

@@ -6,8 +6,8 @@ use super::newton::{NewtonFailure, Reason, Scales};
 use super::report;
 use super::settings::Settings;
 use crate::diag::{Code, Diagnostic};
-use crate::expr::{ExprId, Node};
-use crate::flat::{Equation, Origin, Type, Variability};
+use crate::expr::{ExprId, Node, VarId};
+use crate::flat::{Equation, Origin, OriginKind, Type, Variability};
 use crate::lower::{Layout, System};
 use crate::structure::{Block, Dae, Unknown, places, starts};
 
@@ -52,7 +52,7 @@ pub fn check_parameters(system: &System, settings: &Settings, values: &[f64]) ->
 }
 
 fn guess(system: &System, values: &mut [f64]) {
-    for (v, variable) in (0..).map(crate::expr::VarId).zip(&system.dae.variables) {
+    for (v, variable) in (0..).map(VarId).zip(&system.dae.variables) {
         let free = system.dae.free_parameters.contains(&v);
         if variable.variability <= Variability::Parameter && !free {
             continue;
@@ -80,16 +80,14 @@ pub fn solve(system: &System, scales: &Scales, modes: &mut Modes, values: &mut [
     let mut start = Start { system, scales, modes, blocks: Blocks::new(&system.initial, scales, modes) };
     let guesses = values.to_vec();
     values[Layout::LAMBDA] = 1.0;
-    let direct = start.run(values);
-    let result = match direct {
-        Err(failure) if worth_homotopy(&system.dae) => {
-            let failed = values.to_vec();
-            start.homotopy(values, &guesses).map_err(|_| {
-                values.copy_from_slice(&failed);
-                failure
-            })
-        }
-        other => other,
+    // the root that the model asks for is the one that the simplified equations lead to (MLS 3.7.4)
+    let followed = worth_homotopy(&system.dae) && start.homotopy(values, &guesses).is_ok();
+    let result = if followed {
+        Ok(())
+    } else {
+        values.copy_from_slice(&guesses);
+        values[Layout::LAMBDA] = 1.0;
+        start.run(values)
     };
     let result = match result {
         Err(BlockFailure::Loop(failure)) if failure.reason == Reason::NoConvergence => {
@@ -107,11 +105,13 @@ pub fn solve(system: &System, scales: &Scales, modes: &mut Modes, values: &mut [
     result
 }
 
-/// Fixed starts that constraints have made redundant must agree with what the others lead to.
+/// Fixed starts that constraints have made redundant must agree with what the others lead to; where others do not, a
+/// warning says so.
 ///
 /// # Errors
-/// The first one that does not (E401).
-pub fn check_starts(system: &System, scales: &Scales, values: &[f64]) -> Result<(), Diagnostic> {
+/// The first fixed one that does not (E401).
+pub fn check_starts(system: &System, scales: &Scales, values: &[f64]) -> Result<Vec<Diagnostic>, Diagnostic> {
+    let mut missed = Vec::new();
     for &(residual, equation) in &system.dae.initial_checks {
         let equation = &system.dae.equations[equation as usize];
         let (found, asked) = (system.eval(equation.lhs, values), system.eval(equation.rhs, values));
@@ -122,10 +122,37 @@ pub fn check_starts(system: &System, scales: &Scales, values: &[f64]) -> Result<
         };
         let allowed = CHECK_TOLERANCE * (found.abs().max(asked.abs()) + nominal);
         if system.eval(residual, values).abs() > allowed {
-            return Err(contradiction(system, equation, found, asked));
+            match guessed(&system.dae, equation) {
+                Some(v) => missed.push(missed_start(system, v, equation, found, asked)),
+                None => return Err(contradiction(system, equation, found, asked)),
+            }
         }
     }
-    Ok(())
+    Ok(missed)
+}
+
+/// The variable whose start a check is, where that is not `fixed`: a guess, as the language has it (MLS 8.6).
+fn guessed(dae: &Dae, equation: &Equation) -> Option<VarId> {
+    match dae.exprs.node(equation.lhs) {
+        Node::Var(v) if !dae.variables[v.index()].fixed && equation.origin.kind == OriginKind::Start => Some(v),
+        _ => None,
+    }
+}
+
+fn missed_start(system: &System, v: VarId, equation: &Equation, found: f64, asked: f64) -> Diagnostic {
+    let dae = &system.dae;
+    let name = dae.text(equation.lhs);
+    let text = format!(
+        "`{name}` starts at {}, not at {}: the other start values and the constraints make it so",
+        report::number(found),
+        report::number(asked)
+    );
+    let origin = Origin { span: places::place_of(&dae.variables, &dae.instances, v), ..equation.origin };
+    let made = report::at_origin(dae, Code::StartMissed, text, origin, "its `start` was taken as a guess");
+    match starts::modifier(&name, true) {
+        Some(m) => made.help(format!("if it must hold, write `fixed = true` beside it: `{m}`")),
+        None => made.help("if it must hold, write `fixed = true` beside it"),
+    }
 }
 
 /// The largest value of a variable that an equation reads.
@@ -148,7 +175,7 @@ fn contradiction(system: &System, equation: &Equation, found: f64, asked: f64) -
     let origin = Origin { span: places::place_of(&dae.variables, &dae.instances, v), ..equation.origin };
     let label = format!("`{name}` is fixed at the start");
     let behind = starts::parameter_behind(&dae.exprs, &dae.variables, v);
-    let freed = starts::freed(&name).map(|m| format!("let it follow from the others: `{m}`"));
+    let freed = starts::modifier(&name, false).map(|m| format!("let it follow from the others: `{m}`"));
     let given = behind.map(|p| format!("give a value that fits: `{p} = {found}`"));
     let ways: Vec<String> = freed.into_iter().chain(given).collect();
     let made = report::at_origin(dae, Code::InitialOver, text, origin, &label);

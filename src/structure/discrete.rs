@@ -120,8 +120,83 @@ fn add_actions(draft: &mut Draft, when: &When, fires: &[ExprId]) {
     }
 }
 
+/// Discrete unknowns and values before events that are one at the start, by equations of the model and of the start.
+#[derive(Default)]
+struct Equals {
+    parent: FxHashMap<ExprId, ExprId>,
+}
+
+impl Equals {
+    fn root(&self, mut e: ExprId) -> ExprId {
+        while let Some(&up) = self.parent.get(&e) {
+            e = up;
+        }
+        e
+    }
+
+    fn join(&mut self, a: ExprId, b: ExprId) {
+        let (a, b) = (self.root(a), self.root(b));
+        if a != b {
+            self.parent.insert(a, b);
+        }
+    }
+}
+
+/// The variable of `v` or `pre(v)`, where it is a discrete unknown.
+fn discrete_atom(draft: &Draft, e: ExprId) -> Option<VarId> {
+    match draft.exprs.node(e) {
+        Node::Var(v) | Node::Pre(v) if draft.role(v) == Role::Discrete => Some(v),
+        _ => None,
+    }
+}
+
+/// `a = value` among the initial equations, where the model says `a = pre(v)`, is the start of `v` (MLS 8.6).
+fn absorb_through_equals(draft: &mut Draft) {
+    let is_atom = |draft: &Draft, q: &Equation| [q.lhs, q.rhs].iter().all(|&e| discrete_atom(draft, e).is_some());
+    let known = |draft: &Draft, e: ExprId| {
+        let found = draft.exprs.dependencies(&[e]);
+        let fixed = found.vars.iter().all(|&u| draft.role(u) == Role::Parameter);
+        found.ders.is_empty() && found.pres.is_empty() && !found.time && fixed
+    };
+    let mut equals = Equals::default();
+    for q in draft.equations.iter().chain(&draft.initial_equations).filter(|q| is_atom(draft, q)) {
+        equals.join(q.lhs, q.rhs);
+    }
+    let mut before: FxHashMap<ExprId, Vec<VarId>> = FxHashMap::default();
+    for q in draft.equations.iter().chain(&draft.initial_equations).filter(|q| is_atom(draft, q)) {
+        for e in [q.lhs, q.rhs] {
+            if let Node::Pre(v) = draft.exprs.node(e) {
+                before.entry(equals.root(e)).or_default().push(v);
+            }
+        }
+    }
+    let mut said: FxHashMap<ExprId, ExprId> = FxHashMap::default();
+    let mut rest = Vec::new();
+    for q in std::mem::take(&mut draft.initial_equations) {
+        let sides = [(q.lhs, q.rhs), (q.rhs, q.lhs)];
+        let given = sides.into_iter().find(|&(a, value)| discrete_atom(draft, a).is_some() && known(draft, value));
+        let class = given.map(|(a, value)| (equals.root(a), value));
+        match class.and_then(|(class, value)| Some((class, value, before.get(&class)?))) {
+            Some((class, value, starts))
+                if !said.contains_key(&class) && starts.iter().all(|v| !draft.variables[v.index()].fixed) =>
+            {
+                said.insert(class, value);
+                for v in starts {
+                    draft.variables[v.index()].start = Some(value);
+                    draft.variables[v.index()].fixed = true;
+                }
+            }
+            _ => rest.push(q),
+        }
+    }
+    // what joins those says no more
+    rest.retain(|q| !(is_atom(draft, q) && said.contains_key(&equals.root(q.lhs))));
+    draft.initial_equations = rest;
+}
+
 /// `pre(v) = value` among the initial equations fixes the start of `v`, where the value is known before the run.
 pub(super) fn absorb_initial_pres(draft: &mut Draft) {
+    absorb_through_equals(draft);
     let equations = std::mem::take(&mut draft.initial_equations);
     for equation in equations {
         match given_pre(draft, &equation) {

@@ -31,7 +31,7 @@ pub(super) fn cyclic_parameters(draft: &Draft, circle: &[VarId]) -> Diagnostic {
     made.help("give one of them a value that does not use the others")
 }
 
-/// Two names of one quantity with different fixed starts.
+/// Two names of one quantity with different starts: a contradiction where both are fixed, else one of them counts.
 pub(super) fn contradicting_aliases(draft: &Draft, known: &mut Known, alias: Alias) -> Diagnostic {
     let mut value = |v: VarId| {
         let start = draft.variables[v.index()].start;
@@ -47,13 +47,22 @@ pub(super) fn contradicting_aliases(draft: &Draft, known: &mut Known, alias: Ali
         format!("{} starts at {}{behind}{fixed}", name(draft, v), value(v))
     };
     let (at_a, at_b) = (said(a), said(b));
-    let mut made = Diagnostic::new(Code::InitialOver, message);
+    let (of_a, of_b) = (&draft.variables[a.index()], &draft.variables[b.index()]);
+    let mut made = if of_a.fixed && of_b.fixed {
+        Diagnostic::new(Code::InitialOver, message)
+    } else {
+        let second = if of_a.fixed == of_b.fixed { of_b.confidence < of_a.confidence } else { of_b.fixed };
+        Diagnostic::new(Code::StartMissed, format!("{message}: that of {} counts", name(draft, if second { b } else { a })))
+    };
     for (v, text) in [(a, at_a), (b, at_b)] {
         made = made.at(places::own_place(draft, v), text);
     }
+    if !made.is_error() {
+        return made.help("give both the same value, or `fixed = true` to the one that must hold");
+    }
     // the component nearest to the user's model is the one that was added to the other
     let depth = |v: VarId| draft.variables[v.index()].name.matches('.').count();
-    let freed = starts::freed(&draft.variables[if depth(a) <= depth(b) { a } else { b }.index()].name);
+    let freed = starts::modifier(&draft.variables[if depth(a) <= depth(b) { a } else { b }.index()].name, false);
     let freed = freed.map_or(String::new(), |m| format!(", as by `{m}`"));
     made.help(format!("fix the start of one of them only{freed}, or give both the same value"))
 }

@@ -18,12 +18,12 @@ pub(crate) fn parameter_behind<'a>(exprs: &Exprs, variables: &'a [Variable], v: 
 }
 
 /// `cylinder(piston(s(fixed = false)))` for `cylinder.piston.s`; `None` inside arrays, whose elements differ.
-pub(crate) fn freed(name: &str) -> Option<String> {
+pub(crate) fn modifier(name: &str, fixed: bool) -> Option<String> {
     if name.contains('[') {
         return None;
     }
     let parts: Vec<&str> = name.split('.').collect();
-    Some(format!("{}(fixed = false{}", parts.join("("), ")".repeat(parts.len())))
+    Some(format!("{}(fixed = {fixed}{}", parts.join("("), ")".repeat(parts.len())))
 }
 
 #[cfg(test)]
@@ -32,8 +32,8 @@ mod tests {
 
     #[test]
     fn modifiers_nest_as_components_do() {
-        assert_eq!(freed("x").as_deref(), Some("x(fixed = false)"));
-        assert_eq!(freed("cylinder.piston.s").as_deref(), Some("cylinder(piston(s(fixed = false)))"));
-        assert_eq!(freed("v[2].p"), None);
+        assert_eq!(modifier("x", true).as_deref(), Some("x(fixed = true)"));
+        assert_eq!(modifier("cylinder.piston.s", false).as_deref(), Some("cylinder(piston(s(fixed = false)))"));
+        assert_eq!(modifier("v[2].p", false), None);
     }
 }
