@@ -531,7 +531,9 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
             // said of the network, which has heard it
             "Connections" if network::is_said(function) => {}
             _ => {
-                self.instance.eval_all(call, view);
+                for call in self.instance.call_keeping_assertions(call, view) {
+                    self.algorithm_call(call, view, false);
+                }
             }
         }
     }

@@ -94,8 +94,7 @@ impl<'a> Instance<'a, '_> {
     /// Carries out statements; `None` after a message, or when they cannot be written as expressions.
     pub fn execute(&mut self, statements: &'a [Statement], view: View) -> Option<Flow> {
         for (i, s) in statements.iter().enumerate() {
-            self.eval.steps += 1;
-            if self.eval.steps > self.eval.budget {
+            if !self.eval.work.step() {
                 self.eval.not_inline = true;
                 return None;
             }
@@ -133,6 +132,10 @@ impl<'a> Instance<'a, '_> {
             let (a, b) = (&before[i].1, &self.eval.locals[i].1);
             match a.zip(b, &mut |x, y, _| self.exprs.if_(test, x, y)) {
                 Some(merged) => self.eval.locals[i].1 = merged,
+                // which text it is, no one can tell from here on
+                None if matches!((a, b), (Val::Text(_), Val::Text(_) | Val::Tuple(_)) | (Val::Tuple(_), Val::Text(_))) => {
+                    self.eval.locals[i].1 = Val::Tuple(Rc::new(Vec::new()));
+                }
                 None => {
                     self.eval.not_inline = true;
                     return None;
@@ -534,11 +537,11 @@ impl<'a> Instance<'a, '_> {
 
     fn while_statement(&mut self, condition: &'a Expr, body: &'a [Statement], view: View) -> Option<Flow> {
         loop {
-            self.eval.steps += 1;
+            let may_go_on = self.eval.work.step();
             let c = self.eval(condition, view)?;
             match c.as_number(&self.exprs) {
                 Some(0.0) => return Some(Flow::Next),
-                Some(_) if self.eval.steps <= self.eval.budget => {}
+                Some(_) if may_go_on => {}
                 _ => {
                     self.eval.not_inline = true;
                     return None;

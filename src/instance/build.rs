@@ -640,12 +640,13 @@ impl<'a> Instance<'a, '_> {
             );
             return None;
         }
-        let mut args = reached.args;
-        if let Found::Class(class) = found {
-            args.extend(class.args.iter().cloned());
-        }
+        let of_type = match found {
+            Found::Class(class) => class.args.clone(),
+            _ => Rc::from([]),
+        };
+        let args = (reached.args.into(), of_type);
         let part = Part { binding: reached.binding, final_: reached.final_ };
-        let node = self.build_array(plan, found, template.as_ref(), (&all, dims.len()), &args.into(), part)?;
+        let node = self.build_array(plan, found, template.as_ref(), (&all, dims.len()), &args, part)?;
         if let Some(template) = template {
             self.note_constraints(node, dims.is_empty(), found, &template);
         }
@@ -658,11 +659,17 @@ impl<'a> Instance<'a, '_> {
         found: &Found<'a>,
         template: Option<&Rc<Template<'a>>>,
         (extents, declared): (&[Extent], usize),
-        args: &Rc<[Arg<'a>]>,
+        // what the declaration says of the component, and what its class has been modified by
+        (args, of_type): &(Rc<[Arg<'a>]>, Rc<[Arg<'a>]>),
         part: Part<'a>,
     ) -> Option<NodeId> {
+        let all = |args: Rc<[Arg<'a>]>, of_type: Rc<[Arg<'a>]>| match of_type.is_empty() {
+            true => args,
+            false => args.iter().chain(of_type.iter()).cloned().collect(),
+        };
         if extents.is_empty() {
-            return self.build_one(plan, (&plan.name, &[]), found, template, args.clone(), part);
+            let args = all(args.clone(), of_type.clone());
+            return self.build_one(plan, (&plan.name, &[]), found, template, args, part);
         }
         let dims: Vec<usize> = extents.iter().map(|e| e.size).collect();
         let count: usize = dims.iter().product();
@@ -671,7 +678,8 @@ impl<'a> Instance<'a, '_> {
             let index = unravel(flat, &dims);
             let text: Vec<String> = index.iter().map(|i| (i.place + 1).to_string()).collect();
             let name = format!("{}[{}]", plan.name, text.join(","));
-            let args = indexed(args, &index);
+            // a type is one value inside whatever array it is used in
+            let args = all(indexed(args, &index), indexed(of_type, &index[declared..]));
             let binding = part.binding.clone().map(|b| Binding { access: extended(&b.access, &index), ..b });
             let part = Part { binding, ..part.clone() };
             // The attributes of an array type are indexed by the type's own dimensions only.
@@ -1004,12 +1012,19 @@ impl<'a> Instance<'a, '_> {
         let mut order = Vec::with_capacity(self.variables.len());
         self.number_scope(self.root, &mut order);
         for i in 0..u32::try_from(self.variables.len()).expect("limited above") {
-            // Automatic `inner` components come last.
-            if self.variables[i as usize].id.0 == u32::MAX {
+            // Automatic `inner` components come last; constants of packages stand by their values.
+            if self.variables[i as usize].id.0 == u32::MAX && self.is_in_model(self.variables[i as usize].scope) {
                 self.number_variable(i, &mut order);
             }
         }
         self.order = order;
+    }
+
+    fn is_in_model(&self, mut scope: ScopeId) -> bool {
+        while let Some(owner) = self.scope(scope).owner {
+            scope = owner;
+        }
+        scope == self.root
     }
 
     fn number_variable(&mut self, i: u32, order: &mut Vec<u32>) {

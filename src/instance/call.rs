@@ -1,6 +1,7 @@
 //! Calls: built-in functions, record constructors, user functions (written out as expressions where that is possible).
 
 use super::builtin::retyped;
+use super::evaluate::Work;
 use super::files::Place;
 use super::lookup::{Builtin, Found};
 use super::template::{Kind, Template};
@@ -495,12 +496,19 @@ impl<'a> Instance<'a, '_> {
             return None;
         }
         let mark = (self.diagnostics.len(), self.eval.calls.len());
-        let budget = if self.eval.depth == 0 { 0 } else { self.eval.steps };
-        self.eval.steps = budget;
+        let work = self.eval.work;
+        if self.eval.depth == 0 {
+            self.eval.work = Work::allowed([MOST_STEPS, MOST_KNOWN_STEPS]);
+        }
+        self.eval.work.known = known;
         self.eval.depth += 1;
         let outer = std::mem::replace(&mut self.eval.not_inline, false);
-        let value = self.inline(callee, positional.clone(), named.clone(), known, span);
+        let value = self.inline(callee, positional.clone(), named.clone(), span);
         self.eval.depth -= 1;
+        if self.eval.depth == 0 {
+            self.eval.work = work;
+        }
+        self.eval.work.known = work.known;
         let refused = std::mem::replace(&mut self.eval.not_inline, outer);
         if value.is_some() || !refused {
             return value;
@@ -588,14 +596,12 @@ impl<'a> Instance<'a, '_> {
         callee: &Callee<'a>,
         positional: Vec<Val>,
         named: Vec<(Ident, Val)>,
-        known: bool,
         span: Span,
     ) -> Option<Val> {
         let was = std::mem::replace(&mut self.eval.procedure, false);
         let under = self.eval.under_procedure;
         self.eval.under_procedure |= was;
         let before = self.enter_frame();
-        self.eval.budget = if known { MOST_KNOWN_STEPS } else { MOST_STEPS };
         let value = self.inline_body(callee, positional, named, span);
         self.leave_frame(before);
         (self.eval.procedure, self.eval.under_procedure) = (was, under);
@@ -612,7 +618,7 @@ impl<'a> Instance<'a, '_> {
         let inputs = self.formals(callee, is_input);
         self.bind(callee, &inputs, positional, named, span)?;
         let locals = self.formals(callee, |c, p| !is_input(c, p));
-        for f in &locals {
+        for f in in_order_of_use(&locals) {
             let value = self.declared_local(f)?;
             self.eval.locals.push((f.name, value));
         }
@@ -743,6 +749,20 @@ impl<'a> Instance<'a, '_> {
         }
         Some(dims)
     }
+}
+
+/// Locals so that each comes after those that its sizes and its value name (MLS 12.4.4).
+pub(super) fn in_order_of_use<'f, 'a>(locals: &'f [Formal<'a>]) -> Vec<&'f Formal<'a>> {
+    let named: Vec<Vec<Symbol>> = locals.iter().map(|f| super::deduce::names_of_declaration(f.component)).collect();
+    let mut sorted: Vec<&Formal<'a>> = Vec::with_capacity(locals.len());
+    let mut open: Vec<usize> = (0..locals.len()).collect();
+    while !open.is_empty() {
+        let waits = |k: usize, on: usize| on != k && named[k].contains(&locals[on].name);
+        // those that use each other stay as they are declared
+        let at = open.iter().position(|&k| !open.iter().any(|&on| waits(k, on))).unwrap_or(0);
+        sorted.push(&locals[open.remove(at)]);
+    }
+    sorted
 }
 
 /// An array of these dimensions, all elements of which are one value.

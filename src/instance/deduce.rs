@@ -6,7 +6,7 @@ use super::lookup::Found;
 use super::{Instance, Node, View};
 use crate::diag::{Code, Diagnostic};
 use crate::flat::Type;
-use crate::syntax::ast::{Equation, EquationKind, Expr, ExprKind, Reference, Statement, StatementKind, Subscript};
+use crate::syntax::ast::{Component, Equation, EquationKind, Expr, ExprKind, Reference, Statement, StatementKind, Subscript};
 use crate::syntax::symbol::Symbol;
 
 /// What a loop repeats.
@@ -81,6 +81,17 @@ impl<'a> Instance<'a, '_> {
             _ => Some(node),
         }
     }
+}
+
+/// The first parts of the names in a declaration's sizes and value.
+pub(super) fn names_of_declaration(c: &Component) -> Vec<Symbol> {
+    let mut found = Vec::new();
+    let mut see = |r: &Reference| found.push(r.parts[0].name.name);
+    c.subscripts.iter().for_each(|s| subscript(s, &mut see));
+    if let Some(value) = c.modification.as_ref().and_then(|m| m.value.as_ref()) {
+        expression(value, &mut see);
+    }
+    found
 }
 
 fn is_name(s: &Subscript, name: Symbol) -> bool {

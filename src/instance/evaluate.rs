@@ -36,10 +36,8 @@ pub struct State {
     pub under_procedure: bool,
     /// An assertion fails where the run may not come: the function around it must become a procedure.
     pub may_fail: bool,
-    /// Statements executed, to end what never ends.
-    pub steps: usize,
-    /// Most statements allowed.
-    pub budget: usize,
+    /// Statements carried out, to end what never ends.
+    pub work: Work,
     /// `when`s met in an algorithm section of the model.
     pub whens: Vec<super::algorithm::AlgorithmWhen>,
     /// `assert`s and `terminate`s met there since the section, or the branch of a `when`, began.
@@ -58,6 +56,30 @@ pub struct State {
     pub override_file: Option<FileId>,
     /// These values as they were given, by the names of the variables.
     pub texts: FxHashMap<String, String>,
+}
+
+/// Statements carried out, against the most that are allowed.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Work {
+    /// The present function is called with known values only.
+    pub known: bool,
+    /// By functions that are written out, and by those that are simply carried out.
+    done: [usize; 2],
+    most: [usize; 2],
+}
+
+impl Work {
+    /// A fresh allowance for what is written out and what is carried out.
+    pub fn allowed(most: [usize; 2]) -> Self {
+        Work { known: false, done: [0; 2], most }
+    }
+
+    /// Counts a statement; false when there have been too many.
+    pub fn step(&mut self) -> bool {
+        let of = usize::from(self.known);
+        self.done[of] += 1;
+        self.done[of] <= self.most[of]
+    }
 }
 
 /// How a value given from outside is written into the model: as Modelica, as a quantity with its unit, or as a text.
@@ -848,7 +870,8 @@ impl<'a> Instance<'a, '_> {
             Val::Scalar(id, ty @ (Type::Integer | Type::Enumeration(_))) => match self.exprs.as_num(*id) {
                 Some(x) => Some(Pick::One(self.in_range(x, size, e.span)?)),
                 None => {
-                    if self.eval.frame == 0 && !self.eval.procedure && self.variability(*id) <= Variability::Parameter {
+                    let outside = self.eval.frame == 0 && !self.eval.procedure;
+                    if outside && self.variability(*id) <= Variability::Parameter && !self.found_at_start(*id) {
                         let known = self.constant(e, view)?.as_number(&self.exprs);
                         if let Some(x) = known {
                             return Some(Pick::One(self.in_range(x, size, e.span)?));

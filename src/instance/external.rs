@@ -134,6 +134,7 @@ impl<'a> Instance<'a, '_> {
 
     fn carry_out_external(&mut self, how: Builtin, callee: &Callee<'a>, place: Place) -> Option<Val> {
         let call = self.c_call(callee)?;
+        self.prepare_locals(callee)?;
         let values: Vec<Option<Val>> = call.arguments.iter().map(|a| self.input_of_c(a)).collect();
         let given: Vec<Given> = values.iter().map(|v| self.given(v.as_ref())).collect();
         match how {
@@ -179,6 +180,18 @@ impl<'a> Instance<'a, '_> {
         }
     }
 
+    /// The values with which outputs and protected variables go into the call, where they are declared with one.
+    fn prepare_locals(&mut self, callee: &Callee<'a>) -> Option<()> {
+        let formals = self.formals(callee, |c, p| {
+            !super::call::is_input(c, p) && c.modification.as_ref().is_some_and(|m| m.value.is_some())
+        });
+        for f in super::call::in_order_of_use(&formals) {
+            let value = self.declared_local(f)?;
+            self.eval.locals.push((f.name, value));
+        }
+        Some(())
+    }
+
     fn given(&self, value: Option<&Val>) -> Given {
         match value {
             Some(text @ Val::Text(_)) => match text.as_text(&self.exprs) {
@@ -211,14 +224,15 @@ impl<'a> Instance<'a, '_> {
         Some(given)
     }
 
-    /// The outputs of a call in the order of the C call: the result, then what is no input among the arguments.
-    fn c_outputs(&self, call: &CCall) -> Vec<Symbol> {
-        let outputs = call.arguments.iter().filter_map(Argument::name).filter(|name| self.local(*name).is_none());
+    /// The outputs of a call in the order of the C call: the result, then those among the arguments.
+    fn c_outputs(&self, call: &CCall, callee: &Callee<'a>) -> Vec<Symbol> {
+        let formals = self.formals(callee, |c, _| c.prefix.causality == Some(Causality::Output));
+        let outputs = call.arguments.iter().filter_map(Argument::name).filter(|n| formals.iter().any(|f| f.name == *n));
         call.result.into_iter().chain(outputs).collect()
     }
 
     fn external_values(&mut self, found: Vec<Given>, call: &CCall, callee: &Callee<'a>) -> Option<Val> {
-        let names = self.c_outputs(call);
+        let names = self.c_outputs(call, callee);
         let mut outputs = Vec::new();
         for f in self.formals(callee, |c, _| c.prefix.causality == Some(Causality::Output)) {
             let at = names.iter().position(|n| *n == f.name)?;
@@ -245,7 +259,7 @@ impl<'a> Instance<'a, '_> {
         callee: &Callee<'a>,
         scalars: &[ExprId],
     ) -> Option<Val> {
-        let names = self.c_outputs(call);
+        let names = self.c_outputs(call, callee);
         let formals = self.formals(callee, |c, _| c.prefix.causality == Some(Causality::Output));
         let mut blanks = Vec::new();
         for name in &names {

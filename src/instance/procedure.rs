@@ -5,7 +5,7 @@
 //! then turned into terms.
 
 use super::algorithm::assigned;
-use super::call::{Callee, is_input};
+use super::call::{Callee, in_order_of_use, is_input};
 use super::deduce::Body;
 use super::evaluate::Pick;
 use super::value::Val;
@@ -134,7 +134,7 @@ impl<'a> Instance<'a, '_> {
         }
         let count = self.eval.translation.slots;
         let locals = self.formals(callee, |c, p| !is_input(c, p));
-        for f in &locals {
+        for f in in_order_of_use(&locals) {
             let value = self.declared_local(f)?;
             let slots = self.slots_like(&value);
             self.store(&slots, &value);
@@ -360,8 +360,9 @@ impl<'a> Instance<'a, '_> {
         let before = self.enter_frame();
         let inputs = self.formals(callee, is_input);
         let done = self.bind(callee, &inputs, positional, named, span).and_then(|()| {
-            for f in self.formals(callee, |c, p| !is_input(c, p)) {
-                let value = self.declared_local(&f)?;
+            let locals = self.formals(callee, |c, p| !is_input(c, p));
+            for f in in_order_of_use(&locals) {
+                let value = self.declared_local(f)?;
                 let slots = self.slots_like(&value);
                 self.store(&slots, &value);
                 self.eval.locals.push((f.name, slots));

@@ -2,7 +2,7 @@
 
 use super::deduce::Body;
 use super::errors::{list_names, nearest, short};
-use super::evaluate::{Pick, QUANTITY};
+use super::evaluate::{Pick, QUANTITY, Work};
 use super::lookup::{Builtin, Found};
 use super::modifiers::Binding;
 use super::template::Kind;
@@ -13,6 +13,9 @@ use crate::flat::{Type, Variability};
 use crate::syntax::ast::{ClassKind, Expr, ExprKind, Reference, ReferencePart, Subscript};
 use crate::syntax::symbol::Symbol;
 use std::rc::Rc;
+
+/// Most statements of an algorithm section of a model.
+const MOST_SECTION_STEPS: usize = 1_000_000;
 
 /// Components picked by a reference: with dimensions when arrays are passed through.
 #[derive(Clone, Debug)]
@@ -1030,8 +1033,7 @@ impl<'a> Instance<'a, '_> {
         view: View,
         count: usize,
     ) -> Option<()> {
-        self.eval.steps = 0;
-        self.eval.budget = 1_000_000;
+        self.eval.work = Work::allowed([MOST_SECTION_STEPS, MOST_SECTION_STEPS]);
         self.eval.not_inline = false;
         let end = self.eval.locals.len();
         self.eval.section = end - count..end;
@@ -1040,6 +1042,15 @@ impl<'a> Instance<'a, '_> {
         let done = self.execute(section, view).map(|_| ());
         self.eval.section = 0..0;
         done
+    }
+
+    /// Calls a function for what it asserts.
+    pub fn call_keeping_assertions(&mut self, call: &'a Expr, view: View) -> Vec<super::algorithm::AlgorithmCall> {
+        let before = std::mem::replace(&mut self.eval.keep_asserts, true);
+        self.eval.calls.clear();
+        self.eval_all(call, view);
+        self.eval.keep_asserts = before;
+        std::mem::take(&mut self.eval.calls)
     }
 
     /// Removes the last locals and hands out their values.

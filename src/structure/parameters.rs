@@ -5,11 +5,68 @@ use super::{ActionKind, blt, messages};
 use crate::diag::{Code, Diagnostic};
 use crate::expr::{ExprId, Exprs, Node, VarId};
 use crate::flat::Equation;
-use crate::flat::{OriginKind, Type};
+use crate::flat::{OriginKind, Type, Variability};
 
 /// Sorts the parameters so that each binding refers to earlier ones only, after moving those that depend on free
-/// parameters to the free ones: their bindings become initial equations. The error is a circle of bindings.
+/// parameters to the free ones: their bindings become initial equations. The error is a circle of bindings that no
+/// condition opens.
 pub(super) fn order(draft: &mut Draft) -> Result<Vec<VarId>, Diagnostic> {
+    loop {
+        match sorted_parameters(draft) {
+            Ok((uses, order)) => return Ok(without_free(draft, &uses, order)),
+            Err(Circle { before, members }) => {
+                if !decide_conditions(draft, &before, &members) {
+                    return Err(messages::cyclic_parameters(draft, &members));
+                }
+            }
+        }
+    }
+}
+
+/// Parameters whose bindings use each other, and those that come before them.
+struct Circle {
+    before: Vec<VarId>,
+    members: Vec<VarId>,
+}
+
+/// `T = if useT then T0 else f(h)` and `h = if useT then g(T) else h0` use each other on paper only: conditions that are known
+/// decide now, and what they read is fixed with the model. False where no binding has such a condition.
+fn decide_conditions(draft: &mut Draft, before: &[VarId], members: &[VarId]) -> bool {
+    let values = values(draft, before);
+    let mut decided = false;
+    for &v in members {
+        let Some(binding) = draft.variables[v.index()].binding else { continue };
+        let mut chosen = Vec::new();
+        for e in draft.exprs.reachable(&[binding], |_| true) {
+            let Node::If(condition, yes, no) = draft.exprs.node(e) else { continue };
+            let found = draft.exprs.dependencies(&[condition]);
+            if found.time || !found.ders.is_empty() || !found.pres.is_empty() {
+                continue;
+            }
+            if !found.vars.iter().all(|u| before.contains(u)) {
+                continue;
+            }
+            let holds = draft.exprs.eval(condition, &mut |node| match node {
+                Node::Var(u) => values[u.index()],
+                _ => f64::NAN,
+            });
+            if holds.is_finite() {
+                chosen.push((e, if holds == 0.0 { no } else { yes }));
+                for u in found.vars {
+                    draft.variables[u.index()].variability = Variability::Constant;
+                }
+            }
+        }
+        // one at a time, from outside: what is chosen may hold further ones
+        if let Some(&first) = chosen.iter().find(|(e, _)| *e == binding).or(chosen.last()) {
+            draft.variables[v.index()].binding = Some(draft.exprs.substitute(binding, &[first]));
+            decided = true;
+        }
+    }
+    decided
+}
+
+fn sorted_parameters(draft: &Draft) -> Result<(Uses, Vec<VarId>), Circle> {
     let bound = draft.with_role(Role::Parameter);
     let mut position = vec![u32::MAX; draft.variables.len()];
     for (i, v) in bound.iter().enumerate() {
@@ -20,15 +77,15 @@ pub(super) fn order(draft: &mut Draft) -> Result<Vec<VarId>, Diagnostic> {
         let used = uses.of_variable(bound[node as usize]).iter();
         out.extend(used.map(|u| position[u.index()]).filter(|&p| p != u32::MAX));
     });
+    let mut before = Vec::with_capacity(bound.len());
     for members in sorted.iter() {
         let first = bound[members[0] as usize];
         if members.len() > 1 || uses.of_variable(first).contains(&first) {
-            let circle: Vec<VarId> = members.iter().map(|&m| bound[m as usize]).collect();
-            return Err(messages::cyclic_parameters(draft, &circle));
+            return Err(Circle { before, members: members.iter().map(|&m| bound[m as usize]).collect() });
         }
+        before.push(first);
     }
-    let order: Vec<VarId> = sorted.iter().map(|members| bound[members[0] as usize]).collect();
-    Ok(without_free(draft, &uses, order))
+    Ok((uses, before))
 }
 
 /// Moves dependents of free parameters to the free ones.
