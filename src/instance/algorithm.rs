@@ -2,12 +2,16 @@
 
 use super::deduce::Body;
 use super::evaluate::{Pick, places};
+use super::lookup::Found;
+use super::template::Kind;
 use super::value::{Val, size_text};
 use super::{Instance, View};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::expr::{ExprId, Exprs, Rel};
 use crate::flat::{Type, Variability};
-use crate::syntax::ast::{Expr, ExprKind, Reference, ReferencePart, Statement, StatementKind};
+use crate::syntax::ast::{
+    Component, Expr, ExprKind, Reference, ReferencePart, Statement, StatementKind, Subscript,
+};
 use crate::syntax::symbol::Symbol;
 use std::rc::Rc;
 
@@ -204,9 +208,28 @@ impl<'a> Instance<'a, '_> {
             other => other,
         };
         let old = self.eval.locals[i].1.clone();
+        let whole = r.parts.len() == 1 && r.parts[0].subscripts.is_empty();
+        if whole && old.dims().len() == value.dims().len() && self.is_flexible(view, name.name) {
+            self.eval.locals[i].1 = value;
+            return Some(());
+        }
         let new = self.replaced(&old, r, 0, value, view, span)?;
         self.eval.locals[i].1 = new;
         Some(())
+    }
+
+    /// Whether a variable of a function is declared with a size that its value brings, as `Real x[:]`.
+    pub(super) fn is_flexible(&mut self, view: View, name: Symbol) -> bool {
+        self.declaration(view, name).is_some_and(|c| c.subscripts.iter().any(|s| matches!(s, Subscript::All(_))))
+    }
+
+    /// The declaration of a variable of a function.
+    pub(super) fn declaration(&mut self, view: View, name: Symbol) -> Option<&'a Component> {
+        let Some(Found::Component(scope, index)) = self.lookup(view, name) else { return None };
+        match self.scope(scope).template.elements[index as usize].kind {
+            Kind::Component(c) => Some(c),
+            Kind::Class(_) => None,
+        }
     }
 
     fn replaced(

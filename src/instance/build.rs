@@ -746,7 +746,8 @@ impl<'a> Instance<'a, '_> {
         let mut prefix = plan.prefix;
         prefix.causality = plan.prefix.causality.or(template.prefix.causality);
         prefix.nested = prefix.nested || !matches!(template.kind, ClassKind::Connector { .. });
-        let record = matches!(template.kind, ClassKind::Record { .. });
+        // a connector may be a record, as `connector ComplexOutput = output Complex` is
+        let record = template.bases.iter().any(|b| matches!(b.ast.kind, ClassKind::Record { .. }));
         let s = self.scope_mut(scope);
         (s.prefix, s.component) = (prefix, true);
         match part.binding {

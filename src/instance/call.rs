@@ -687,10 +687,8 @@ impl<'a> Instance<'a, '_> {
         let mut dims = Vec::new();
         for (i, s) in f.component.subscripts.iter().enumerate() {
             dims.push(match s {
-                ast::Subscript::All(span) => match value.and_then(|v| v.dims().get(i).copied()) {
-                    Some(n) => n,
-                    None => return self.fail(Code::NoValue, "this size is not given", *span),
-                },
+                // without a value of its own it takes the size of what is assigned to it (MLS 12.4.5)
+                ast::Subscript::All(_) => value.and_then(|v| v.dims().get(i).copied()).unwrap_or(0),
                 ast::Subscript::Expr(e) => match self.enumeration_range(e, f.view) {
                     Some(all) => all.len(),
                     None => self.known_number(e, f.view)?.0.max(0.0) as usize,

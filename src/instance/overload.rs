@@ -41,11 +41,11 @@ impl<'a> Instance<'a, '_> {
 
     /// The same by what the class holds.
     pub(super) fn operator_class_of(&mut self, template: &Template<'a>) -> Option<u32> {
-        if !matches!(template.kind, ClassKind::Record { operator: true }) {
+        // `record C = Complex(...)` and `connector C = input Complex` are `Complex`, and plain records pay nothing
+        if !matches!(template.kind, ClassKind::Record { operator: true } | ClassKind::Connector { .. }) {
             return None;
         }
-        // `record C = Complex(...)` is `Complex` with values
-        let base = template.bases.last()?;
+        let base = template.bases.last().filter(|b| matches!(b.ast.kind, ClassKind::Record { operator: true }))?;
         let (own, parent) = (base.class, base.parent);
         let known = self.operator_records.iter().position(|c| c.class == own);
         let at = known.unwrap_or_else(|| {

@@ -404,6 +404,11 @@ impl<'a> Instance<'a, '_> {
             other => other.clone(),
         };
         let mut place = self.eval.locals[i].1.clone();
+        let whole = r.parts.len() == 1 && r.parts[0].subscripts.is_empty() && place.dims() != value.dims();
+        if whole && place.elements().is_empty() && self.takes_any_size(view, name.name) {
+            place = self.slots_like(&value);
+            self.eval.locals[i].1 = place.clone();
+        }
         for (k, part) in r.parts.iter().enumerate() {
             if k > 0 {
                 place = self.field(&place, part.name.name, part.name.span)?;
@@ -421,6 +426,11 @@ impl<'a> Instance<'a, '_> {
         }
         self.store(&place, &value);
         Some(())
+    }
+
+    /// Whether a protected variable of a function takes the size of what is assigned to it; outputs are sized before.
+    fn takes_any_size(&mut self, view: View, name: Symbol) -> bool {
+        self.is_flexible(view, name) && self.declaration(view, name).is_some_and(|c| c.prefix.causality.is_none())
     }
 
     /// `a[i] := value` with an index known at run time only.
