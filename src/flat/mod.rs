@@ -103,6 +103,8 @@ pub enum OriginKind {
     WhenCondition,
     /// A `fixed` start value, or one chosen by the compiler.
     Start,
+    /// A start value that is not `fixed` and yields to one that is.
+    Guess,
     /// Made by the compiler for another reason.
     Made,
 }

@@ -318,7 +318,8 @@ impl Assembly {
         }
     }
 
-    /// What the model says of its components holds for a variable that another one took the place of as state, too.
+    /// What the model says of its components holds for a variable that another one took the place of as state, too; but
+    /// beside starts that are `fixed` it is a guess, for instance of where a loop of joints is to be found.
     fn check_said_starts(&mut self, draft: &mut Draft, model: &Model) {
         for &v in model.demoted {
             let variable = &draft.variables[v.index()];
@@ -326,8 +327,19 @@ impl Assembly {
                 continue;
             }
             let row = self.push_start(draft, v);
+            let determined = self.augment(row);
+            if !determined && self.augmenter.rows_seen.iter().any(|&seen| seen != row && self.is_fixed_start(draft, seen)) {
+                let index = self.rows[row as usize].index;
+                draft.equations[index as usize].origin.kind = OriginKind::Guess;
+            }
             self.check(draft, row);
         }
+    }
+
+    fn is_fixed_start(&self, draft: &Draft, row: u32) -> bool {
+        let equation = self.rows[row as usize].equation;
+        let fixed = |v: VarId| draft.variables[v.index()].fixed;
+        equation.origin.kind == OriginKind::Start && matches!(draft.exprs.node(equation.lhs), Node::Var(v) if fixed(v))
     }
 
     /// A row that determines nothing must hold all the same.

@@ -31,7 +31,8 @@ pub(super) fn cyclic_parameters(draft: &Draft, circle: &[VarId]) -> Diagnostic {
     made.help("give one of them a value that does not use the others")
 }
 
-/// Two names of one quantity with different starts: a contradiction where both are fixed, else one of them counts.
+/// Two names of one quantity with different starts: a contradiction, unless one of them is fixed, to which the other one
+/// yields.
 pub(super) fn contradicting_aliases(draft: &Draft, known: &mut Known, alias: Alias) -> Diagnostic {
     let mut value = |v: VarId| {
         let start = draft.variables[v.index()].start;
@@ -48,11 +49,11 @@ pub(super) fn contradicting_aliases(draft: &Draft, known: &mut Known, alias: Ali
     };
     let (at_a, at_b) = (said(a), said(b));
     let (of_a, of_b) = (&draft.variables[a.index()], &draft.variables[b.index()]);
-    let mut made = if of_a.fixed && of_b.fixed {
+    let mut made = if of_a.fixed == of_b.fixed {
         Diagnostic::new(Code::InitialOver, message)
     } else {
-        let second = if of_a.fixed == of_b.fixed { of_b.confidence < of_a.confidence } else { of_b.fixed };
-        Diagnostic::new(Code::StartMissed, format!("{message}: that of {} counts", name(draft, if second { b } else { a })))
+        let fixed = if of_b.fixed { b } else { a };
+        Diagnostic::new(Code::StartMissed, format!("{message}: that of {}, which is fixed, counts", name(draft, fixed)))
     };
     for (v, text) in [(a, at_a), (b, at_b)] {
         made = made.at(places::own_place(draft, v), text);
@@ -464,6 +465,7 @@ fn reason(kind: OriginKind) -> &'static str {
         OriginKind::OpenPort => ", because the port is open",
         OriginKind::Differentiated => ", the derivative of this equation",
         OriginKind::Start => ", a fixed start",
+        OriginKind::Guess => ", a start that is a guess",
         _ => "",
     }
 }
