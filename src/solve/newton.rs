@@ -155,7 +155,9 @@ impl Newton {
                 return Err(Reason::NonFinite);
             }
         }
-        self.factor(code, values)?;
+        if let Err(reason) = self.factor(code, values) {
+            return if holds(code, values) { Ok(()) } else { Err(reason) };
+        }
         for _ in 0..REFINEMENTS {
             self.correction(code, values);
             if !self.step.iter().all(|v| v.is_finite()) {
@@ -184,7 +186,9 @@ impl Newton {
         let mut last = f64::INFINITY;
         while self.iterations < MAX_ITERATIONS {
             self.iterations += 1;
-            self.factor(code, values)?;
+            if let Err(reason) = self.factor(code, values) {
+                return if holds(code, values) { Ok(()) } else { Err(reason) };
+            }
             self.correction(code, values);
             let length = self.length(code, scales, &self.step);
             if !length.is_finite() {
@@ -419,6 +423,12 @@ fn refine(at: &mut impl FnMut(f64) -> f64, [mut a, mut b]: [(f64, f64); 2]) -> f
         if f.signum() == a.1.signum() { a = (x, f) } else { b = (x, f) }
     }
     if a.1.abs() < b.1.abs() { a.0 } else { b.0 }
+}
+
+/// Whether all equations hold to the bit as they are: what they do not determine, as the enthalpy that a flow of zero carries,
+/// may stay then.
+fn holds(code: &LoopCode, values: &[f64]) -> bool {
+    code.residual_slots.iter().all(|&slot| values[slot] == 0.0)
 }
 
 #[cfg(test)]

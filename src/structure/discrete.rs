@@ -3,7 +3,7 @@
 use super::draft::{Draft, Role, RowKind};
 use super::{Action, ActionKind};
 use crate::expr::{ExprId, Exprs, Node, VarId};
-use crate::flat::{Equation, Origin, OriginKind, Type, When, WhenAction, WhenBranch};
+use crate::flat::{Equation, Origin, OriginKind, Type, Variability, When, WhenAction, WhenBranch};
 use rustc_hash::FxHashMap;
 
 /// Translates all `when` clauses, which leaves none.
@@ -204,9 +204,29 @@ pub(super) fn absorb_initial_pres(draft: &mut Draft) {
                 draft.variables[v.index()].start = Some(start);
                 draft.variables[v.index()].fixed = true;
             }
-            None => draft.initial_equations.push(equation),
+            None => {
+                let equation = with_value_before(draft, equation);
+                draft.initial_equations.push(equation);
+            }
         }
     }
+}
+
+/// `pre(v) = value` with a value that is only found at the start: an unknown of it stands for `pre(v)` (MLS 8.6).
+fn with_value_before(draft: &mut Draft, equation: Equation) -> Equation {
+    let sides = [(equation.lhs, equation.rhs), (equation.rhs, equation.lhs)];
+    let found = sides.into_iter().find_map(|(e, value)| match draft.exprs.node(e) {
+        Node::Pre(v) if draft.role(v) == Role::Discrete && !draft.variables[v.index()].fixed => Some((v, value)),
+        _ => None,
+    });
+    let Some((v, value)) = found.filter(|(v, _)| draft.before_start.iter().all(|(known, _)| known != v)) else {
+        return equation;
+    };
+    let (name, ty) = (format!("pre({})", draft.variables[v.index()].name), draft.variables[v.index()].ty);
+    let before = draft.make_variable(name, ty, Role::FreeParameter, equation.origin);
+    draft.variables[before.index()].variability = Variability::Parameter;
+    draft.before_start.push((v, before));
+    Equation { lhs: draft.exprs.var(before), rhs: value, ..equation }
 }
 
 /// The variable and its start, if the equation is one of those.

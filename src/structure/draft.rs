@@ -55,6 +55,8 @@ pub(super) struct Draft {
     /// Parallel to `equations`.
     pub kinds: Vec<RowKind>,
     pub initial_equations: Vec<flat::Equation>,
+    /// Discrete unknowns whose values before the start initial equations determine, with the unknowns that these are.
+    pub before_start: Vec<(VarId, VarId)>,
     pub whens: Vec<flat::When>,
     pub asserts: Vec<flat::Assert>,
     pub crossings: Vec<Crossing>,
@@ -90,6 +92,7 @@ impl Draft {
             equations: flat.equations.clone(),
             kinds: vec![RowKind::Continuous; flat.equations.len()],
             initial_equations: flat.initial_equations.clone(),
+            before_start: Vec::new(),
             whens: flat.whens.clone(),
             asserts: flat.asserts.clone(),
             instances: flat.instances.clone(),

@@ -12,6 +12,7 @@ use super::{Unknown, delays, discrete, messages, parameters};
 use crate::diag::Diagnostic;
 use crate::expr::{ExprId, Exprs, Node, VarId};
 use crate::flat::{Equation, Origin, OriginKind, Variability};
+use rustc_hash::FxHashMap;
 
 /// The matched system and what was decided on the way.
 pub(super) struct Start {
@@ -418,9 +419,12 @@ fn at_start(draft: &mut Draft, running: &System) -> (Vec<bool>, Vec<ExprId>) {
             keeps[v.index()] = initial[row.equation.rhs.index()] == before && row.equation.lhs == draft.exprs.var(v);
         }
     }
+    let before: FxHashMap<VarId, VarId> = draft.before_start.iter().copied().collect();
+    before.keys().for_each(|v| keeps[v.index()] = false);
     let keeping = keeps.clone();
     let mut map = draft.rewritten(|pool, node| match node {
         Node::Initial => Some(Exprs::ONE),
+        Node::Pre(v) if before.contains_key(&v) => Some(pool.var(before[&v])),
         Node::Pre(v) if keeping[v.index()] => Some(pool.var(v)),
         _ => None,
     });
