@@ -155,9 +155,7 @@ impl Newton {
                 return Err(Reason::NonFinite);
             }
         }
-        if let Err(reason) = self.factor(code, values) {
-            return if holds(code, values) { Ok(()) } else { Err(reason) };
-        }
+        self.factor(code, values)?;
         for _ in 0..REFINEMENTS {
             self.correction(code, values);
             if !self.step.iter().all(|v| v.is_finite()) {
@@ -186,9 +184,7 @@ impl Newton {
         let mut last = f64::INFINITY;
         while self.iterations < MAX_ITERATIONS {
             self.iterations += 1;
-            if let Err(reason) = self.factor(code, values) {
-                return if holds(code, values) { Ok(()) } else { Err(reason) };
-            }
+            self.factor(code, values)?;
             self.correction(code, values);
             let length = self.length(code, scales, &self.step);
             if !length.is_finite() {
@@ -423,12 +419,6 @@ fn refine(at: &mut impl FnMut(f64) -> f64, [mut a, mut b]: [(f64, f64); 2]) -> f
         if f.signum() == a.1.signum() { a = (x, f) } else { b = (x, f) }
     }
     if a.1.abs() < b.1.abs() { a.0 } else { b.0 }
-}
-
-/// Whether all equations hold to the bit as they are: what they do not determine, as the enthalpy that a flow of zero carries,
-/// may stay then.
-fn holds(code: &LoopCode, values: &[f64]) -> bool {
-    code.residual_slots.iter().all(|&slot| values[slot] == 0.0)
 }
 
 #[cfg(test)]
