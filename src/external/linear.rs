@@ -43,7 +43,12 @@ impl Places {
 
 impl Solve {
     /// A*X_S = B_S - sum of E_i*X_{S without i}, for both sides are linear in their elements.
-    fn derivative(places: &Places, args: &[f64], lu: &faer::linalg::solvers::PartialPivLu<f64>, by: &[usize]) -> Mat<f64> {
+    fn derivative(
+        places: &Places,
+        args: &[f64],
+        lu: &faer::linalg::solvers::PartialPivLu<f64>,
+        by: &[usize],
+    ) -> Mat<f64> {
         let (n, first) = (places.n, places.right_side());
         let mut right = Mat::from_fn(n, places.columns, |i, j| {
             let at = first + i * places.columns + j;

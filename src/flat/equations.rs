@@ -38,10 +38,17 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
 
     pub(super) fn walk(&mut self, scopes: &[ScopeId]) {
         for &scope in scopes {
+            let mark = self.instance.diagnostics.len();
             let template = self.instance.scope(scope).template.clone();
             for (base, i) in template.bases.iter().zip(0u32..) {
                 let ClassBody::Long(body) = &base.ast.body else { continue };
                 self.body(body, View { scope, base: i });
+            }
+            if self.instance.diagnostics.len() > mark
+                && let Some(outermost) = self.instance.outermost(scope)
+            {
+                let (name, span) = (self.instance.scope(outermost).name.clone(), self.instance.scope(outermost).span);
+                self.instance.point_at(mark, &name, span);
             }
         }
     }

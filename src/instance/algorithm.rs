@@ -9,9 +9,7 @@ use super::{Instance, View};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::expr::{ExprId, Exprs, Rel};
 use crate::flat::{Type, Variability};
-use crate::syntax::ast::{
-    Component, Expr, ExprKind, Reference, ReferencePart, Statement, StatementKind, Subscript,
-};
+use crate::syntax::ast::{Component, Expr, ExprKind, Reference, ReferencePart, Statement, StatementKind, Subscript};
 use crate::syntax::symbol::Symbol;
 use std::rc::Rc;
 
@@ -137,7 +135,11 @@ impl<'a> Instance<'a, '_> {
             match a.zip(b, &mut |x, y, _| self.exprs.if_(test, x, y)) {
                 Some(merged) => self.eval.locals[i].1 = merged,
                 // which text it is, no one can tell from here on
-                None if matches!((a, b), (Val::Text(_), Val::Text(_) | Val::Tuple(_)) | (Val::Tuple(_), Val::Text(_))) => {
+                None if matches!(
+                    (a, b),
+                    (Val::Text(_), Val::Text(_) | Val::Tuple(_)) | (Val::Tuple(_), Val::Text(_))
+                ) =>
+                {
                     self.eval.locals[i].1 = Val::Tuple(Rc::new(Vec::new()));
                 }
                 None => {

@@ -364,7 +364,13 @@ impl<'a> Instance<'a, '_> {
             ElementState::Busy | ElementState::Absent | ElementState::Class(_) => return None,
         }
         self.scope_mut(scope).elements[index as usize] = ElementState::Busy;
+        let mark = self.diagnostics.len();
         let node = self.build_component(scope, index, depth);
+        if scope == self.root && self.diagnostics.len() > mark {
+            let element = &self.scope(scope).template.elements[index as usize];
+            let (name, span) = (element.name.as_str().to_owned(), element.span);
+            self.point_at(mark, &name, span);
+        }
         let state = node.map_or(ElementState::Absent, ElementState::Node);
         self.scope_mut(scope).elements[index as usize] = state;
         node

@@ -6,7 +6,9 @@ use super::lookup::Found;
 use super::{Instance, Node, View};
 use crate::diag::{Code, Diagnostic};
 use crate::flat::Type;
-use crate::syntax::ast::{Component, Equation, EquationKind, Expr, ExprKind, Reference, Statement, StatementKind, Subscript};
+use crate::syntax::ast::{
+    Component, Equation, EquationKind, Expr, ExprKind, Reference, Statement, StatementKind, Subscript,
+};
 use crate::syntax::symbol::Symbol;
 
 /// What a loop repeats.

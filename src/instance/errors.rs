@@ -1,8 +1,8 @@
 //! Messages of this stage.
 
 use super::lookup::Builtin;
-use super::{Instance, View};
-use crate::diag::{Code, Diagnostic, Span};
+use super::{Instance, ScopeId, View};
+use crate::diag::{Code, Diagnostic, Label, Span};
 use crate::resolve::{ClassId, nested_classes};
 use crate::syntax::ast;
 use crate::syntax::symbol::Symbol;
@@ -19,6 +19,28 @@ pub fn short(name: &str) -> String {
 }
 
 impl<'a> Instance<'a, '_> {
+    /// Errors since a mark that stand in other files than the model, as in a library, get the component of the model that
+    /// they come from.
+    pub fn point_at(&mut self, mark: usize, component: &str, span: Span) {
+        for d in self.diagnostics[mark..].iter_mut().filter(|d| d.is_error() && !d.labels.is_empty()) {
+            if d.labels.iter().all(|l| l.span.file != span.file) {
+                d.labels.push(Label { span, text: format!("in the component `{component}` of your model") });
+                d.instance.get_or_insert_with(|| component.to_owned());
+            }
+        }
+    }
+
+    /// The component of the model itself that an instance is or belongs to.
+    pub fn outermost(&self, mut scope: ScopeId) -> Option<ScopeId> {
+        while let Some(owner) = self.scope(scope).owner {
+            if owner == self.root {
+                return Some(scope);
+            }
+            scope = owner;
+        }
+        None
+    }
+
     pub(super) fn unsupported(&mut self, span: Span, what: &str) {
         self.report(
             Diagnostic::new(Code::Unsupported, format!("{what} is not supported"))
@@ -70,7 +92,10 @@ impl<'a> Instance<'a, '_> {
         } else {
             let shorter = ast::Path { global: path.global, parts: path.parts[..part].to_vec(), span: path.span };
             match self.lookup_path(view, &shorter) {
-                Ok(super::lookup::Found::Class(c)) => self.class_names_around(c.class),
+                Ok(super::lookup::Found::Class(c)) => {
+                    let nested = nested_classes(self.library.class(c.class)).map(|n| n.name.name);
+                    nested.chain(self.library.folder_members(c.class)).collect()
+                }
                 _ => Vec::new(),
             }
         };

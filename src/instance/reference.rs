@@ -656,7 +656,13 @@ impl<'a> Instance<'a, '_> {
             return None;
         }
         let (id, ty) = (data.id, data.ty);
-        debug_assert!(id.0 != u32::MAX, "variables are numbered before expressions are built");
+        if id.0 == u32::MAX {
+            let (name, declared) = (data.name.clone(), data.span);
+            let d = Diagnostic::new(Code::Restricted, format!("`{name}` belongs to no component"));
+            let d = d.at(span, "used here").at(declared, "declared here, in a class that is used as a package");
+            self.report(d.note("Modelica 3.6, 4.6").help("declare it `constant`, or in the model"));
+            return None;
+        }
         Some(Val::Scalar(self.exprs.var(id), ty))
     }
 

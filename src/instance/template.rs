@@ -448,7 +448,11 @@ impl<'a> Instance<'a, '_> {
                     let place = at.entry(target.name).or_insert(0);
                     // an element inherited twice takes what the first of two equal `extends` says of it (MLS 5.6.1.2)
                     let element = &mut t.elements[i as usize];
-                    let twice = element.base < inner && element.modified.iter().any(|s| matches!(s.what, What::Argument(a) if says_the_same(a, argument)));
+                    let twice = element.base < inner
+                        && element
+                            .modified
+                            .iter()
+                            .any(|s| matches!(s.what, What::Argument(a) if says_the_same(a, argument)));
                     if twice {
                         continue;
                     }

@@ -105,7 +105,8 @@ impl Forest {
 
     /// Chooses the spanning trees and their roots.
     pub(super) fn span(mut self, instance: &mut Instance<'_, '_>) -> (Vec<Link>, Spanned) {
-        let ends: Vec<(usize, usize)> = self.links.clone().iter().map(|l| (self.number(l.a), self.number(l.b))).collect();
+        let ends: Vec<(usize, usize)> =
+            self.links.clone().iter().map(|l| (self.number(l.a), self.number(l.b))).collect();
         let mut trees = Trees::new(self.nodes.len());
         for &(a, b) in &self.branches {
             trees.join(a, b);

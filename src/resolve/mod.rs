@@ -191,6 +191,11 @@ impl<'a> Library<'a> {
         self.trees.alloc(parsed.tree)
     }
 
+    /// A top-level class that has been asked for before.
+    pub fn loaded(&self, name: Symbol) -> Option<ClassId> {
+        *self.top.get(&name)?
+    }
+
     /// A top-level class by name: the user's, then those of the roots in order.
     pub fn top(&mut self, name: Symbol) -> Option<ClassId> {
         if let Some(found) = self.top.get(&name) {

@@ -13,7 +13,7 @@ use super::ida::{Failure, Ida, Tolerances};
 use super::linear::Lu;
 use super::model::Model;
 use super::modes::{Modes, RootFunctions, follows_time};
-use super::monitor::{Chatter, Reported};
+use super::monitor::{Accumulation, Chatter, Reported};
 use super::newton::Scales;
 use super::output::Grid;
 use super::past::{Delays, Past};
@@ -24,7 +24,7 @@ use super::state::State;
 use super::{Control, Input, Run, Sink, initialize, report};
 use crate::diag::{Code, Diagnostic};
 use crate::lower::{Layout, Pattern, Program, System};
-use crate::structure::StateChoice;
+use crate::structure::{CrossingKind, StateChoice};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 use tangents::Carried;
@@ -140,6 +140,7 @@ pub struct Driver<'a, 'c> {
     last_step: f64,
     algebraic: Algebraic,
     chatter: Chatter,
+    accumulation: Accumulation,
     reported: Reported,
     /// Inputs that change at the next event, as slots and values.
     pending: Vec<(usize, f64)>,
@@ -268,6 +269,7 @@ fn prepare<'a, 'c>(
         creep: 0,
         renewed: f64::NEG_INFINITY,
         renewals: 0,
+        accumulation: Accumulation::default(),
         chatter: Chatter::new(settings.stop_time - settings.start_time, settings.events_at_once),
         reported: Reported::new(system),
         pending: Vec::new(),
@@ -400,6 +402,11 @@ impl<'a> Driver<'a, '_> {
 
     /// Writes the wanted values that stand in their slots.
     fn write_row(&mut self, model: &mut Model<'a>) -> Flow {
+        if let Some(relation) = self.accumulation.watched()
+            && let Some(d) = self.accumulation.judge(self.system, self.t, self.distance(relation, &model.values))
+        {
+            return Err(Stop::new(End::Chattering, d));
+        }
         if self.sink.is_none() {
             return Ok(());
         }
@@ -412,6 +419,14 @@ impl<'a> Driver<'a, '_> {
         match self.sink.as_mut().map(|sink| sink.row(self.t, &self.row)) {
             Some(ControlFlow::Break(())) => Err(self.interrupted()),
             _ => Ok(()),
+        }
+    }
+
+    /// How far the sides of a relation are apart.
+    fn distance(&self, relation: u32, values: &[f64]) -> f64 {
+        match self.system.dae.crossings[relation as usize].kind {
+            CrossingKind::Relation(_, left, right) => self.system.eval(left, values) - self.system.eval(right, values),
+            _ => 0.0,
         }
     }
 

@@ -3,6 +3,7 @@
 use super::report::at_origin;
 use crate::diag::{Code, Diagnostic};
 use crate::lower::System;
+use rustc_hash::FxHashMap;
 use std::collections::VecDeque;
 
 /// The same relations crossing so often within this part of the run count as chattering.
@@ -64,6 +65,90 @@ impl Chatter {
         diagnostic.note(note).help(
             "both sides of the relation drive the model back across it: add hysteresis, `smooth`/`noEvent`, \
              or a state between, as dry friction has with its stick mode",
+        )
+    }
+}
+
+/// So many intervals from event to event of one relation, each shorter than the one before, and the last of them this part
+/// of the run, are impacts that accumulate, as those of a ball that bounces.
+const SHRINKING: u32 = 10;
+const ACCUMULATED: f64 = 1e-6;
+
+/// Its sides are further apart than at the last event by this factor, and by this much in the unit of the relation, for so
+/// many of the last intervals: then nothing holds them back any more.
+const PASSED: f64 = 1e6;
+const APART: f64 = 1e-9;
+const INTERVALS: f64 = 100.0;
+
+/// Impacts that follow each other faster and faster: at their limit the relation is not seen to change any more, and what it
+/// held back goes through.
+#[derive(Debug, Default)]
+pub struct Accumulation {
+    /// By relation and direction: the last event, the interval before it, and how many intervals have shrunk.
+    seen: FxHashMap<(u32, bool), (f64, f64, u32)>,
+    limit: Option<Limit>,
+}
+
+/// Impacts that have accumulated.
+#[derive(Clone, Copy, Debug)]
+struct Limit {
+    relation: u32,
+    /// The last one.
+    time: f64,
+    /// Between the last two.
+    interval: f64,
+    /// How far the sides of the relation were apart then.
+    distance: f64,
+}
+
+impl Accumulation {
+    /// Notes an event of a relation and its direction; another event begins anew. True where impacts have accumulated.
+    pub fn note(&mut self, span: f64, t: f64, crossing: Option<(u32, bool)>) -> bool {
+        let Some(key) = crossing else {
+            self.limit = None;
+            return false;
+        };
+        if self.limit.is_some_and(|l| l.relation != key.0) {
+            self.limit = None;
+        }
+        let seen = self.seen.entry(key).or_insert((t, f64::INFINITY, 0));
+        let interval = t - seen.0;
+        let shrunk = if interval < seen.1 { seen.2 + 1 } else { 0 };
+        *seen = (t, if interval > 0.0 { interval } else { f64::INFINITY }, shrunk);
+        let accumulated = shrunk >= SHRINKING && interval <= ACCUMULATED * span;
+        if accumulated {
+            self.limit = Some(Limit { relation: key.0, time: t, interval, distance: 0.0 });
+        }
+        accumulated
+    }
+
+    /// How far the sides of the relation are apart behind the event noted last.
+    pub fn stands(&mut self, distance: f64) {
+        if let Some(limit) = &mut self.limit {
+            limit.distance = distance.abs();
+        }
+    }
+
+    /// The relation to be watched.
+    pub fn watched(&self) -> Option<u32> {
+        self.limit.map(|l| l.relation)
+    }
+
+    /// E502 where a relation that held back has been passed.
+    pub fn judge(&self, system: &System, t: f64, distance: f64) -> Option<Diagnostic> {
+        let limit = self.limit?;
+        if t - limit.time <= INTERVALS * limit.interval || distance.abs() <= APART.max(PASSED * limit.distance) {
+            return None;
+        }
+        let dae = &system.dae;
+        let crossing = &dae.crossings[limit.relation as usize];
+        let name = &dae.variables[crossing.mode.index()].name;
+        let at = super::report::number(limit.time);
+        let text = format!("`{name}` does not change after time {at} s, and what it held back goes on through it");
+        Some(
+            at_origin(dae, Code::Chattering, text, crossing.origin, "this relation")
+                .note(format!("events followed each other faster and faster up to time {at} s"))
+                .help("let the body come to rest: a state of rest that the `when` enters below a small speed, or a stiff stop with damping instead of `reinit`"),
         )
     }
 }

@@ -329,7 +329,9 @@ impl Assembly {
             }
             let row = self.push_start(draft, v);
             let determined = self.augment(row);
-            if !determined && self.augmenter.rows_seen.iter().any(|&seen| seen != row && self.is_fixed_start(draft, seen)) {
+            if !determined
+                && self.augmenter.rows_seen.iter().any(|&seen| seen != row && self.is_fixed_start(draft, seen))
+            {
                 let index = self.rows[row as usize].index;
                 draft.equations[index as usize].origin.kind = OriginKind::Guess;
             }

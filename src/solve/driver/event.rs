@@ -126,6 +126,14 @@ impl<'a> Driver<'a, '_> {
         self.with_model(|driver, model, _, _| driver.judge(model, &outcome))?;
         if cause != Cause::Terminal {
             self.go_on(cause, &outcome)?;
+            let span = self.settings.stop_time - self.settings.start_time;
+            let upwards = self.roots.iter().find(|d| **d != 0).is_some_and(|d| *d > 0);
+            if self.accumulation.note(span, t, crossing.map(|c| (c, upwards)))
+                && let Some(c) = crossing
+            {
+                let distance = self.with_model(|driver, model, _, _| driver.distance(c, &model.values));
+                self.accumulation.stands(distance);
+            }
             if self.chatter.note(t, crossing) {
                 return Err(Stop::new(End::Chattering, self.chatter.report(self.system, t)));
             }
