@@ -9,7 +9,7 @@ use crate::resolve::{ClassId, Library, Trees, nested_classes};
 use crate::shipped::Shipped;
 use crate::structure::{self, Dae, StateChoice};
 use crate::syntax::ast::{self, ClassBody, ClassKind};
-use crate::units;
+use crate::unit_check;
 use crate::world::World;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -88,7 +88,7 @@ pub fn compile(world: &dyn World, request: &Request, options: &lower::Options) -
 pub fn sort(world: &dyn World, request: &Request) -> Outcome<(FlatModel, Graph, Dae)> {
     let Outcome { sources, mut diagnostics, value } = flatten(world, request);
     let value = value.and_then(|f| {
-        diagnostics.extend(units::check(&f.flat));
+        diagnostics.extend(unit_check::check(&f.flat));
         of_libraries(&mut diagnostics, &sources, request);
         let dae = analyze(&f.flat).sink(&mut diagnostics);
         Some((f.flat, f.graph, dae?))

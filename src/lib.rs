@@ -78,14 +78,20 @@ pub mod syntax;
 
 pub mod resolve;
 
+pub mod expr;
+#[doc(hidden)]
+pub mod external;
+pub mod types;
+
+pub mod results;
+
 pub mod instance;
 
 pub mod network;
 
-pub mod expr;
-#[doc(hidden)]
-pub mod external;
 pub mod flat;
+pub mod unit_check;
+
 pub mod structure;
 
 pub mod lower;
@@ -95,8 +101,6 @@ mod compile;
 pub use compile::{
     Flattened, Model, Outcome, Request, analyze, compile, flatten, flatten_text, inspect, runnable, sort,
 };
-
-pub mod results;
 
 pub mod solve;
 

@@ -4,7 +4,8 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// What each part may use of the others. `cli` stands above all and may use everything.
+/// What each part may use of the others, in the order of the stages: nothing uses what comes later. `cli` stands above all
+/// and may use everything.
 const MAY_USE: &[(&str, &[&str])] = &[
     ("diag", &[]),
     ("world", &[]),
@@ -12,15 +13,16 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("syntax", &["diag"]),
     ("resolve", &["diag", "syntax", "world"]),
     ("expr", &["diag", "syntax"]),
+    ("types", &["expr"]),
     ("external", &["expr"]),
-    ("units", &["diag", "expr", "flat"]),
-    // Instances speak of variables with the types of the flat model.
-    ("instance", &["diag", "expr", "external", "flat", "resolve", "results", "syntax", "units"]),
-    ("network", &["diag", "flat", "instance", "syntax", "units"]),
-    ("flat", &["diag", "expr", "instance", "network", "syntax", "units"]),
+    ("units", &["expr"]),
+    ("results", &["diag", "units"]),
+    ("instance", &["diag", "expr", "external", "resolve", "results", "syntax", "types", "units"]),
+    ("network", &["diag", "instance", "syntax", "types", "units"]),
+    ("flat", &["diag", "expr", "instance", "network", "syntax", "types", "units"]),
+    ("unit_check", &["diag", "expr", "flat", "units"]),
     ("structure", &["diag", "expr", "flat"]),
     ("lower", &["diag", "expr", "flat", "structure"]),
-    ("results", &["diag", "units"]),
     ("solve", &["diag", "expr", "flat", "lower", "results", "structure"]),
     (
         "compile",
@@ -34,7 +36,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "shipped",
             "structure",
             "syntax",
-            "units",
+            "unit_check",
             "world",
         ],
     ),
@@ -44,6 +46,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ),
     ("plot", &["network", "results", "units"]),
     ("experiment", &["diag", "results", "units"]),
+    ("study", &["compile", "diag", "expr", "flat", "results", "solve", "units", "world"]),
     (
         "analysis",
         &[
@@ -63,7 +66,6 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "world",
         ],
     ),
-    ("study", &["compile", "diag", "expr", "flat", "results", "solve", "units", "world"]),
     (
         "gap",
         &[
@@ -145,6 +147,16 @@ fn used(text: &str) -> Vec<&str> {
     }
     found.retain(|name| !name.is_empty());
     found
+}
+
+#[test]
+fn nothing_uses_a_later_stage() {
+    for (i, (part, may_use)) in MAY_USE.iter().enumerate() {
+        for used in *may_use {
+            let at = MAY_USE.iter().position(|(p, _)| p == used);
+            assert!(at.is_some_and(|at| at < i), "`{part}` uses `{used}`, which does not come before it");
+        }
+    }
 }
 
 #[test]

@@ -34,7 +34,7 @@ fn remarks(request: &Request) -> String {
     let outcome = flatten(&Disk, request);
     let mut diagnostics = outcome.diagnostics;
     if let Some(value) = &outcome.value {
-        diagnostics.extend(bramah::units::check::check(&value.flat));
+        diagnostics.extend(bramah::unit_check::check(&value.flat));
         bramah::structure::analyze(&value.flat, &Default::default()).sink(&mut diagnostics);
     }
     render(&outcome.sources, &diagnostics, Format::Short, 200, false)

@@ -17,6 +17,8 @@ mod vanish;
 pub use explain::explain;
 pub use flatten::flatten;
 
+pub use crate::types::{MessagePart, StateSelect, Type, Variability};
+
 use crate::diag::{Diagnostic, Span};
 use crate::expr::{ExprId, Exprs, VarId};
 
@@ -107,44 +109,6 @@ pub enum OriginKind {
     Guess,
     /// Made by the compiler for another reason.
     Made,
-}
-
-/// The type of a scalar variable.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Type {
-    /// Real
-    Real,
-    /// Integer
-    Integer,
-    /// Boolean
-    Boolean,
-    /// An enumeration: index into `FlatModel::enumerations`. Values count from 1.
-    Enumeration(u32),
-}
-
-/// When a variable may change.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Variability {
-    /// Never; its value was used to build the model (constants, structural parameters).
-    Constant,
-    /// Not during a run; may be set before one.
-    Parameter,
-    /// At events only.
-    Discrete,
-    /// At any time.
-    Continuous,
-}
-
-/// `stateSelect`
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Default)]
-#[allow(missing_docs, reason = "the Modelica literals")]
-pub enum StateSelect {
-    Never,
-    Avoid,
-    #[default]
-    Default,
-    Prefer,
-    Always,
 }
 
 /// A scalar variable.
@@ -353,13 +317,4 @@ pub struct Assert {
 pub struct Message {
     /// The pieces in order.
     pub parts: Vec<MessagePart>,
-}
-
-/// A piece of a [`Message`].
-#[derive(Clone, Debug, PartialEq)]
-pub enum MessagePart {
-    /// Words.
-    Text(String),
-    /// A value and how it is printed.
-    Value(ExprId, Type),
 }

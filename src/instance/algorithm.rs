@@ -8,7 +8,7 @@ use super::value::{Val, size_text};
 use super::{Instance, View};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::expr::{ExprId, Exprs, Rel};
-use crate::flat::{Type, Variability};
+use crate::types::{Type, Variability};
 use crate::syntax::ast::{Component, Expr, ExprKind, Reference, ReferencePart, Statement, StatementKind, Subscript};
 use crate::syntax::symbol::Symbol;
 use std::rc::Rc;

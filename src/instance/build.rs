@@ -7,7 +7,7 @@ use super::template::{Kind, Template, What};
 use super::{ClassRef, ElementState, Inherited, Instance, Node, NodeId, ROOT, ScopeId, VarData, View, evaluate};
 use crate::diag::{Code, Diagnostic, Span, nearest};
 use crate::expr::{Exprs, VarId};
-use crate::flat::{StateSelect, Type, Variability};
+use crate::types::{StateSelect, Type, Variability};
 use crate::resolve::{ClassId, Library};
 use crate::syntax::ast::{self, ClassKind, Subscript};
 use crate::syntax::symbol::Symbol;

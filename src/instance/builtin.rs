@@ -5,7 +5,7 @@ use super::{Instance, View};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::expr::differentiate::Leaf;
 use crate::expr::{Binary, ExprId, Exprs, Node, Rel, Unary};
-use crate::flat::{MessagePart, Type, Variability};
+use crate::types::{MessagePart, Type, Variability};
 use crate::syntax::ast::{Expr, ExprKind, Ident, Reference};
 use std::rc::Rc;
 

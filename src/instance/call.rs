@@ -10,7 +10,7 @@ use super::vectorised::Given;
 use super::{ClassRef, Instance, ScopeId, View};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::expr::{ExprId, Exprs};
-use crate::flat::{Type, Variability};
+use crate::types::{Type, Variability};
 use crate::syntax::ast::{self, Causality, ClassKind, Expr, Ident, Reference};
 use crate::syntax::symbol::Symbol;
 use std::rc::Rc;

@@ -5,7 +5,7 @@ use super::evaluate::Extent;
 use super::lookup::Found;
 use super::{Instance, Node, View};
 use crate::diag::{Code, Diagnostic};
-use crate::flat::Type;
+use crate::types::Type;
 use crate::syntax::ast::{
     Component, Equation, EquationKind, Expr, ExprKind, Reference, Statement, StatementKind, Subscript,
 };

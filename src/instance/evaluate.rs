@@ -7,7 +7,7 @@ use super::value::{Val, size_text, stack, wider};
 use super::{Instance, View};
 use crate::diag::{Code, Diagnostic, FileId, Span};
 use crate::expr::{Binary, ExprId, Exprs, Rel};
-use crate::flat::{MessagePart, Type, Variability};
+use crate::types::{MessagePart, Type, Variability};
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Subscript, UnaryOp};
 use crate::syntax::symbol::Symbol;
 use rustc_hash::FxHashMap;

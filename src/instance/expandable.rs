@@ -7,7 +7,7 @@ use super::lookup::{Builtin, Found};
 use super::modifiers::Reached;
 use super::template::{Element, Kind};
 use super::{ClassRef, ElementState, Inherited, Instance, Node, NodeId, ScopeId, View};
-use crate::flat::Type;
+use crate::types::Type;
 use crate::syntax::ast::{self, ClassBody, Equation, EquationKind, Expr, ExprKind};
 use crate::syntax::symbol::Symbol;
 use std::rc::Rc;

@@ -9,7 +9,7 @@ use crate::diag::Code;
 use crate::expr::ExprId;
 use crate::expr::function::{External, Function, Handle, Stmt, Term};
 use crate::external::{Builtin, Given, NO_NAME, Object};
-use crate::flat::Type;
+use crate::types::Type;
 use crate::syntax::ast::{Causality, ClassBody, Ident};
 use crate::syntax::symbol::Symbol;
 use std::sync::Arc;

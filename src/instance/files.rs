@@ -5,7 +5,7 @@ use super::call::Callee;
 use super::value::Val;
 use super::{Instance, Node, View};
 use crate::diag::{Code, Diagnostic, Span};
-use crate::flat::Type;
+use crate::types::Type;
 use crate::results::table::{Axes, Matrix, read_table};
 use crate::syntax::ast::{ClassBody, Expr, ExprKind, Ident};
 use crate::syntax::symbol::Symbol;

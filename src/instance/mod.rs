@@ -31,7 +31,7 @@ pub use build::{GIVEN, ModelRequest, Override, instantiate};
 
 use crate::diag::{Diagnostic, FileId, Span};
 use crate::expr::{ExprId, Exprs, VarId};
-use crate::flat::{StateSelect, Type, Variability};
+use crate::types::{StateSelect, Type, Variability};
 use crate::resolve::{ClassId, Library};
 use crate::results::table::Matrix;
 use crate::syntax::ast;

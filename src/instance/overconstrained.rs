@@ -9,7 +9,7 @@ use super::value::Val;
 use super::{ClassRef, ElementState, Instance, Node, NodeId, View};
 use crate::diag::{Code, Span};
 use crate::expr::{ExprId, Exprs};
-use crate::flat::Type;
+use crate::types::Type;
 use crate::syntax::ast::{self, Expr, ExprKind};
 use crate::syntax::symbol::Symbol;
 use rustc_hash::{FxHashMap, FxHashSet};

@@ -7,7 +7,7 @@ use super::value::Val;
 use super::vectorised::Given;
 use super::{ClassRef, Instance};
 use crate::diag::{Code, Diagnostic, Span};
-use crate::flat::Type;
+use crate::types::Type;
 use crate::syntax::ast::{BinaryOp, Causality, ClassKind, UnaryOp};
 use crate::syntax::symbol::Symbol;
 

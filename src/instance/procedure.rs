@@ -13,7 +13,7 @@ use super::{Instance, View};
 use crate::diag::{Code, Span};
 use crate::expr::function::{Function, Stmt, Term};
 use crate::expr::{ExprId, Exprs, FunctionId, Node, VarId};
-use crate::flat::Type;
+use crate::types::Type;
 use crate::syntax::ast::{self, Causality, Expr, ExprKind, Ident, Reference, Statement, StatementKind};
 use crate::syntax::symbol::Symbol;
 

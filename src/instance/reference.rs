@@ -9,7 +9,7 @@ use super::template::Kind;
 use super::value::Val;
 use super::{ElementState, Instance, Node, NodeId, ScopeId, View};
 use crate::diag::{Code, Diagnostic, Span};
-use crate::flat::{Type, Variability};
+use crate::types::{Type, Variability};
 use crate::syntax::ast::{ClassKind, Expr, ExprKind, Reference, ReferencePart, Subscript};
 use crate::syntax::symbol::Symbol;
 use std::rc::Rc;

@@ -2,7 +2,7 @@
 
 use crate::expr::{ExprId, Exprs};
 use crate::external::Object;
-use crate::flat::{MessagePart, Type};
+use crate::types::{MessagePart, Type};
 use crate::syntax::ast::Ident;
 use crate::syntax::symbol::Symbol;
 use std::rc::Rc;

@@ -3,7 +3,7 @@
 use super::overconstrained::{Forest, Link, is_said};
 use super::{Connection, FlowSet, Network, PotentialSet, SignalPair, StreamSet};
 use crate::diag::{Code, Diagnostic, Span};
-use crate::flat::{Type, Variability};
+use crate::types::{Type, Variability};
 use crate::instance::deduce::Body;
 use crate::instance::lookup::Found;
 use crate::instance::reference::Selection;

@@ -81,7 +81,7 @@ impl Dimension {
 }
 
 /// An exponent in sixtieths, multiplied.
-pub(super) fn power_of(sixtieths: i16, exponent: f64) -> Option<i16> {
+pub(crate) fn power_of(sixtieths: i16, exponent: f64) -> Option<i16> {
     let product = f64::from(sixtieths) * exponent;
     let whole = product.round();
     let fits = (product - whole).abs() < 1e-9 && whole.abs() <= f64::from(i16::MAX);

@@ -1,12 +1,9 @@
-//! Units of measurement: reading unit strings, converting values, and checking equations.
+//! Units of measurement: reading unit strings and converting values.
 
-pub mod check;
 mod dimension;
-mod infer;
-mod measure;
 mod symbols;
 pub mod unit;
 
-pub use check::check;
 pub use dimension::Dimension;
+pub(crate) use dimension::power_of;
 pub use unit::{Unit, UnitError, quantity};

@@ -1,8 +1,11 @@
 //! The unit check: every flat equation, binding, start value and assignment.
 
-use super::infer::{self, Relation, Side, Units};
-use super::measure::{Difference, Measure, Quantity};
-use super::{Unit, UnitError};
+mod infer;
+mod measure;
+
+use infer::{Relation, Side, Units};
+use measure::{Difference, Measure, Quantity};
+use crate::units::{Unit, UnitError};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::expr::{Binary, ExprId, Node, VarId};
 use crate::flat::FlatModel;
@@ -241,5 +244,4 @@ fn display_units(model: &FlatModel) -> Vec<Diagnostic> {
 }
 
 #[cfg(test)]
-#[path = "check_tests.rs"]
 mod tests;

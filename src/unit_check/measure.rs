@@ -3,8 +3,8 @@
 //! The aim is to be quiet when unsure. A number in a model may hide a quantity (`9.81*m` is a force, `x/1e-3` has no
 //! dimension), so a number other than a small ratio makes a product unknown, and fits anywhere in a sum.
 
-use super::dimension::power_of;
-use super::{Dimension, Unit};
+use crate::units::power_of;
+use crate::units::{Dimension, Unit};
 use crate::expr::print::number;
 use std::f64::consts::{PI, TAU};
 

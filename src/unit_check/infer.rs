@@ -5,7 +5,7 @@
 //! the model.
 
 use super::measure::{Measure, Quantity};
-use super::{Unit, UnitError};
+use crate::units::{Unit, UnitError};
 use crate::diag::Span;
 use crate::expr::visit::Walk;
 use crate::expr::{Binary, ExprId, Exprs, Node, Unary, VarId};
