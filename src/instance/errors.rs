@@ -188,7 +188,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     pub(super) fn unknown_attribute(&mut self, name: Symbol, span: Span, builtin: Builtin) {
-        let known = super::build::attributes_of(builtin);
+        let known = super::components::attributes_of(builtin);
         let ty = builtin_name(builtin);
         let mut d =
             Diagnostic::new(Code::UnknownModifier, format!("`{}` is not an attribute of `{ty}`", short(name.as_str())))

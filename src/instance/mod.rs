@@ -5,29 +5,18 @@
 //! [`modifiers`] (which modifier reaches which element), [`lookup`] (names), [`build`] (components), [`value`] and
 //! [`evaluate`] (expressions), [`builtin`], [`call`] and [`algorithm`] (functions), `files` (tables from files), `external` (functions of C code that Rust knows).
 
-pub mod algorithm;
-pub mod build;
-pub mod builtin;
-pub mod call;
-pub mod deduce;
+pub mod building;
+mod calls;
 mod errors;
-pub mod evaluate;
-mod expandable;
-mod external;
-mod files;
-mod functional;
-pub mod lookup;
-pub mod modifiers;
-mod overconstrained;
-mod overload;
-mod procedure;
-pub mod reference;
-mod restrictions;
-pub mod template;
-pub mod value;
-mod vectorised;
+pub mod evaluation;
+pub mod tree;
 
-pub use build::{GIVEN, ModelRequest, Override, instantiate};
+pub use building::components::{GIVEN, ModelRequest, Override, instantiate};
+use building::{components, overconstrained};
+use calls::{builtin, call, files, procedure, vectorised};
+pub use evaluation::{algorithm, deduce, references, value};
+use evaluation::expressions;
+pub use tree::{lookup, modifiers, template};
 
 use crate::diag::{Diagnostic, FileId, Span};
 use crate::expr::{ExprId, Exprs, VarId};
@@ -287,8 +276,8 @@ pub struct Instance<'a, 'l> {
     pub overconstrained: overconstrained::Overconstrained<'a>,
     variabilities: Vec<Variability>,
     /// Values given from outside for single elements of arrays.
-    given_elements: Vec<build::GivenElement<'a>>,
-    eval: evaluate::State,
+    given_elements: Vec<components::GivenElement<'a>>,
+    eval: expressions::State,
 }
 
 impl<'a> Instance<'a, '_> {

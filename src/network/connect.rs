@@ -6,7 +6,7 @@ use crate::diag::{Code, Diagnostic, Span};
 use crate::types::{Type, Variability};
 use crate::instance::deduce::Body;
 use crate::instance::lookup::Found;
-use crate::instance::reference::Selection;
+use crate::instance::references::Selection;
 use crate::instance::template::{Base, Kind, same_pair};
 use crate::instance::{Instance, Node, NodeId, ScopeId, StreamMember, View};
 use crate::syntax::ast::{self, ClassBody, ClassKind, Equation, EquationKind, Expr, ExprKind};

@@ -1,8 +1,8 @@
 //! Names: from the innermost place outwards, through inherited elements, imports and enclosing classes (MLS 5.3).
 
-use super::modifiers::{Arg, ArgKind, Reached};
-use super::template::{Base, Element, Kind, Source, Template, What};
-use super::{ClassRef, ElementState, Enumeration, Inherited, Instance, NodeId, ROOT, Scope, ScopeId, View};
+use crate::instance::modifiers::{Arg, ArgKind, Reached};
+use crate::instance::template::{Base, Element, Kind, Source, Template, What};
+use crate::instance::{ClassRef, ElementState, Enumeration, Inherited, Instance, NodeId, ROOT, Scope, ScopeId, View};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::resolve::ClassId;
 use crate::syntax::ast::{self, ClassBody, Import};
@@ -72,7 +72,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// What a name means below the top level.
-    pub(super) fn lookup_nested(&mut self, mut view: View, name: Symbol) -> Option<Found<'a>> {
+    pub(in crate::instance) fn lookup_nested(&mut self, mut view: View, name: Symbol) -> Option<Found<'a>> {
         while view != ROOT {
             let template = self.scope(view.scope).template.clone();
             let base = &template.bases[view.base as usize];
@@ -233,7 +233,7 @@ impl<'a> Instance<'a, '_> {
 
     /// What a dotted name may reach: nothing protected, and in a class that is used as a package only what does not depend
     /// on its components (MLS 4.1, 5.3.2).
-    pub(super) fn check_member(&mut self, around: &Found<'a>, inside: &Found<'a>, part: ast::Ident) {
+    pub(in crate::instance) fn check_member(&mut self, around: &Found<'a>, inside: &Found<'a>, part: ast::Ident) {
         let Found::Class(class) = around else { return };
         if self.gathering.iter().any(|(c, _)| *c == class.class) {
             return;
@@ -327,7 +327,7 @@ impl<'a> Instance<'a, '_> {
 
     /// The base class named in an `extends` clause or short class: looked up beside and around the class, not in what
     /// it inherits.
-    pub(super) fn find_base(&mut self, class: ClassId, parent: View, path: &ast::Path) -> Option<Found<'a>> {
+    pub(in crate::instance) fn find_base(&mut self, class: ClassId, parent: View, path: &ast::Path) -> Option<Found<'a>> {
         let own = !path.global && matches!(self.library.class(class).body, ClassBody::Long(_));
         if own {
             let bare = self.bare_scope(class, parent);
@@ -382,7 +382,7 @@ impl<'a> Instance<'a, '_> {
         scope
     }
 
-    pub(super) fn new_scope(
+    pub(in crate::instance) fn new_scope(
         &mut self,
         template: Rc<Template<'a>>,
         name: String,
@@ -431,7 +431,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// The enumeration type of a class.
-    pub(super) fn enumeration(&mut self, class: ClassId) -> u32 {
+    pub(in crate::instance) fn enumeration(&mut self, class: ClassId) -> u32 {
         if let Some(&i) = self.enumeration_index.get(&class) {
             return i;
         }
@@ -465,8 +465,8 @@ impl<'a> Instance<'a, '_> {
             reached.take(arg);
         }
         let of_record = binding.filter(|_| matches!(element.kind, Kind::Component(_))).map(|b| {
-            let access = b.access.iter().copied().chain([super::modifiers::Access::Field(element.name)]).collect();
-            super::modifiers::Binding { access, ..b }
+            let access = b.access.iter().copied().chain([crate::instance::modifiers::Access::Field(element.name)]).collect();
+            crate::instance::modifiers::Binding { access, ..b }
         });
         // constants come with the class, not with a value of it (MLS 12.6)
         let constant =
@@ -505,7 +505,7 @@ impl<'a> Instance<'a, '_> {
         reached
     }
 
-    pub(super) fn check_final(&mut self, final_: bool, outer: Option<Span>, span: Span, name: Symbol) {
+    pub(in crate::instance) fn check_final(&mut self, final_: bool, outer: Option<Span>, span: Span, name: Symbol) {
         if let (true, Some(outer)) = (final_, outer) {
             self.report(
                 Diagnostic::new(Code::FinalModified, format!("`{name}` is final and cannot be modified"))
@@ -517,7 +517,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// The component that an `outer` element means: the nearest `inner` of that name above.
-    pub(super) fn inner_of(&mut self, scope: ScopeId, name: Symbol) -> Option<NodeId> {
+    pub(in crate::instance) fn inner_of(&mut self, scope: ScopeId, name: Symbol) -> Option<NodeId> {
         let mut at = self.scope(scope).owner;
         while let Some(owner) = at {
             let template = self.scope(owner).template.clone();
@@ -543,7 +543,7 @@ fn constraining(declared: &ast::Class, redeclared: bool) -> Option<&ast::Modific
 }
 
 /// A modification by a base class as an argument.
-fn source_arg<'a>(source: &Source<'a>, view: View, none: &Rc<[super::modifiers::Access]>) -> Option<Arg<'a>> {
+fn source_arg<'a>(source: &Source<'a>, view: View, none: &Rc<[crate::instance::modifiers::Access]>) -> Option<Arg<'a>> {
     let made = |kind, span| Arg { kind, view, access: none.clone(), each: false, final_: false, default: false, span };
     match source.what {
         What::Argument(a) => Arg::new(a, view, none, false),

@@ -1,9 +1,9 @@
 //! Tables that models read from files: the external functions behind `Signal.Functions.readTable` and `tableSize`,
 //! carried out while the model is built, so that sizes may depend on them.
 
-use super::call::Callee;
-use super::value::Val;
-use super::{Instance, Node, View};
+use crate::instance::call::Callee;
+use crate::instance::value::Val;
+use crate::instance::{Instance, Node, View};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::types::Type;
 use crate::results::table::{Axes, Matrix, read_table};
@@ -13,7 +13,7 @@ use std::rc::Rc;
 
 /// An external function that bramah knows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum FileFunction {
+pub(in crate::instance) enum FileFunction {
     /// Rows and columns of a table.
     Size,
     /// Its numbers.
@@ -22,7 +22,7 @@ pub(super) enum FileFunction {
 
 /// Where a file is named, for messages.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
+pub(in crate::instance) struct Place {
     /// The call.
     pub call: Span,
     /// The value of the parameter that names the file, where the call passes one on.
@@ -37,7 +37,7 @@ impl Place {
 
 impl<'a> Instance<'a, '_> {
     /// Which of the known external functions a function is, by the name of its C function.
-    pub(super) fn file_function(&self, callee: &Callee<'a>) -> Option<FileFunction> {
+    pub(in crate::instance) fn file_function(&self, callee: &Callee<'a>) -> Option<FileFunction> {
         let ClassBody::Long(body) = &callee.template.bases.first()?.ast.body else { return None };
         let text = body.external_text.as_deref()?;
         let called = |name: &str| text.split(|c: char| !(c.is_alphanumeric() || c == '_')).any(|word| word == name);
@@ -49,7 +49,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// The place of a call with these arguments, the first of which names the file.
-    pub(super) fn file_place(&mut self, first: Option<&'a Expr>, view: View, call: Span) -> Place {
+    pub(in crate::instance) fn file_place(&mut self, first: Option<&'a Expr>, view: View, call: Span) -> Place {
         let given = first.and_then(|e| match &e.kind {
             ExprKind::Reference(r) if r.parts.len() == 1 => {
                 let index = *self.scope(view.scope).template.by_name.get(&r.parts[0].name.name)?;
@@ -62,7 +62,7 @@ impl<'a> Instance<'a, '_> {
         Place { call, given }
     }
 
-    pub(super) fn call_file_function(
+    pub(in crate::instance) fn call_file_function(
         &mut self,
         function: FileFunction,
         callee: &Callee<'a>,
@@ -117,7 +117,7 @@ impl<'a> Instance<'a, '_> {
         text
     }
 
-    pub(super) fn table(&mut self, file: &str, name: &str, place: Place) -> Option<Rc<Matrix>> {
+    pub(in crate::instance) fn table(&mut self, file: &str, name: &str, place: Place) -> Option<Rc<Matrix>> {
         let id = match self.library.data(file) {
             Ok(id) => id,
             Err(why) => {

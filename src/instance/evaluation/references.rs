@@ -1,13 +1,13 @@
 //! Component references: `a.b[i].c` to the variables it means.
 
-use super::deduce::Body;
-use super::errors::{list_names, nearest, short};
-use super::evaluate::{Pick, QUANTITY, Work};
-use super::lookup::{Builtin, Found};
-use super::modifiers::Binding;
-use super::template::Kind;
-use super::value::Val;
-use super::{ElementState, Instance, Node, NodeId, ScopeId, View};
+use crate::instance::deduce::Body;
+use crate::instance::errors::{list_names, nearest, short};
+use crate::instance::expressions::{Pick, QUANTITY, Work};
+use crate::instance::lookup::{Builtin, Found};
+use crate::instance::modifiers::Binding;
+use crate::instance::template::Kind;
+use crate::instance::value::Val;
+use crate::instance::{ElementState, Instance, Node, NodeId, ScopeId, View};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::types::{Type, Variability};
 use crate::syntax::ast::{ClassKind, Expr, ExprKind, Reference, ReferencePart, Subscript};
@@ -32,14 +32,14 @@ pub struct Selection {
 
 impl<'a> Instance<'a, '_> {
     /// A loop variable or local of the function being evaluated.
-    pub(super) fn local(&self, name: Symbol) -> Option<usize> {
+    pub(in crate::instance) fn local(&self, name: Symbol) -> Option<usize> {
         let frame = self.eval.frame;
         let found = self.eval.locals[frame..].iter().rposition(|(n, _)| *n == name).map(|i| i + frame);
         found.filter(|i| !(self.eval.before && self.eval.section.contains(i)))
     }
 
     /// The value of a reference.
-    pub(super) fn reference(&mut self, r: &'a Reference, view: View) -> Option<Val> {
+    pub(in crate::instance) fn reference(&mut self, r: &'a Reference, view: View) -> Option<Val> {
         let first = &r.parts[0];
         if !r.global {
             if let Some(i) = self.local(first.name.name) {
@@ -82,7 +82,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// What counts along the dimensions with which a local of a function, or of an algorithm section, was declared.
-    pub(super) fn counted_by(&mut self, view: View, name: Symbol) -> Vec<Type> {
+    pub(in crate::instance) fn counted_by(&mut self, view: View, name: Symbol) -> Vec<Type> {
         let Some(Found::Component(scope, index)) = self.lookup(view, name) else { return Vec::new() };
         let template = self.scope(scope).template.clone();
         let element = &template.elements[index as usize];
@@ -96,7 +96,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// A field of a record, or of every record of an array.
-    pub(super) fn field(&mut self, value: &Val, name: Symbol, span: Span) -> Option<Val> {
+    pub(in crate::instance) fn field(&mut self, value: &Val, name: Symbol, span: Span) -> Option<Val> {
         match value {
             Val::Record(record) => match record.fields.iter().find(|(n, _)| *n == name) {
                 Some((_, v)) => Some(v.clone()),
@@ -120,7 +120,7 @@ impl<'a> Instance<'a, '_> {
     /// What the first part of a reference means, or a message.
     fn start(&mut self, r: &Reference, view: View) -> Option<Found<'a>> {
         let name = r.parts[0].name;
-        let found = if r.global { self.lookup(super::ROOT, name.name) } else { self.lookup(view, name.name) };
+        let found = if r.global { self.lookup(crate::instance::ROOT, name.name) } else { self.lookup(view, name.name) };
         if found.is_none() {
             let names = self.visible_names(view);
             self.unknown_name(name.name, name.span, &names);
@@ -163,7 +163,7 @@ impl<'a> Instance<'a, '_> {
         }
     }
 
-    pub(super) fn unknown_name(&mut self, name: Symbol, span: Span, names: &[Symbol]) {
+    pub(in crate::instance) fn unknown_name(&mut self, name: Symbol, span: Span, names: &[Symbol]) {
         let mut d = Diagnostic::new(Code::UnknownName, format!("there is no `{}` here", short(name.as_str())))
             .at(span, "not found");
         d = match nearest(name.as_str(), names.iter().map(|n| n.as_str())) {
@@ -239,12 +239,12 @@ impl<'a> Instance<'a, '_> {
 
     /// Sizes of what a reference to components of the model selects: they are known where the values are not. `None` where
     /// it is anything else.
-    pub(super) fn declared_dims(&mut self, e: &'a Expr, view: View) -> Option<Vec<usize>> {
+    pub(in crate::instance) fn declared_dims(&mut self, e: &'a Expr, view: View) -> Option<Vec<usize>> {
         let ExprKind::Reference(r) = &e.kind else { return None };
         if !self.eval.constant || !r.global && self.local(r.parts[0].name.name).is_some() {
             return None;
         }
-        let from = if r.global { super::ROOT } else { view };
+        let from = if r.global { crate::instance::ROOT } else { view };
         let Found::Component(scope, index) = self.lookup(from, r.parts[0].name.name)? else { return None };
         let node = self.component(scope, index)?;
         let mut at = self.selection(node);
@@ -261,7 +261,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// Sizes of an expression whose value may change, where its form tells them.
-    pub(super) fn shape(&mut self, e: &'a Expr, view: View) -> Option<Vec<usize>> {
+    pub(in crate::instance) fn shape(&mut self, e: &'a Expr, view: View) -> Option<Vec<usize>> {
         let before = std::mem::replace(&mut self.eval.constant, true);
         let found = self.shape_inside(e, view);
         self.eval.constant = before;
@@ -346,7 +346,7 @@ impl<'a> Instance<'a, '_> {
         Some(value)
     }
 
-    pub(super) fn subscript_selection(
+    pub(in crate::instance) fn subscript_selection(
         &mut self,
         at: &Selection,
         p: &'a ReferencePart,
@@ -371,7 +371,7 @@ impl<'a> Instance<'a, '_> {
             }
         }
         picks.extend(at.dims[picks.len()..].iter().map(|&n| Pick::Many((0..n).collect())));
-        let (dims, places) = super::evaluate::places(&at.dims, &picks);
+        let (dims, places) = crate::instance::expressions::places(&at.dims, &picks);
         let nodes = places.into_iter().map(|i| at.nodes[i]).collect();
         Some(Ok(Selection { dims, own: 0, by: Rc::from([]), nodes }))
     }
@@ -589,7 +589,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// The value of selected components.
-    pub(super) fn selection_value(&mut self, at: &Selection, span: Span) -> Option<Val> {
+    pub(in crate::instance) fn selection_value(&mut self, at: &Selection, span: Span) -> Option<Val> {
         let values: Option<Vec<Val>> = at.nodes.iter().map(|&n| self.node_value(n, span)).collect();
         let mut values = values?;
         if at.dims.is_empty() {
@@ -631,7 +631,7 @@ impl<'a> Instance<'a, '_> {
             }
         }
         let class = self.operator_class_of(&template);
-        Some(Val::Record(Rc::new(super::value::Record { fields, class })))
+        Some(Val::Record(Rc::new(crate::instance::value::Record { fields, class })))
     }
 
     /// The value of a scalar variable: itself, or its number where values count.
@@ -667,7 +667,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// The value of a constant or parameter.
-    pub(super) fn known_value(&mut self, i: u32, span: Span) -> Option<Val> {
+    pub(in crate::instance) fn known_value(&mut self, i: u32, span: Span) -> Option<Val> {
         let data = &mut self.variables[i as usize];
         if let Some(known) = &data.constant {
             return known.clone().ok();
@@ -837,7 +837,7 @@ impl<'a> Instance<'a, '_> {
         }
     }
 
-    pub(super) fn type_words(&self, ty: Type) -> String {
+    pub(in crate::instance) fn type_words(&self, ty: Type) -> String {
         match ty {
             Type::Enumeration(i) => format!("an enumeration `{}`", short(&self.enumerations[i as usize].name)),
             other => type_name(other).into(),
@@ -945,8 +945,8 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// The one component that a reference names.
-    pub(super) fn named_node(&mut self, r: &'a Reference, view: View) -> Option<NodeId> {
-        let from = if r.global { super::ROOT } else { view };
+    pub(in crate::instance) fn named_node(&mut self, r: &'a Reference, view: View) -> Option<NodeId> {
+        let from = if r.global { crate::instance::ROOT } else { view };
         let Found::Component(scope, index) = self.lookup(from, r.parts[0].name.name)? else { return None };
         let mut node = self.component(scope, index)?;
         for (i, part) in r.parts.iter().enumerate() {
@@ -1051,7 +1051,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// Calls a function for what it asserts.
-    pub fn call_keeping_assertions(&mut self, call: &'a Expr, view: View) -> Vec<super::algorithm::AlgorithmCall> {
+    pub fn call_keeping_assertions(&mut self, call: &'a Expr, view: View) -> Vec<crate::instance::algorithm::AlgorithmCall> {
         let before = std::mem::replace(&mut self.eval.keep_asserts, true);
         self.eval.calls.clear();
         self.eval_all(call, view);
@@ -1066,12 +1066,12 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// What must hold besides equations, and `terminate`s, met outside `when` since the last call.
-    pub fn take_calls(&mut self) -> Vec<super::algorithm::AlgorithmCall> {
+    pub fn take_calls(&mut self) -> Vec<crate::instance::algorithm::AlgorithmCall> {
         std::mem::take(&mut self.eval.calls)
     }
 
     /// The `when`s met since the last call.
-    pub fn take_whens(&mut self) -> Vec<super::algorithm::AlgorithmWhen> {
+    pub fn take_whens(&mut self) -> Vec<crate::instance::algorithm::AlgorithmWhen> {
         std::mem::take(&mut self.eval.whens)
     }
 }

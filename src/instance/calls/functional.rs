@@ -1,16 +1,16 @@
 //! Functions as arguments of functions (MLS 12.4.2).
 
-use super::call::Formal;
-use super::lookup::Found;
-use super::value::Val;
-use super::{ClassRef, Instance, View};
+use crate::instance::call::Formal;
+use crate::instance::lookup::Found;
+use crate::instance::value::Val;
+use crate::instance::{ClassRef, Instance, View};
 use crate::diag::Code;
 use crate::syntax::ast::{ClassKind, Expr, Ident, Path, Reference};
 use std::rc::Rc;
 
 impl<'a> Instance<'a, '_> {
     /// A function as a value; `None` for other classes.
-    pub(super) fn function_value(&mut self, class: &ClassRef<'a>, bound: Vec<(Ident, Val)>) -> Option<Val> {
+    pub(in crate::instance) fn function_value(&mut self, class: &ClassRef<'a>, bound: Vec<(Ident, Val)>) -> Option<Val> {
         let template = self.template(class.class, class.parent);
         if !matches!(template.kind, ClassKind::Function { .. }) {
             return None;
@@ -27,7 +27,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// `function f(a = 1)`: a function some of whose inputs are given.
-    pub(super) fn partial_application(
+    pub(in crate::instance) fn partial_application(
         &mut self,
         function: &'a Path,
         named: &'a [(Ident, Expr)],
@@ -53,7 +53,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// The function that an input of the function being carried out stands for.
-    pub(super) fn functional_input(&self, function: &Reference) -> Option<(ClassRef<'a>, Rc<Vec<(Ident, Val)>>)> {
+    pub(in crate::instance) fn functional_input(&self, function: &Reference) -> Option<(ClassRef<'a>, Rc<Vec<(Ident, Val)>>)> {
         let [part] = function.parts.as_slice() else { return None };
         match &self.eval.locals[self.local(part.name.name)?].1 {
             Val::Function(f, bound) => Some((self.functions[*f as usize].clone(), bound.clone())),
@@ -62,7 +62,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// Whether an input takes a function.
-    pub(super) fn is_functional(&mut self, f: &Formal<'a>) -> bool {
+    pub(in crate::instance) fn is_functional(&mut self, f: &Formal<'a>) -> bool {
         match self.lookup_path(f.view, &f.component.class) {
             Ok(Found::Class(c)) => matches!(self.template(c.class, c.parent).kind, ClassKind::Function { .. }),
             _ => false,

@@ -1,11 +1,11 @@
 //! Statements carried out on symbolic values: what an algorithm computes, as expressions.
 
-use super::deduce::Body;
-use super::evaluate::{Pick, places};
-use super::lookup::Found;
-use super::template::Kind;
-use super::value::{Val, size_text};
-use super::{Instance, View};
+use crate::instance::deduce::Body;
+use crate::instance::expressions::{Pick, places};
+use crate::instance::lookup::Found;
+use crate::instance::template::Kind;
+use crate::instance::value::{Val, size_text};
+use crate::instance::{Instance, View};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::expr::{ExprId, Exprs, Rel};
 use crate::types::{Type, Variability};
@@ -172,7 +172,7 @@ impl<'a> Instance<'a, '_> {
         }
     }
 
-    pub(super) fn assign_tuple(
+    pub(in crate::instance) fn assign_tuple(
         &mut self,
         targets: &'a [Option<Expr>],
         value: Val,
@@ -221,12 +221,12 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// Whether a variable of a function is declared with a size that its value brings, as `Real x[:]`.
-    pub(super) fn is_flexible(&mut self, view: View, name: Symbol) -> bool {
+    pub(in crate::instance) fn is_flexible(&mut self, view: View, name: Symbol) -> bool {
         self.declaration(view, name).is_some_and(|c| c.subscripts.iter().any(|s| matches!(s, Subscript::All(_))))
     }
 
     /// The declaration of a variable of a function.
-    pub(super) fn declaration(&mut self, view: View, name: Symbol) -> Option<&'a Component> {
+    pub(in crate::instance) fn declaration(&mut self, view: View, name: Symbol) -> Option<&'a Component> {
         let Some(Found::Component(scope, index)) = self.lookup(view, name) else { return None };
         match self.scope(scope).template.elements[index as usize].kind {
             Kind::Component(c) => Some(c),
@@ -302,7 +302,7 @@ impl<'a> Instance<'a, '_> {
             return None;
         };
         fields[i].1 = self.replaced(&fields[i].1.clone(), r, part, value, view, span)?;
-        Some(Val::Record(Rc::new(super::value::Record { fields, class: record.class })))
+        Some(Val::Record(Rc::new(crate::instance::value::Record { fields, class: record.class })))
     }
 
     /// What the subscripts of a target pick, all dimensions of the array included.
@@ -428,7 +428,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// Leaves what must hold, or a `terminate`, to the flat model.
-    pub(super) fn keep_call(
+    pub(in crate::instance) fn keep_call(
         &mut self,
         condition: Option<ExprId>,
         message: Option<Val>,
@@ -493,7 +493,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// Runs statements that are reached under a condition only.
-    pub(super) fn guarded<T>(&mut self, guard: ExprId, f: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
+    pub(in crate::instance) fn guarded<T>(&mut self, guard: ExprId, f: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
         self.eval.guards.push(guard);
         let done = f(self);
         self.eval.guards.pop();
@@ -662,7 +662,7 @@ pub fn assigned<'a>(
 }
 
 /// Whether two values hold the same expressions.
-pub(super) fn same(a: &Val, b: &Val) -> bool {
+pub(in crate::instance) fn same(a: &Val, b: &Val) -> bool {
     let (mut x, mut y) = (Vec::new(), Vec::new());
     a.scalars(&mut x);
     b.scalars(&mut y);

@@ -1,10 +1,10 @@
 //! Expressions of the language to values: symbolic in the flat model, by number where a value must be known.
 
-use super::deduce::Body;
-use super::errors::short;
-use super::modifiers::{Access, Binding};
-use super::value::{Val, size_text, stack, wider};
-use super::{Instance, View};
+use crate::instance::deduce::Body;
+use crate::instance::errors::short;
+use crate::instance::modifiers::{Access, Binding};
+use crate::instance::value::{Val, size_text, stack, wider};
+use crate::instance::{Instance, View};
 use crate::diag::{Code, Diagnostic, FileId, Span};
 use crate::expr::{Binary, ExprId, Exprs, Rel};
 use crate::types::{MessagePart, Type, Variability};
@@ -39,13 +39,13 @@ pub struct State {
     /// Statements carried out, to end what never ends.
     pub work: Work,
     /// `when`s met in an algorithm section of the model.
-    pub whens: Vec<super::algorithm::AlgorithmWhen>,
+    pub whens: Vec<crate::instance::algorithm::AlgorithmWhen>,
     /// `assert`s and `terminate`s met there since the section, or the branch of a `when`, began.
-    pub calls: Vec<super::algorithm::AlgorithmCall>,
+    pub calls: Vec<crate::instance::algorithm::AlgorithmCall>,
     /// Conditions of the `if`s around the present statement of such a section.
     pub guards: Vec<ExprId>,
     /// The procedure being translated.
-    pub(super) translation: super::procedure::Translation,
+    pub(in crate::instance) translation: crate::instance::procedure::Translation,
     /// The variables of the algorithm section being carried out, among the locals.
     pub section: std::ops::Range<usize>,
     /// Inside `pre`: variables of the section mean themselves, not what the section has made of them.
@@ -202,7 +202,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// A dimension: a whole number that must be known, or a type whose values count.
-    pub(super) fn extent(&mut self, e: &'a Expr, view: View) -> Option<Extent> {
+    pub(in crate::instance) fn extent(&mut self, e: &'a Expr, view: View) -> Option<Extent> {
         if let Some(values) = self.enumeration_range(e, view) {
             let by = values.first().and_then(Val::element_type)?;
             return Some(Extent { size: values.len(), by });
@@ -211,7 +211,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// A size that must be known.
-    pub(super) fn dimension(&mut self, e: &'a Expr, view: View) -> Option<usize> {
+    pub(in crate::instance) fn dimension(&mut self, e: &'a Expr, view: View) -> Option<usize> {
         let value = self.constant(e, view)?;
         match (value.scalar(), value.as_number(&self.exprs)) {
             (Some((_, Type::Integer)), Some(x)) if (0.0..1e9).contains(&x) => Some(x as usize),
@@ -225,16 +225,16 @@ impl<'a> Instance<'a, '_> {
         }
     }
 
-    pub(super) fn integer(&mut self, x: f64) -> Val {
+    pub(in crate::instance) fn integer(&mut self, x: f64) -> Val {
         Val::Scalar(self.exprs.num(x), Type::Integer)
     }
 
-    pub(super) fn fail<T>(&mut self, code: Code, message: &str, span: Span) -> Option<T> {
+    pub(in crate::instance) fn fail<T>(&mut self, code: Code, message: &str, span: Span) -> Option<T> {
         self.report(Diagnostic::new(code, message).at(span, ""));
         None
     }
 
-    pub(super) fn wrong_type<T>(&mut self, wanted: &str, got: &Val, span: Span) -> Option<T> {
+    pub(in crate::instance) fn wrong_type<T>(&mut self, wanted: &str, got: &Val, span: Span) -> Option<T> {
         let message = format!("{wanted} is needed here, and this is {}", got.describe());
         self.fail(Code::TypeMismatch, &message, span)
     }
@@ -309,7 +309,7 @@ impl<'a> Instance<'a, '_> {
         );
     }
 
-    pub(super) fn stacked(&mut self, values: Vec<Val>, span: Span) -> Option<Val> {
+    pub(in crate::instance) fn stacked(&mut self, values: Vec<Val>, span: Span) -> Option<Val> {
         let shapes: Vec<String> = values.iter().map(Val::describe).collect();
         match stack(values) {
             Some(v) => Some(v),
@@ -331,7 +331,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// `cat(k, ...)`
-    pub(super) fn concatenate(&mut self, along: usize, values: Vec<Val>, span: Span) -> Option<Val> {
+    pub(in crate::instance) fn concatenate(&mut self, along: usize, values: Vec<Val>, span: Span) -> Option<Val> {
         let Some(first) = values.first() else { return Some(Val::array(vec![0], Vec::new())) };
         let mut dims = first.dims().to_vec();
         if along == 0 || along > dims.len() {
@@ -376,7 +376,7 @@ impl<'a> Instance<'a, '_> {
         }
     }
 
-    pub(super) fn binary(&mut self, op: BinaryOp, a: Val, b: Val, span: Span) -> Option<Val> {
+    pub(in crate::instance) fn binary(&mut self, op: BinaryOp, a: Val, b: Val, span: Span) -> Option<Val> {
         use BinaryOp as B;
         if let Some(result) = self.overloaded_binary(op, &a, &b, span) {
             return result;
@@ -429,7 +429,7 @@ impl<'a> Instance<'a, '_> {
         Some(Val::Scalar(self.exprs.boolean(truth), Type::Boolean))
     }
 
-    pub(super) fn sizes_differ<T>(&mut self, a: &Val, b: &Val, span: Span) -> Option<T> {
+    pub(in crate::instance) fn sizes_differ<T>(&mut self, a: &Val, b: &Val, span: Span) -> Option<T> {
         let message = format!("the two sides do not fit: {} and {}", a.describe(), b.describe());
         let code = if a.dims() == b.dims() { Code::TypeMismatch } else { Code::SizeMismatch };
         self.fail(code, &message, span)
@@ -523,7 +523,7 @@ impl<'a> Instance<'a, '_> {
         Some(result)
     }
 
-    pub(super) fn identity(&mut self, n: usize) -> Val {
+    pub(in crate::instance) fn identity(&mut self, n: usize) -> Val {
         let elements = (0..n * n).map(|i| if i % (n + 1) == 0 { Exprs::ONE } else { Exprs::ZERO });
         Val::array(vec![n, n], elements.map(|e| Val::Scalar(e, Type::Integer)).collect())
     }
@@ -650,7 +650,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// A number that must be known, with its type; in functions it may depend on inputs that are known.
-    pub(super) fn known_number(&mut self, e: &'a Expr, view: View) -> Option<(f64, Type)> {
+    pub(in crate::instance) fn known_number(&mut self, e: &'a Expr, view: View) -> Option<(f64, Type)> {
         let value =
             if self.eval.procedure || self.eval.frame > 0 { self.eval(e, view) } else { self.constant(e, view) };
         let value = value?;
@@ -672,8 +672,8 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// The literals when a range is an enumeration type or `Boolean`.
-    pub(super) fn enumeration_range(&mut self, e: &'a Expr, view: View) -> Option<Vec<Val>> {
-        use super::lookup::{Builtin, Found};
+    pub(in crate::instance) fn enumeration_range(&mut self, e: &'a Expr, view: View) -> Option<Vec<Val>> {
+        use crate::instance::lookup::{Builtin, Found};
         let ExprKind::Reference(r) = &e.kind else { return None };
         if r.parts.iter().any(|p| !p.subscripts.is_empty()) {
             return None;
@@ -702,7 +702,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// The values a loop variable takes.
-    pub(super) fn iterate(
+    pub(in crate::instance) fn iterate(
         &mut self,
         iterator: &'a crate::syntax::ast::Iterator,
         body: Body<'a>,
@@ -812,12 +812,12 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// Applies subscripts to a value.
-    pub(super) fn subscript(&mut self, value: Val, subscripts: &'a [Subscript], view: View, span: Span) -> Option<Val> {
+    pub(in crate::instance) fn subscript(&mut self, value: Val, subscripts: &'a [Subscript], view: View, span: Span) -> Option<Val> {
         self.subscript_by(value, subscripts, &[], view, span)
     }
 
     /// Applies subscripts to the value of an array of which is known what counts along its dimensions.
-    pub(super) fn subscript_by(
+    pub(in crate::instance) fn subscript_by(
         &mut self,
         value: Val,
         subscripts: &'a [Subscript],
@@ -848,7 +848,7 @@ impl<'a> Instance<'a, '_> {
 
     /// One subscript: a known place, several, or one only known at run time. What counts along the dimension is not
     /// known of an array that was computed.
-    pub(super) fn index(
+    pub(in crate::instance) fn index(
         &mut self,
         s: &'a Subscript,
         (size, by): (usize, Option<Type>),
@@ -990,7 +990,7 @@ impl<'a> Instance<'a, '_> {
 
 /// One dimension of an array.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Extent {
+pub(in crate::instance) struct Extent {
     /// How many elements.
     pub size: usize,
     /// What counts: Integers, truth values or the literals of an enumeration.
@@ -1009,7 +1009,7 @@ pub enum Pick {
 }
 
 /// Picks elements by known places.
-pub(super) fn pick(dims: &[usize], elements: &[Val], picks: &[Pick]) -> Val {
+pub(in crate::instance) fn pick(dims: &[usize], elements: &[Val], picks: &[Pick]) -> Val {
     let (kept, places) = places(dims, picks);
     if kept.is_empty() {
         return elements[places[0]].clone();
@@ -1018,7 +1018,7 @@ pub(super) fn pick(dims: &[usize], elements: &[Val], picks: &[Pick]) -> Val {
 }
 
 /// The row-major places of what is picked, and the sizes that stay.
-pub(super) fn places(dims: &[usize], picks: &[Pick]) -> (Vec<usize>, Vec<usize>) {
+pub(in crate::instance) fn places(dims: &[usize], picks: &[Pick]) -> (Vec<usize>, Vec<usize>) {
     let mut places = vec![0usize];
     let mut kept = Vec::new();
     for (p, &d) in picks.iter().zip(dims) {
@@ -1057,7 +1057,7 @@ fn scalar_op(op: BinaryOp) -> Binary {
 
 impl Val {
     /// Numbers of the wider of their own and the given type.
-    pub(super) fn with_type(&self, ty: Type) -> Val {
+    pub(in crate::instance) fn with_type(&self, ty: Type) -> Val {
         match self {
             Val::Scalar(e, own) => Val::Scalar(*e, wider(*own, ty).unwrap_or(*own)),
             Val::Array { dims, elements } => {

@@ -1,7 +1,7 @@
 //! What a class holds, inherited elements included: gathered once per class, shared by all its instances.
 
-use super::lookup::{Builtin, Found};
-use super::{ClassRef, Instance, View};
+use crate::instance::lookup::{Builtin, Found};
+use crate::instance::{ClassRef, Instance, View};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::resolve::ClassId;
 use crate::syntax::ast::{self, ArgumentKind, ClassBody, ElementKind};
@@ -62,7 +62,7 @@ impl Template<'_> {
     }
 
     /// Whether a class holds what a package holds: classes and constants. Other kinds than models are never used as one.
-    pub(super) fn is_package(&self) -> bool {
+    pub(in crate::instance) fn is_package(&self) -> bool {
         let model = matches!(self.kind, ast::ClassKind::Model | ast::ClassKind::Block | ast::ClassKind::Class);
         let constant = |e: &Element<'_>| match e.kind {
             Kind::Component(c) => c.prefix.variability == Some(ast::Variability::Constant),
@@ -74,7 +74,7 @@ impl Template<'_> {
 
 impl<'a> Base<'a> {
     /// A class before its elements are known.
-    pub(super) fn of(class: ClassId, ast: &'a ast::Class, parent: View) -> Self {
+    pub(in crate::instance) fn of(class: ClassId, ast: &'a ast::Class, parent: View) -> Self {
         Base {
             class,
             ast,

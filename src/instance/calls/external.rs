@@ -1,10 +1,10 @@
 //! Calls of external functions: those that [`crate::external`] knows by their C names are carried out, with the arguments
 //! of the C call in its order.
 
-use super::Instance;
-use super::call::Callee;
-use super::files::Place;
-use super::value::Val;
+use crate::instance::Instance;
+use crate::instance::call::Callee;
+use crate::instance::files::Place;
+use crate::instance::value::Val;
 use crate::diag::Code;
 use crate::expr::ExprId;
 use crate::expr::function::{External, Function, Handle, Stmt, Term};
@@ -109,7 +109,7 @@ fn is_name(text: &str) -> bool {
 
 impl<'a> Instance<'a, '_> {
     /// How an external function is carried out, if it is known.
-    pub(super) fn external_builtin_of(&self, callee: &Callee<'a>) -> Option<Builtin> {
+    pub(in crate::instance) fn external_builtin_of(&self, callee: &Callee<'a>) -> Option<Builtin> {
         crate::external::builtin(&self.c_call(callee)?.name)
     }
 
@@ -121,7 +121,7 @@ impl<'a> Instance<'a, '_> {
         CCall::parse(bodies.next()?)
     }
 
-    pub(super) fn call_external(
+    pub(in crate::instance) fn call_external(
         &mut self,
         how: Builtin,
         callee: &Callee<'a>,
@@ -183,9 +183,9 @@ impl<'a> Instance<'a, '_> {
     /// The values with which outputs and protected variables go into the call, where they are declared with one.
     fn prepare_locals(&mut self, callee: &Callee<'a>) -> Option<()> {
         let formals = self.formals(callee, |c, p| {
-            !super::call::is_input(c, p) && c.modification.as_ref().is_some_and(|m| m.value.is_some())
+            !crate::instance::call::is_input(c, p) && c.modification.as_ref().is_some_and(|m| m.value.is_some())
         });
-        for f in super::call::in_order_of_use(&formals) {
+        for f in crate::instance::call::in_order_of_use(&formals) {
             let value = self.declared_local(f)?;
             self.eval.locals.push((f.name, value));
         }
@@ -281,7 +281,7 @@ impl<'a> Instance<'a, '_> {
         for (name, blank) in blanks {
             filled.push((name, blank.map(&mut |e, _| results.next().unwrap_or(e))));
         }
-        let output = |f: &super::call::Formal<'a>| filled.iter().find(|(n, _)| *n == f.name).map(|(_, v)| v.clone());
+        let output = |f: &crate::instance::call::Formal<'a>| filled.iter().find(|(n, _)| *n == f.name).map(|(_, v)| v.clone());
         let outputs: Option<Vec<Val>> = formals.iter().map(output).collect();
         Self::outputs(outputs?)
     }
@@ -315,14 +315,14 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// The constructor of an external object, called by the name of its class (MLS 12.9.7).
-    pub(super) fn construct_object(
+    pub(in crate::instance) fn construct_object(
         &mut self,
-        class: &super::ClassRef<'a>,
-        given: super::vectorised::Given,
+        class: &crate::instance::ClassRef<'a>,
+        given: crate::instance::vectorised::Given,
         place: Place,
     ) -> Option<Val> {
-        let constructor = match self.member(&super::lookup::Found::Class(class.clone()), Symbol::new("constructor")) {
-            Some(super::lookup::Found::Class(c)) => c,
+        let constructor = match self.member(&crate::instance::lookup::Found::Class(class.clone()), Symbol::new("constructor")) {
+            Some(crate::instance::lookup::Found::Class(c)) => c,
             _ => {
                 let message = format!("`{}` has no `constructor`", self.library.full_name(class.class));
                 return self.fail(Code::BadCall, &message, place.call);

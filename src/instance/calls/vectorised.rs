@@ -1,16 +1,16 @@
 //! Functions of single values called with arrays: one call for each element (MLS 12.4.6).
 
-use super::Instance;
-use super::call::{Callee, Formal, is_input};
-use super::lookup::Found;
-use super::value::{Val, stack};
+use crate::instance::Instance;
+use crate::instance::call::{Callee, Formal, is_input};
+use crate::instance::lookup::Found;
+use crate::instance::value::{Val, stack};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::syntax::ast::Ident;
 use std::rc::Rc;
 
 /// The arguments of a call.
 #[derive(Clone)]
-pub(super) struct Given {
+pub(in crate::instance) struct Given {
     /// By place.
     pub positional: Vec<Val>,
     /// By name.
@@ -19,7 +19,7 @@ pub(super) struct Given {
 
 impl<'a> Instance<'a, '_> {
     /// Calls a function, element by element where arguments have more dimensions than their inputs.
-    pub(super) fn call_elementwise(&mut self, callee: &Callee<'a>, given: Given, span: Span) -> Option<Val> {
+    pub(in crate::instance) fn call_elementwise(&mut self, callee: &Callee<'a>, given: Given, span: Span) -> Option<Val> {
         let mut values = given.positional.iter().chain(given.named.iter().map(|(_, v)| v));
         if values.all(|v| v.dims().is_empty()) {
             return self.call_function(callee, given.positional, given.named, span);
@@ -69,9 +69,9 @@ impl<'a> Instance<'a, '_> {
                         "`{}` is called for each element of its arguments, and these differ in size: {} for `{}`, {} \
                          for `{}`",
                         callee.name,
-                        super::value::size_text(dims),
+                        crate::instance::value::size_text(dims),
                         first.name,
-                        super::value::size_text(own),
+                        crate::instance::value::size_text(own),
                         f.name
                     );
                     let d = Diagnostic::new(Code::SizeMismatch, message).at(span, "this call");

@@ -1,12 +1,12 @@
 //! Overconstrained connectors (MLS 9.4): types whose values depend on each other, such as an orientation, and that say by a
 //! function `equalityConstraint` when two of them are equal. `network` finds out which connections need it.
 
-use super::algorithm::AlgorithmCall;
-use super::call::Callee;
-use super::lookup::Found;
-use super::template::{Kind, Template};
-use super::value::Val;
-use super::{ClassRef, ElementState, Instance, Node, NodeId, View};
+use crate::instance::algorithm::AlgorithmCall;
+use crate::instance::call::Callee;
+use crate::instance::lookup::Found;
+use crate::instance::template::{Kind, Template};
+use crate::instance::value::Val;
+use crate::instance::{ClassRef, ElementState, Instance, Node, NodeId, View};
 use crate::diag::{Code, Span};
 use crate::expr::{ExprId, Exprs};
 use crate::types::Type;
@@ -52,7 +52,7 @@ impl Default for Overconstrained<'_> {
 
 impl<'a> Instance<'a, '_> {
     /// Remembers a component of a type with a constraint, or all of an array of such records.
-    pub(super) fn note_constraints(&mut self, node: NodeId, one: bool, found: &Found<'a>, template: &Template<'a>) {
+    pub(in crate::instance) fn note_constraints(&mut self, node: NodeId, one: bool, found: &Found<'a>, template: &Template<'a>) {
         let at = template.by_name.get(&self.overconstrained.name);
         if !at.is_some_and(|&i| matches!(template.elements[i as usize].kind, Kind::Class(_))) {
             return;
@@ -156,7 +156,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// `Connections.isRoot(R)` and `Connections.rooted(R)`.
-    pub(super) fn connection_query(&mut self, name: &str, args: &'a [Expr], view: View, span: Span) -> Option<Val> {
+    pub(in crate::instance) fn connection_query(&mut self, name: &str, args: &'a [Expr], view: View, span: Span) -> Option<Val> {
         let [arg] = args else {
             return self.fail(Code::BadCall, &format!("`{name}` takes one overconstrained component"), span);
         };

@@ -1,13 +1,13 @@
 //! Calls: built-in functions, record constructors, user functions (written out as expressions where that is possible).
 
-use super::builtin::retyped;
-use super::evaluate::Work;
-use super::files::Place;
-use super::lookup::{Builtin, Found};
-use super::template::{Kind, Template};
-use super::value::{Val, size_text};
-use super::vectorised::Given;
-use super::{ClassRef, Instance, ScopeId, View};
+use crate::instance::builtin::retyped;
+use crate::instance::expressions::Work;
+use crate::instance::files::Place;
+use crate::instance::lookup::{Builtin, Found};
+use crate::instance::template::{Kind, Template};
+use crate::instance::value::{Val, size_text};
+use crate::instance::vectorised::Given;
+use crate::instance::{ClassRef, Instance, ScopeId, View};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::expr::{ExprId, Exprs};
 use crate::types::{Type, Variability};
@@ -25,14 +25,14 @@ const MOST_KNOWN_STEPS: usize = 2_000_000;
 const DEEPEST_KNOWN: usize = 150;
 
 /// A function ready to be called.
-pub(super) struct Callee<'a> {
+pub(in crate::instance) struct Callee<'a> {
     pub scope: ScopeId,
     pub template: Rc<Template<'a>>,
     pub name: String,
 }
 
 /// One declared input, output or local of a function.
-pub(super) struct Formal<'a> {
+pub(in crate::instance) struct Formal<'a> {
     pub name: Symbol,
     pub component: &'a ast::Component,
     pub index: u32,
@@ -40,7 +40,7 @@ pub(super) struct Formal<'a> {
 }
 
 impl<'a> Instance<'a, '_> {
-    pub(super) fn call(
+    pub(in crate::instance) fn call(
         &mut self,
         function: &'a Reference,
         args: &'a [Expr],
@@ -111,7 +111,7 @@ impl<'a> Instance<'a, '_> {
         let mut node = self.component(scope, index)?;
         let (last, middle) = function.parts[1..].split_last()?;
         for (k, part) in middle.iter().enumerate() {
-            let super::Node::Object(s) = *self.node(node) else { return None };
+            let crate::instance::Node::Object(s) = *self.node(node) else { return None };
             let &i = self.scope(s).template.by_name.get(&part.name.name)?;
             if matches!(self.scope(s).template.elements[i as usize].kind, Kind::Class(_)) {
                 let mut found = self.lookup(View { scope: s, base: 0 }, part.name.name)?;
@@ -123,7 +123,7 @@ impl<'a> Instance<'a, '_> {
             }
             node = self.component(s, i)?;
         }
-        let super::Node::Object(s) = *self.node(node) else { return None };
+        let crate::instance::Node::Object(s) = *self.node(node) else { return None };
         match self.lookup(View { scope: s, base: 0 }, last.name.name)? {
             Found::Class(class) => Some(class),
             _ => None,
@@ -228,7 +228,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// Components of a function or record that pass a test.
-    pub(super) fn formals(
+    pub(in crate::instance) fn formals(
         &self,
         callee: &Callee<'a>,
         wanted: impl Fn(&ast::Component, bool) -> bool,
@@ -268,23 +268,23 @@ impl<'a> Instance<'a, '_> {
         let fields: Option<Vec<_>> = fields.into_iter().map(|(n, v)| Some((n, v?))).collect();
         let fields = fields?;
         let class = self.operator_class_of(&callee.template);
-        Some(Val::Record(Rc::new(super::value::Record { fields, class })))
+        Some(Val::Record(Rc::new(crate::instance::value::Record { fields, class })))
     }
 
-    pub(super) fn enter_frame(&mut self) -> (usize, usize, bool) {
+    pub(in crate::instance) fn enter_frame(&mut self) -> (usize, usize, bool) {
         let before = (self.eval.frame, self.eval.locals.len(), self.eval.no_event);
         self.eval.frame = self.eval.locals.len();
         self.eval.no_event = true;
         before
     }
 
-    pub(super) fn leave_frame(&mut self, before: (usize, usize, bool)) {
+    pub(in crate::instance) fn leave_frame(&mut self, before: (usize, usize, bool)) {
         self.eval.locals.truncate(before.1);
         (self.eval.frame, _, self.eval.no_event) = before;
     }
 
     /// Does something in a frame of its own, with the arguments of a call bound to the inputs of its function.
-    pub(super) fn with_inputs<T>(
+    pub(in crate::instance) fn with_inputs<T>(
         &mut self,
         callee: &Callee<'a>,
         positional: Vec<Val>,
@@ -300,7 +300,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// Binds arguments to inputs in a fresh frame; defaults may use inputs before them.
-    pub(super) fn bind(
+    pub(in crate::instance) fn bind(
         &mut self,
         callee: &Callee<'a>,
         formals: &[Formal<'a>],
@@ -317,9 +317,9 @@ impl<'a> Instance<'a, '_> {
             let names: Vec<Symbol> = formals.iter().map(|f| f.name).collect();
             let mut d = Diagnostic::new(Code::BadCall, format!("`{}` has no input `{}`", callee.name, name.name))
                 .at(name.span, "not an input");
-            d = match super::errors::nearest(name.name.as_str(), names.iter().map(|n| n.as_str())) {
+            d = match crate::instance::errors::nearest(name.name.as_str(), names.iter().map(|n| n.as_str())) {
                 Some(near) => d.help(format!("did you mean `{near}`?")),
-                None => d.help(super::errors::list_names("it takes", &names)),
+                None => d.help(crate::instance::errors::list_names("it takes", &names)),
             };
             self.report(d);
             return None;
@@ -418,7 +418,7 @@ impl<'a> Instance<'a, '_> {
                 "input `{}` of `{}` is of type {}, and this is {}",
                 f.name,
                 callee.name,
-                super::errors::builtin_name(b),
+                crate::instance::errors::builtin_name(b),
                 value.describe()
             );
             return self.fail(Code::BadCall, &message, span);
@@ -460,7 +460,7 @@ impl<'a> Instance<'a, '_> {
         Some(value)
     }
 
-    pub(super) fn call_function(
+    pub(in crate::instance) fn call_function(
         &mut self,
         callee: &Callee<'a>,
         positional: Vec<Val>,
@@ -561,7 +561,7 @@ impl<'a> Instance<'a, '_> {
                 wrong = Some(d.help("write `algorithm` and `:=`"));
             }
             let (mut targets, mut in_when) = (Vec::new(), Vec::new());
-            body.algorithms.iter().for_each(|s| super::algorithm::assigned(s, false, &mut targets, &mut in_when));
+            body.algorithms.iter().for_each(|s| crate::instance::algorithm::assigned(s, false, &mut targets, &mut in_when));
             if let Some(part) = targets.iter().find(|p| inputs.iter().any(|f| f.name == p.name.name)) {
                 let message =
                     format!("`{}` is an input of `{}` and cannot be assigned to", part.name.name, callee.name);
@@ -626,7 +626,7 @@ impl<'a> Instance<'a, '_> {
             let ast::ClassBody::Long(body) = &base.ast.body else { continue };
             let view = View { scope: callee.scope, base: u32::try_from(i).expect("few bases") };
             for section in &body.algorithms {
-                if self.execute(section, view)? == super::algorithm::Flow::Return {
+                if self.execute(section, view)? == crate::instance::algorithm::Flow::Return {
                     break;
                 }
             }
@@ -639,7 +639,7 @@ impl<'a> Instance<'a, '_> {
         Self::outputs(outputs)
     }
 
-    pub(super) fn outputs(mut outputs: Vec<Val>) -> Option<Val> {
+    pub(in crate::instance) fn outputs(mut outputs: Vec<Val>) -> Option<Val> {
         match outputs.len() {
             1 => outputs.pop(),
             _ => Some(Val::Tuple(Rc::new(outputs))),
@@ -647,7 +647,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// The initial value of an output or protected component of a function; zero where nothing is said.
-    pub(super) fn declared_local(&mut self, f: &Formal<'a>) -> Option<Val> {
+    pub(in crate::instance) fn declared_local(&mut self, f: &Formal<'a>) -> Option<Val> {
         let reached = self.reached(f.view.scope, f.index);
         let value = match reached.binding {
             Some(b) if b.access.is_empty() => Some(self.eval(b.expr, b.view)?),
@@ -726,7 +726,7 @@ impl<'a> Instance<'a, '_> {
                     fields.push((f.name, value));
                 }
                 let class = self.operator_class(c);
-                let one = Val::Record(Rc::new(super::value::Record { fields, class }));
+                let one = Val::Record(Rc::new(crate::instance::value::Record { fields, class }));
                 Some(repeated(&one, dims))
             }
             Found::Component(..) => self.fail(Code::WrongClassKind, "a type is needed here", span),
@@ -750,8 +750,8 @@ impl<'a> Instance<'a, '_> {
 }
 
 /// Locals so that each comes after those that its sizes and its value name (MLS 12.4.4).
-pub(super) fn in_order_of_use<'f, 'a>(locals: &'f [Formal<'a>]) -> Vec<&'f Formal<'a>> {
-    let named: Vec<Vec<Symbol>> = locals.iter().map(|f| super::deduce::names_of_declaration(f.component)).collect();
+pub(in crate::instance) fn in_order_of_use<'f, 'a>(locals: &'f [Formal<'a>]) -> Vec<&'f Formal<'a>> {
+    let named: Vec<Vec<Symbol>> = locals.iter().map(|f| crate::instance::deduce::names_of_declaration(f.component)).collect();
     let mut sorted: Vec<&Formal<'a>> = Vec::with_capacity(locals.len());
     let mut open: Vec<usize> = (0..locals.len()).collect();
     while !open.is_empty() {
@@ -802,7 +802,7 @@ fn declared_number(component: &ast::Component, attribute: &str) -> Option<f64> {
     value?.as_number()
 }
 
-pub(super) fn is_input(c: &ast::Component, protected: bool) -> bool {
+pub(in crate::instance) fn is_input(c: &ast::Component, protected: bool) -> bool {
     !protected && c.prefix.causality == Some(Causality::Input)
 }
 

@@ -1,8 +1,8 @@
 //! What a class may hold and extend by its kind, and what may stand where in it (MLS 4.6, 7.1.3, 11): read off the text of
 //! each class once, when it is first used.
 
-use super::Instance;
-use super::lookup::Builtin;
+use crate::instance::Instance;
+use crate::instance::lookup::Builtin;
 use crate::diag::{Code, Diagnostic, Span};
 use crate::resolve::ClassId;
 use crate::syntax::ast::{
@@ -25,7 +25,7 @@ fn breach(what: impl Into<String>, at: Span, label: impl Into<String>, rule: &'s
 
 impl<'a> Instance<'a, '_> {
     /// Refuses what the kind of a class does not allow in it.
-    pub(super) fn check_class(&mut self, class: ClassId) {
+    pub(in crate::instance) fn check_class(&mut self, class: ClassId) {
         if !self.classes_checked.insert(class) {
             return;
         }
@@ -67,7 +67,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// A class of one kind may extend only some others (MLS 7.1.3).
-    pub(super) fn check_base(&mut self, class: ClassId, base: ClassId, at: Span) {
+    pub(in crate::instance) fn check_base(&mut self, class: ClassId, base: ClassId, at: Span) {
         let (derived, base_class) = (self.library.class(class), self.library.class(base));
         if base_class.prefixes.replaceable
             && !base_class.prefixes.redeclare
@@ -85,25 +85,25 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// Only types and connectors extend a predefined type.
-    pub(super) fn check_builtin_base(&mut self, class: ClassId, base: Builtin, at: Span) {
+    pub(in crate::instance) fn check_builtin_base(&mut self, class: ClassId, base: Builtin, at: Span) {
         let kind = self.library.class(class).kind;
         let fine =
             matches!(kind, ClassKind::Type | ClassKind::Connector { .. } | ClassKind::Class) || base == Builtin::Object;
         if !fine {
-            let name = super::errors::builtin_name(base);
+            let name = crate::instance::errors::builtin_name(base);
             let what = format!("a {} cannot extend `{name}`", kind.word());
             self.refuse(breach(what, at, "a predefined type", "7.1.3"), Some(class));
         }
     }
 
     /// A class with more than the base of an array of components in it.
-    pub(super) fn check_array_base(&mut self, class: ClassId, at: Span) {
+    pub(in crate::instance) fn check_array_base(&mut self, class: ClassId, at: Span) {
         let what = "a class of arrays cannot be extended by one with elements";
         self.refuse(breach(what, at, "this class is an array", "4.5.2"), Some(class));
     }
 
     /// Prefixes of a component whose class is a model or block, or of a connector (MLS 4.4.2, 4.4.4).
-    pub(super) fn check_prefixes(&mut self, declared: &ast::Component, template: &super::template::Template<'a>) {
+    pub(in crate::instance) fn check_prefixes(&mut self, declared: &ast::Component, template: &crate::instance::template::Template<'a>) {
         let p = declared.prefix;
         let at = declared.name.span;
         let name = declared.name.name;
@@ -126,11 +126,11 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// `flow`, `input` and `output` of a structure may not meet the same inside it (MLS 4.4.2.2).
-    fn check_nested_prefixes(&mut self, declared: &ast::Component, template: &super::template::Template<'a>) {
+    fn check_nested_prefixes(&mut self, declared: &ast::Component, template: &crate::instance::template::Template<'a>) {
         let p = declared.prefix;
         let causal = p.causality.or(template.prefix.causality).is_some();
         for element in &template.elements {
-            let super::template::Kind::Component(inner) = element.kind else { continue };
+            let crate::instance::template::Kind::Component(inner) = element.kind else { continue };
             let flow = p.flow && inner.prefix.flow;
             if flow || causal && inner.prefix.causality.is_some() {
                 let word = if flow { "flow" } else { "input` or `output" };
@@ -143,7 +143,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// A block has inputs and outputs only (MLS 4.6).
-    pub(super) fn check_block_port(&mut self, declared: &ast::Component, template: &super::template::Template<'a>) {
+    pub(in crate::instance) fn check_block_port(&mut self, declared: &ast::Component, template: &crate::instance::template::Template<'a>) {
         let directed = |c: &ast::Component| {
             c.prefix.causality.is_some()
                 || matches!(c.prefix.variability, Some(Variability::Parameter | Variability::Constant))
@@ -154,7 +154,7 @@ impl<'a> Instance<'a, '_> {
             return;
         }
         let open = template.elements.iter().find_map(|e| match e.kind {
-            super::template::Kind::Component(c) if is_open(c) && !directed(c) => Some(c.name.name),
+            crate::instance::template::Kind::Component(c) if is_open(c) && !directed(c) => Some(c.name.name),
             _ => None,
         });
         if let Some(open) = open {

@@ -1,10 +1,10 @@
 //! Components: from declarations with their modifiers to nodes, on demand and then all.
 
-use super::evaluate::Extent;
-use super::lookup::{Builtin, Found, STATE_SELECT, predefined_enumerations};
-use super::modifiers::{Access, Arg, ArgKind, At, Binding, Reached, extended, indexed};
-use super::template::{Kind, Template, What};
-use super::{ClassRef, ElementState, Inherited, Instance, Node, NodeId, ROOT, ScopeId, VarData, View, evaluate};
+use crate::instance::expressions::Extent;
+use crate::instance::lookup::{Builtin, Found, STATE_SELECT, predefined_enumerations};
+use crate::instance::modifiers::{Access, Arg, ArgKind, At, Binding, Reached, extended, indexed};
+use crate::instance::template::{Kind, Template, What};
+use crate::instance::{ClassRef, ElementState, Inherited, Instance, Node, NodeId, ROOT, ScopeId, VarData, View, expressions};
 use crate::diag::{Code, Diagnostic, Span, nearest};
 use crate::expr::{Exprs, VarId};
 use crate::types::{StateSelect, Type, Variability};
@@ -95,15 +95,15 @@ pub fn instantiate<'a, 'l>(library: &'l mut Library<'a>, request: &ModelRequest)
         externals: FxHashMap::default(),
         outer_checked: FxHashMap::default(),
         varied: false,
-        streams: super::Streams::default(),
+        streams: crate::instance::Streams::default(),
         connected: FxHashMap::default(),
-        overconstrained: super::overconstrained::Overconstrained::default(),
+        overconstrained: crate::instance::overconstrained::Overconstrained::default(),
         variabilities: Vec::new(),
         operator_records: Vec::new(),
         functions: Vec::new(),
         tables: FxHashMap::default(),
         given_elements: Vec::new(),
-        eval: evaluate::State::default(),
+        eval: expressions::State::default(),
     };
     instance.build_model(request);
     instance
@@ -196,12 +196,12 @@ impl<'a> Instance<'a, '_> {
         let (whole, elements): (Vec<&Override>, Vec<&Override>) =
             request.overrides.iter().partition(|o| element_name(&o.name).is_none());
         let list: Vec<String> =
-            whole.iter().map(|o| format!("{} = {}", o.name, evaluate::override_text(&o.value))).collect();
+            whole.iter().map(|o| format!("{} = {}", o.name, expressions::override_text(&o.value))).collect();
         self.eval.texts = request.overrides.iter().map(|o| (o.name.clone(), o.value.clone())).collect();
         // A modification names whole arrays: values for single elements stand beside it until their variables are built.
         let beside: Vec<String> = (1..)
             .zip(&elements)
-            .map(|(k, o)| format!("  Real element_{k} = {};\n", evaluate::override_text(&o.value)))
+            .map(|(k, o)| format!("  Real element_{k} = {};\n", expressions::override_text(&o.value)))
             .collect();
         let list = if list.is_empty() { String::new() } else { format!("(\n    {}\n  )", list.join(",\n    ")) };
         let text = format!("model Set\n  extends Model{list};\n{}end Set;\n", beside.concat());
@@ -525,7 +525,7 @@ impl<'a> Instance<'a, '_> {
         if same_type && (shaped || have == dims) {
             return true;
         }
-        let (name, text) = (declared.name.name, super::value::size_text);
+        let (name, text) = (declared.name.name, crate::instance::value::size_text);
         let what = if same_type {
             format!("`inner {name}` has size {}, and `outer {name}` {}", text(&have), text(&dims))
         } else {
@@ -615,7 +615,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// Builds a component with the array dimensions of its declaration and of its type.
-    pub(super) fn build_shaped(
+    pub(in crate::instance) fn build_shaped(
         &mut self,
         plan: &Plan<'a>,
         found: &Found<'a>,
@@ -989,7 +989,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// Every public component of the constraining class must exist in the class that takes its place (MLS 6.4).
-    pub(super) fn check_subtype(
+    pub(in crate::instance) fn check_subtype(
         &mut self,
         constraint: &Found<'a>,
         found: &Found<'a>,
@@ -1067,7 +1067,7 @@ impl<'a> Instance<'a, '_> {
 
 /// What is the same for all elements of a component array.
 #[derive(Clone)]
-pub(super) struct Plan<'a> {
+pub(in crate::instance) struct Plan<'a> {
     pub name: String,
     pub scope: ScopeId,
     /// Which element of the scope; none for what was added.
@@ -1086,7 +1086,7 @@ struct Part<'a> {
 }
 
 /// The attributes of a predefined type (MLS 4.9).
-pub(super) fn attributes_of(builtin: Builtin) -> &'static [&'static str] {
+pub(in crate::instance) fn attributes_of(builtin: Builtin) -> &'static [&'static str] {
     match builtin {
         Builtin::Real => {
             &["start", "fixed", "min", "max", "nominal", "unit", "displayUnit", "quantity", "stateSelect", "unbounded"]

@@ -1,11 +1,11 @@
 //! Operator records: operators and constructors that a record class gives its values (MLS 14).
 
-use super::call::{Callee, Formal, is_input};
-use super::lookup::{Builtin, Found};
-use super::template::Template;
-use super::value::Val;
-use super::vectorised::Given;
-use super::{ClassRef, Instance};
+use crate::instance::call::{Callee, Formal, is_input};
+use crate::instance::lookup::{Builtin, Found};
+use crate::instance::template::Template;
+use crate::instance::value::Val;
+use crate::instance::vectorised::Given;
+use crate::instance::{ClassRef, Instance};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::types::Type;
 use crate::syntax::ast::{BinaryOp, Causality, ClassKind, UnaryOp};
@@ -34,13 +34,13 @@ fn name_of(op: BinaryOp) -> Option<&'static str> {
 
 impl<'a> Instance<'a, '_> {
     /// The number of a class of operator records; `None` for other classes.
-    pub(super) fn operator_class(&mut self, class: &ClassRef<'a>) -> Option<u32> {
+    pub(in crate::instance) fn operator_class(&mut self, class: &ClassRef<'a>) -> Option<u32> {
         let template = self.template(class.class, class.parent);
         self.operator_class_of(&template)
     }
 
     /// The same by what the class holds.
-    pub(super) fn operator_class_of(&mut self, template: &Template<'a>) -> Option<u32> {
+    pub(in crate::instance) fn operator_class_of(&mut self, template: &Template<'a>) -> Option<u32> {
         // `record C = Complex(...)` and `connector C = input Complex` are `Complex`, and plain records pay nothing
         if !matches!(template.kind, ClassKind::Record { operator: true } | ClassKind::Connector { .. }) {
             return None;
@@ -65,7 +65,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// A binary operator on operator records; `None` where neither side is one.
-    pub(super) fn overloaded_binary(&mut self, op: BinaryOp, a: &Val, b: &Val, span: Span) -> Option<Option<Val>> {
+    pub(in crate::instance) fn overloaded_binary(&mut self, op: BinaryOp, a: &Val, b: &Val, span: Span) -> Option<Option<Val>> {
         let classes: Vec<u32> = [a, b].into_iter().filter_map(Self::record_class).collect();
         if classes.is_empty() {
             return None;
@@ -127,7 +127,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// A unary operator on an operator record; `None` where it is none.
-    pub(super) fn overloaded_unary(&mut self, op: UnaryOp, value: &Val, span: Span) -> Option<Option<Val>> {
+    pub(in crate::instance) fn overloaded_unary(&mut self, op: UnaryOp, value: &Val, span: Span) -> Option<Option<Val>> {
         let class = Self::record_class(value)?;
         let name = match op {
             UnaryOp::Minus | UnaryOp::ElementMinus => "'-'",
@@ -147,7 +147,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// The constructors of an operator record by their arguments; `None` where it has none of its own.
-    pub(super) fn overloaded_constructor(
+    pub(in crate::instance) fn overloaded_constructor(
         &mut self,
         class: &ClassRef<'a>,
         given: &Given,

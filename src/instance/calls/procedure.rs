@@ -4,12 +4,12 @@
 //! Expressions inside are built in the same pool, with locals standing as variables numbered from [`LOCAL`] on, and
 //! then turned into terms.
 
-use super::algorithm::assigned;
-use super::call::{Callee, in_order_of_use, is_input};
-use super::deduce::Body;
-use super::evaluate::Pick;
-use super::value::Val;
-use super::{Instance, View};
+use crate::instance::algorithm::assigned;
+use crate::instance::call::{Callee, in_order_of_use, is_input};
+use crate::instance::deduce::Body;
+use crate::instance::expressions::Pick;
+use crate::instance::value::Val;
+use crate::instance::{Instance, View};
 use crate::diag::{Code, Span};
 use crate::expr::function::{Function, Stmt, Term};
 use crate::expr::{ExprId, Exprs, FunctionId, Node, VarId};
@@ -33,7 +33,7 @@ pub struct Translation {
 
 impl<'a> Instance<'a, '_> {
     /// Calls a function through its procedure.
-    pub(super) fn call_procedure(
+    pub(in crate::instance) fn call_procedure(
         &mut self,
         callee: &Callee<'a>,
         positional: Vec<Val>,
@@ -173,7 +173,7 @@ impl<'a> Instance<'a, '_> {
 
     /// Carries out a loop of a model's algorithm section as a procedure of what it reads, for it runs as often as
     /// changing values say. Its relations make no events (MLS 11.2.3).
-    pub(super) fn loop_as_procedure(&mut self, s: &'a Statement, view: View) -> Option<()> {
+    pub(in crate::instance) fn loop_as_procedure(&mut self, s: &'a Statement, view: View) -> Option<()> {
         let changed = self.assigned_locals(s)?;
         let before = self.eval.locals.clone();
         let outer = std::mem::take(&mut self.eval.translation);
@@ -350,7 +350,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// The statements of a function without outputs as part of the procedure being translated.
-    pub(super) fn procedure_body(
+    pub(in crate::instance) fn procedure_body(
         &mut self,
         callee: &Callee<'a>,
         positional: Vec<Val>,
@@ -485,7 +485,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// An element of an array in slots at an index known at run time only; other arrays are copied into slots first.
-    pub(super) fn indexed_slot(&mut self, dims: &[usize], elements: &[Val], picks: &[Pick]) -> Option<Val> {
+    pub(in crate::instance) fn indexed_slot(&mut self, dims: &[usize], elements: &[Val], picks: &[Pick]) -> Option<Val> {
         if picks.iter().any(|p| matches!(p, Pick::Many(_))) {
             return None;
         }

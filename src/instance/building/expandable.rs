@@ -1,12 +1,12 @@
 //! Expandable connectors (MLS 9.1.3): what is connected to a name that a bus does not have becomes a member of it, and buses
 //! that are joined have the same members.
 
-use super::build::Plan;
-use super::deduce::Body;
-use super::lookup::{Builtin, Found};
-use super::modifiers::Reached;
-use super::template::{Element, Kind};
-use super::{ClassRef, ElementState, Inherited, Instance, Node, NodeId, ScopeId, View};
+use crate::instance::components::Plan;
+use crate::instance::deduce::Body;
+use crate::instance::lookup::{Builtin, Found};
+use crate::instance::modifiers::Reached;
+use crate::instance::template::{Element, Kind};
+use crate::instance::{ClassRef, ElementState, Inherited, Instance, Node, NodeId, ScopeId, View};
 use crate::types::Type;
 use crate::syntax::ast::{self, ClassBody, Equation, EquationKind, Expr, ExprKind};
 use crate::syntax::symbol::Symbol;
@@ -27,7 +27,7 @@ enum Side {
 
 impl<'a> Instance<'a, '_> {
     /// Gives all buses the members that connections ask for.
-    pub(super) fn expand_connectors(&mut self) {
+    pub(in crate::instance) fn expand_connectors(&mut self) {
         if !self.scopes.iter().any(|s| s.component && s.template.is_expandable()) {
             return;
         }
@@ -212,8 +212,8 @@ impl<'a> Instance<'a, '_> {
     }
 
     fn build_like(&mut self, plan: &Plan<'a>, found: &Found<'a>, dims: &[usize]) -> Option<NodeId> {
-        let extents: Vec<super::evaluate::Extent> =
-            dims.iter().map(|&size| super::evaluate::Extent { size, by: Type::Integer }).collect();
+        let extents: Vec<crate::instance::expressions::Extent> =
+            dims.iter().map(|&size| crate::instance::expressions::Extent { size, by: Type::Integer }).collect();
         self.build_shaped(plan, found, &extents, Reached::default())
     }
 

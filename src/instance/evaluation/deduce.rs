@@ -1,9 +1,9 @@
 //! Loops without a range, `for i loop x[i] = ...`: it is `1:size(x, 1)`, after an array that the variable indexes alone
 //! (MLS 10.4.1.1, 11.2.2.1).
 
-use super::evaluate::Extent;
-use super::lookup::Found;
-use super::{Instance, Node, View};
+use crate::instance::expressions::Extent;
+use crate::instance::lookup::Found;
+use crate::instance::{Instance, Node, View};
 use crate::diag::{Code, Diagnostic};
 use crate::types::Type;
 use crate::syntax::ast::{
@@ -24,7 +24,7 @@ pub enum Body<'a> {
 
 impl<'a> Instance<'a, '_> {
     /// How often a loop over `name` runs, where an array tells.
-    pub(super) fn deduced_extent(&mut self, name: Symbol, body: Body<'a>, view: View) -> Option<Extent> {
+    pub(in crate::instance) fn deduced_extent(&mut self, name: Symbol, body: Body<'a>, view: View) -> Option<Extent> {
         let mut found: Vec<(&'a Reference, usize, usize)> = Vec::new();
         walk(body, &mut |r| {
             for (p, part) in r.parts.iter().enumerate() {
@@ -76,7 +76,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// A component, or the first element of an array of them.
-    fn first_of(&mut self, scope: super::ScopeId, index: u32) -> Option<super::NodeId> {
+    fn first_of(&mut self, scope: crate::instance::ScopeId, index: u32) -> Option<crate::instance::NodeId> {
         let node = self.component(scope, index)?;
         match self.node(node) {
             Node::Array { elements, .. } => elements.first().copied(),
@@ -86,7 +86,7 @@ impl<'a> Instance<'a, '_> {
 }
 
 /// The first parts of the names in a declaration's sizes and value.
-pub(super) fn names_of_declaration(c: &Component) -> Vec<Symbol> {
+pub(in crate::instance) fn names_of_declaration(c: &Component) -> Vec<Symbol> {
     let mut found = Vec::new();
     let mut see = |r: &Reference| found.push(r.parts[0].name.name);
     c.subscripts.iter().for_each(|s| subscript(s, &mut see));

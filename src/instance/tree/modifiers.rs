@@ -1,6 +1,6 @@
 //! Which modifier reaches which element: arguments travel from the outermost modification inwards, outer before inner.
 
-use super::View;
+use crate::instance::View;
 use crate::diag::Span;
 use crate::syntax::ast::{self, ArgumentKind, Expr, Modification};
 use crate::syntax::symbol::Symbol;

@@ -1,7 +1,7 @@
 //! Built-in operators and functions (MLS 3.7, 10.3).
 
-use super::value::{Val, size_text, wider};
-use super::{Instance, View};
+use crate::instance::value::{Val, size_text, wider};
+use crate::instance::{Instance, View};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::expr::differentiate::Leaf;
 use crate::expr::{Binary, ExprId, Exprs, Node, Rel, Unary};
@@ -37,7 +37,7 @@ const UNSUPPORTED: [&str; 8] =
 
 impl<'a> Instance<'a, '_> {
     /// A built-in function; `None` if the name is not one, `Some(None)` after a message.
-    pub(super) fn builtin_call(
+    pub(in crate::instance) fn builtin_call(
         &mut self,
         function: &'a Reference,
         args: &'a [Expr],
@@ -108,7 +108,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// A mathematical function called by its full name, as `Modelica.Math.sin`.
-    pub(super) fn named_mathematics(
+    pub(in crate::instance) fn named_mathematics(
         &mut self,
         name: &str,
         args: &'a [Expr],
@@ -436,7 +436,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// `sum`, `product`, `min`, `max` over values.
-    pub(super) fn reduction(&mut self, function: &'a Reference, values: Vec<Val>, span: Span) -> Option<Val> {
+    pub(in crate::instance) fn reduction(&mut self, function: &'a Reference, values: Vec<Val>, span: Span) -> Option<Val> {
         let name = function.parts[0].name.name.as_str();
         let op = match name {
             "sum" => Binary::Add,
@@ -668,7 +668,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// Reports a call of something that is no function.
-    pub(super) fn unknown_function(&mut self, function: &Reference) {
+    pub(in crate::instance) fn unknown_function(&mut self, function: &Reference) {
         let name: Vec<&str> = function.parts.iter().map(|p| p.name.name.as_str()).collect();
         let name = name.join(".");
         const KNOWN: [&str; 40] = [
@@ -678,11 +678,11 @@ impl<'a> Instance<'a, '_> {
             "homotopy", "initial",
         ];
         let mut d =
-            Diagnostic::new(Code::UnknownFunction, format!("there is no function `{}`", super::errors::short(&name)))
+            Diagnostic::new(Code::UnknownFunction, format!("there is no function `{}`", crate::instance::errors::short(&name)))
                 .at(function.span, "not found");
         if name == "pow" {
             d = d.help("write `x^y`");
-        } else if let Some(near) = super::errors::nearest(&name, KNOWN) {
+        } else if let Some(near) = crate::instance::errors::nearest(&name, KNOWN) {
             d = d.help(format!("did you mean `{near}`?"));
         }
         self.report(d);
@@ -695,7 +695,7 @@ fn transposed(v: &Val) -> Val {
 }
 
 /// The same scalars under another type.
-pub(super) fn retyped(v: &Val, ty: Type) -> Val {
+pub(in crate::instance) fn retyped(v: &Val, ty: Type) -> Val {
     match v {
         Val::Scalar(e, _) => Val::Scalar(*e, ty),
         Val::Array { dims, elements } => Val::array(dims.clone(), elements.iter().map(|v| retyped(v, ty)).collect()),
