@@ -1,9 +1,9 @@
 //! From a class to the component tree with its modifiers: every scalar variable, with its attributes still as written.
 //!
 //! [`instantiate`] builds the tree; [`Instance`] is also the place where expressions are evaluated, because names have
-//! a meaning only inside an instance. The files: [`template`] (what a class holds, inherited elements included),
-//! [`modifiers`] (which modifier reaches which element), [`lookup`] (names), [`build`] (components), [`value`] and
-//! [`evaluate`] (expressions), [`builtin`], [`call`] and [`algorithm`] (functions), `files` (tables from files), `external` (functions of C code that Rust knows).
+//! a meaning only inside an instance. The rooms: [`tree`] (what a class holds, which modifier reaches which element, names),
+//! [`building`] (components), [`evaluation`] (expressions and statements, in a mode and a frame), `calls` (built-in
+//! functions, user functions, procedures, functions of C code that Rust knows).
 
 pub mod building;
 mod calls;
@@ -11,20 +11,21 @@ mod errors;
 pub mod evaluation;
 pub mod tree;
 
-pub use building::components::{GIVEN, ModelRequest, Override, instantiate};
-use building::{components, overconstrained};
+pub use building::components::{ModelRequest, instantiate};
+pub use building::given::{GIVEN, Override};
+use building::{components, given, overconstrained};
 use calls::{builtin, call, files, procedure, vectorised};
+use evaluation::state;
 pub use evaluation::{algorithm, deduce, references, value};
-use evaluation::expressions;
 pub use tree::{lookup, modifiers, template};
 
 use crate::diag::{Diagnostic, FileId, Span};
 use crate::expr::{ExprId, Exprs, VarId};
-use crate::types::{StateSelect, Type, Variability};
 use crate::resolve::{ClassId, Library};
 use crate::results::table::Matrix;
 use crate::syntax::ast;
 use crate::syntax::symbol::Symbol;
+use crate::types::{StateSelect, Type, Variability};
 use modifiers::{Arg, Binding};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::rc::Rc;
@@ -276,8 +277,8 @@ pub struct Instance<'a, 'l> {
     pub overconstrained: overconstrained::Overconstrained<'a>,
     variabilities: Vec<Variability>,
     /// Values given from outside for single elements of arrays.
-    given_elements: Vec<components::GivenElement<'a>>,
-    eval: expressions::State,
+    given_elements: Vec<given::GivenElement<'a>>,
+    eval: state::State,
 }
 
 impl<'a> Instance<'a, '_> {

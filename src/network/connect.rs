@@ -3,7 +3,6 @@
 use super::overconstrained::{Forest, Link, is_said};
 use super::{Connection, FlowSet, Network, PotentialSet, SignalPair, StreamSet};
 use crate::diag::{Code, Diagnostic, Span};
-use crate::types::{Type, Variability};
 use crate::instance::deduce::Body;
 use crate::instance::lookup::Found;
 use crate::instance::references::Selection;
@@ -11,6 +10,7 @@ use crate::instance::template::{Base, Kind, same_pair};
 use crate::instance::{Instance, Node, NodeId, ScopeId, StreamMember, View};
 use crate::syntax::ast::{self, ClassBody, ClassKind, Equation, EquationKind, Expr, ExprKind};
 use crate::syntax::symbol::Symbol;
+use crate::types::{Type, Variability};
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Disjoint sets over numbers given on demand.

@@ -5,11 +5,11 @@
 //! the model.
 
 use super::measure::{Measure, Quantity};
-use crate::units::{Unit, UnitError};
 use crate::diag::Span;
 use crate::expr::visit::Walk;
 use crate::expr::{Binary, ExprId, Exprs, Node, Unary, VarId};
 use crate::flat::{FlatModel, Type, Variability, Variable, WhenAction};
+use crate::units::{Unit, UnitError};
 use rustc_hash::FxHashMap;
 use std::collections::VecDeque;
 

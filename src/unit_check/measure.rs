@@ -3,9 +3,9 @@
 //! The aim is to be quiet when unsure. A number in a model may hide a quantity (`9.81*m` is a force, `x/1e-3` has no
 //! dimension), so a number other than a small ratio makes a product unknown, and fits anywhere in a sum.
 
+use crate::expr::print::number;
 use crate::units::power_of;
 use crate::units::{Dimension, Unit};
-use crate::expr::print::number;
 use std::f64::consts::{PI, TAU};
 
 /// A unit as far as it is known. `factor` and `offset` are as in [`Unit`], NaN when not known.

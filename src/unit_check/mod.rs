@@ -3,12 +3,12 @@
 mod infer;
 mod measure;
 
-use infer::{Relation, Side, Units};
-use measure::{Difference, Measure, Quantity};
-use crate::units::{Unit, UnitError};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::expr::{Binary, ExprId, Node, VarId};
 use crate::flat::FlatModel;
+use crate::units::{Unit, UnitError};
+use infer::{Relation, Side, Units};
+use measure::{Difference, Measure, Quantity};
 use rustc_hash::FxHashSet;
 
 /// So many terms are listed in a message.

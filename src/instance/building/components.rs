@@ -1,16 +1,17 @@
 //! Components: from declarations with their modifiers to nodes, on demand and then all.
 
-use crate::instance::expressions::Extent;
+use crate::diag::{Code, Diagnostic, Span};
+use crate::expr::{Exprs, VarId};
+use crate::instance::building::given::Override;
+use crate::instance::evaluation::ranges::Extent;
 use crate::instance::lookup::{Builtin, Found, STATE_SELECT, predefined_enumerations};
 use crate::instance::modifiers::{Access, Arg, ArgKind, At, Binding, Reached, extended, indexed};
 use crate::instance::template::{Kind, Template, What};
-use crate::instance::{ClassRef, ElementState, Inherited, Instance, Node, NodeId, ROOT, ScopeId, VarData, View, expressions};
-use crate::diag::{Code, Diagnostic, Span, nearest};
-use crate::expr::{Exprs, VarId};
-use crate::types::{StateSelect, Type, Variability};
+use crate::instance::{ClassRef, ElementState, Inherited, Instance, Node, NodeId, ROOT, ScopeId, VarData, View, state};
 use crate::resolve::{ClassId, Library};
 use crate::syntax::ast::{self, ClassKind, Subscript};
 use crate::syntax::symbol::Symbol;
+use crate::types::{StateSelect, Type, Variability};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::rc::Rc;
 
@@ -18,42 +19,6 @@ use std::rc::Rc;
 const MOST_VARIABLES: usize = 20_000_000;
 /// The deepest nesting of components.
 const DEEPEST: usize = 60;
-
-/// Where messages place values given from outside.
-pub const GIVEN: &str = "<values given from outside>";
-
-/// A value for a parameter or start attribute, given from outside.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Override {
-    /// Dotted name, as in `pump.D` or `vol.p.start`.
-    pub name: String,
-    /// An expression in Modelica syntax, or a number with a unit such as `0.8 ml`.
-    pub value: String,
-}
-
-/// A value given from outside for one element of an array.
-pub struct GivenElement<'a> {
-    /// The full name with its subscripts.
-    name: String,
-    binding: Binding<'a>,
-    met: bool,
-}
-
-/// The full name that a name with subscripts means, as variables are called; `None` without any, or where they are no
-/// plain numbers.
-fn element_name(name: &str) -> Option<String> {
-    let mut parts = name.split('[');
-    let mut full = parts.next()?.trim().to_string();
-    let mut any = false;
-    for part in parts {
-        let (inside, rest) = part.split_once(']')?;
-        let numbers: Option<Vec<String>> =
-            inside.split(',').map(|n| n.trim().parse::<usize>().ok().map(|n| n.to_string())).collect();
-        full += &format!("[{}]{}", numbers?.join(","), rest.trim());
-        any = true;
-    }
-    any.then_some(full)
-}
 
 /// What to instantiate.
 #[derive(Clone, Debug)]
@@ -103,7 +68,7 @@ pub fn instantiate<'a, 'l>(library: &'l mut Library<'a>, request: &ModelRequest)
         functions: Vec::new(),
         tables: FxHashMap::default(),
         given_elements: Vec::new(),
-        eval: expressions::State::default(),
+        eval: state::State::default(),
     };
     instance.build_model(request);
     instance
@@ -186,102 +151,6 @@ impl<'a> Instance<'a, '_> {
             return false;
         }
         true
-    }
-
-    /// Values from outside become one modification of the model, in a text of their own that messages can show.
-    fn override_args(&mut self, request: &ModelRequest) -> Rc<[Arg<'a>]> {
-        if request.overrides.is_empty() {
-            return Rc::from([]);
-        }
-        let (whole, elements): (Vec<&Override>, Vec<&Override>) =
-            request.overrides.iter().partition(|o| element_name(&o.name).is_none());
-        let list: Vec<String> =
-            whole.iter().map(|o| format!("{} = {}", o.name, expressions::override_text(&o.value))).collect();
-        self.eval.texts = request.overrides.iter().map(|o| (o.name.clone(), o.value.clone())).collect();
-        // A modification names whole arrays: values for single elements stand beside it until their variables are built.
-        let beside: Vec<String> = (1..)
-            .zip(&elements)
-            .map(|(k, o)| format!("  Real element_{k} = {};\n", expressions::override_text(&o.value)))
-            .collect();
-        let list = if list.is_empty() { String::new() } else { format!("(\n    {}\n  )", list.join(",\n    ")) };
-        let text = format!("model Set\n  extends Model{list};\n{}end Set;\n", beside.concat());
-        let before = self.library.diagnostics.len();
-        let own = self.library.own.len();
-        let ids = self.library.add_text(GIVEN, &text);
-        self.library.own.truncate(own);
-        let bad = self.library.diagnostics.split_off(before);
-        self.eval.override_file = ids.first().map(|&id| self.library.class(id).name.span.file);
-        if !bad.is_empty() {
-            let names: Vec<_> = request.overrides.iter().map(|o| format!("`{}={}`", o.name, o.value)).collect();
-            self.report(
-                Diagnostic::new(Code::BadSet, format!("cannot read {}", names.join(", "))).help(
-                    "a value is NAME=VALUE with a dotted name and a Modelica expression, or a number with a unit",
-                ),
-            );
-            return Rc::from([]);
-        }
-        let Some(ast::ClassBody::Long(body)) = ids.first().map(|&id| &self.library.class(id).body) else {
-            return Rc::from([]);
-        };
-        let Some(ast::ElementKind::Extends(e)) = body.elements.first().map(|e| &e.kind) else { return Rc::from([]) };
-        let view = View { scope: self.root, base: 0 };
-        let none: Rc<[Access]> = Rc::from([]);
-        let values = body.elements[1..].iter().filter_map(|e| match &e.kind {
-            ast::ElementKind::Component(c) => c.modification.as_ref()?.value.as_ref(),
-            _ => None,
-        });
-        for (o, expr) in elements.iter().zip(values) {
-            let name = element_name(&o.name).unwrap_or_default();
-            self.eval.texts.insert(name.clone(), o.value.clone());
-            let binding = Binding { expr, view, access: none.clone(), final_: false };
-            self.given_elements.push(GivenElement { name, binding, met: false });
-        }
-        let arguments = e.modification.iter().flat_map(|m| &m.arguments);
-        arguments.filter_map(|a| Arg::new(a, view, &none, true)).collect()
-    }
-
-    /// The value given from outside for one element of an array.
-    fn given_element(&mut self, name: &str) -> Option<Binding<'a>> {
-        let mut found = None;
-        for given in self.given_elements.iter_mut().filter(|g| g.name == name) {
-            given.met = true;
-            found = Some(given.binding.clone());
-        }
-        found
-    }
-
-    /// Every value given for an element must have met one.
-    fn elements_not_met(&mut self) {
-        let open: Vec<String> = self.given_elements.iter().filter(|g| !g.met).map(|g| g.name.clone()).collect();
-        if self.diagnostics.iter().any(Diagnostic::is_error) {
-            // what was not built could not meet anything
-            return;
-        }
-        for name in open {
-            if self.variables.iter().any(|v| v.name == name) {
-                let d = Diagnostic::new(Code::BadSet, format!("`{name}` is no parameter that can be set"));
-                let help = format!("it varies during runs: its start value is `{name}.start`");
-                self.report(d.note("it was given from outside").help(help));
-                continue;
-            }
-            let array = name.rsplit_once('[').map_or("", |(array, _)| array);
-            let known = |i: &&VarData<'_>| i.variability <= Variability::Parameter && !i.hidden;
-            let of_array = |v: &&VarData<'_>| v.name.rsplit_once('[').is_some_and(|(a, _)| a == array);
-            let mut elements = self.variables.iter().filter(known).filter(of_array).map(|v| v.name.as_str());
-            let help = match (elements.next(), elements.next_back()) {
-                (Some(first), Some(last)) => format!("its elements are `{first}` to `{last}`"),
-                (Some(only), None) => format!("its only element is `{only}`"),
-                (None, _) if self.variables.iter().any(|v| v.name == array) => {
-                    format!("`{array}` is no array: `{array}=VALUE` sets it")
-                }
-                (None, _) => match nearest(&name, self.variables.iter().filter(known).map(|v| v.name.as_str())) {
-                    Some(near) => format!("did you mean `{near}`?"),
-                    None => "`bramah check FILE --emit flat` lists all parameters".to_string(),
-                },
-            };
-            let text = format!("the model has no parameter `{name}`");
-            self.report(Diagnostic::new(Code::BadSet, text).note("it was given from outside").help(help));
-        }
     }
 
     /// Builds all components of an instance.
@@ -439,139 +308,8 @@ impl<'a> Instance<'a, '_> {
         }
     }
 
-    fn outer_component(&mut self, scope: ScopeId, declared: &'a ast::Component, view: View) -> Option<NodeId> {
-        let name = declared.name.name;
-        if let Some(node) = self.inner_of(scope, name) {
-            return self.fits_outer(node, declared, view).then_some(node);
-        }
-        let found = self.class_at(view, &declared.class)?;
-        let no_inner = |instance: String, help: String| {
-            Diagnostic::new(Code::NoInner, format!("`outer {name}` finds no `inner {name}`"))
-                .at(declared.name.span, "needs an `inner` component of this name further up")
-                .instance(instance)
-                .help(help)
-        };
-        let instance = self.scope(scope).name.clone();
-        let Found::Class(class) = &found else {
-            let ty = declared.class.dotted();
-            self.report(no_inner(instance, format!("add `inner {ty} {name} = ...;` to the model")));
-            return None;
-        };
-        let full = self.library.full_name(class.class);
-        if self.library.class(class.class).prefixes.partial {
-            let help = format!("add `inner SomeClass {name};` to the model, with a class that extends `{full}`");
-            self.report(no_inner(instance, help));
-            return None;
-        }
-        self.report(
-            Diagnostic::new(Code::AutomaticInner, format!("`inner {full} {name}` was added to the model"))
-                .at(declared.name.span, format!("`outer {name}` has no `inner` above it"))
-                .help(format!("write `inner {full} {name};` in the model to choose its parameters")),
-        );
-        let root = self.root;
-        let plan = Plan {
-            name: name.as_str().to_string(),
-            scope: root,
-            index: None,
-            declared,
-            prefix: Inherited::default(),
-            span: declared.name.span,
-            depth: 0,
-        };
-        let node = self.build_shaped(&plan, &found, &[], Reached::default())?;
-        self.inner_declared.insert((root, name), node);
-        Some(node)
-    }
-
-    /// An `outer` element is somebody else's and cannot be modified (MLS 5.4).
-    fn check_outer_unmodified(&mut self, scope: ScopeId, declared: &'a ast::Component) {
-        let name = declared.name.name;
-        let given = self.scope(scope).args.iter().find(|a| a.target() == name).map(|a| a.span);
-        let own = declared.modification.as_ref().and_then(|m| m.value.as_ref()).map(|e| e.span);
-        let Some(at) = given.or(own) else { return };
-        self.report(
-            Diagnostic::new(Code::UnknownModifier, format!("`outer {name}` cannot be modified"))
-                .at(at, "modified here")
-                .at(declared.name.span, "it means a component declared elsewhere")
-                .note("Modelica 3.6, 5.4")
-                .help(format!("modify `inner {name}`")),
-        );
-    }
-
-    /// Whether a single `inner` variable, or an array, is of the type and size of the `outer` one.
-    fn fits_outer_shape(&mut self, node: NodeId, declared: &'a ast::Component, view: View) -> bool {
-        let Some(dims) = self.dimensions(&declared.subscripts, view, None, 0) else { return false };
-        let dims: Vec<usize> = dims.iter().map(|d| d.size).collect();
-        let (have, first) = match self.node(node) {
-            Node::Array { dims, elements, .. } => (dims.clone(), elements.first().copied()),
-            _ => (Vec::new(), Some(node)),
-        };
-        let Some(Node::Var(i)) = first.map(|n| self.node(n).clone()) else { return true };
-        let found = self.lookup_path(view, &declared.class).ok();
-        let builtin = match &found {
-            Some(Found::Builtin(b)) => Some(*b),
-            Some(Found::Class(c)) => self.template(c.class, c.parent).builtin,
-            _ => None,
-        };
-        let data = &self.variables[i as usize];
-        let same_type = match builtin {
-            Some(Builtin::Real) => data.ty == Type::Real,
-            Some(Builtin::Integer) => data.ty == Type::Integer,
-            Some(Builtin::Boolean) => data.ty == Type::Boolean,
-            Some(Builtin::Enumeration(e)) => data.ty == Type::Enumeration(e),
-            _ => true,
-        };
-        let shaped = matches!(&found, Some(Found::Class(c)) if !self.template(c.class, c.parent).dims.is_empty());
-        if same_type && (shaped || have == dims) {
-            return true;
-        }
-        let (name, text) = (declared.name.name, crate::instance::value::size_text);
-        let what = if same_type {
-            format!("`inner {name}` has size {}, and `outer {name}` {}", text(&have), text(&dims))
-        } else {
-            format!("`inner {name}` and `outer {name}` are of different types")
-        };
-        let at = self.variables[i as usize].span;
-        self.report(
-            Diagnostic::new(Code::NoInner, what)
-                .at(declared.name.span, "needed here")
-                .at(at, "declared here")
-                .help("declare both alike, or give one another name"),
-        );
-        false
-    }
-
-    /// Whether an `inner` component has what the class of the `outer` one promises (MLS 5.4).
-    fn fits_outer(&mut self, node: NodeId, declared: &'a ast::Component, view: View) -> bool {
-        let Node::Object(inner) = *self.node(node) else { return self.fits_outer_shape(node, declared, view) };
-        let key = (node, std::ptr::from_ref(declared));
-        if let Some(&known) = self.outer_checked.get(&key) {
-            return known;
-        }
-        let mut fits = true;
-        if let Ok(Found::Class(want)) = self.lookup_path(view, &declared.class) {
-            let (want, have) = (self.template(want.class, want.parent), self.scope(inner).template.clone());
-            let missing = want.elements.iter().find(|e| !e.protected && !have.by_name.contains_key(&e.name));
-            if let Some(missing) = missing.filter(|_| !want.broken && !have.broken) {
-                fits = false;
-                let name = declared.name.name;
-                let (want, have) = (self.library.full_name(want.class), self.library.full_name(have.class));
-                let message = format!("`inner {name}` is a `{have}`, but `outer {name}` needs a `{want}`");
-                let at = self.scope(inner).span;
-                self.report(
-                    Diagnostic::new(Code::NoInner, message)
-                        .at(at, format!("`{have}` has no `{}`", missing.name))
-                        .at(declared.name.span, "needed here")
-                        .help(format!("declare it with a class that extends `{want}`, or give it another name")),
-                );
-            }
-        }
-        self.outer_checked.insert(key, fits);
-        fits
-    }
-
     /// Array dimensions; `:` is taken from the value.
-    fn dimensions(
+    pub(in crate::instance) fn dimensions(
         &mut self,
         subscripts: &'a [Subscript],
         view: View,
@@ -903,164 +641,6 @@ impl<'a> Instance<'a, '_> {
             Some(4.0) => StateSelect::Prefer,
             Some(5.0) => StateSelect::Always,
             _ => StateSelect::Default,
-        }
-    }
-
-    /// A redeclared component must be of a class that fits the constraining one: here, it must offer its elements.
-    fn check_redeclaration(
-        &mut self,
-        declared: &'a ast::Component,
-        own: View,
-        component: &'a ast::Component,
-        found: &Found<'a>,
-    ) {
-        if std::ptr::eq(declared, component) {
-            return;
-        }
-        if !declared.prefixes.replaceable && !component.prefixes.redeclare {
-            return;
-        }
-        if !declared.prefixes.replaceable {
-            self.report(
-                Diagnostic::new(Code::BadRedeclare, format!("`{}` is not replaceable", declared.name.name))
-                    .at(component.name.span, "redeclared here")
-                    .at(declared.name.span, "declared without `replaceable`")
-                    .help(format!("write `replaceable` before the declaration of `{}`", declared.name.name)),
-            );
-            return;
-        }
-        if declared.prefix.variability == Some(ast::Variability::Constant) {
-            self.report(
-                Diagnostic::new(
-                    Code::BadRedeclare,
-                    format!("`{}` is constant and cannot be redeclared", declared.name.name),
-                )
-                .at(component.name.span, "redeclared here")
-                .at(declared.name.span, "declared `constant`")
-                .help("give it another value")
-                .note("Modelica 3.6, 7.3"),
-            );
-            return;
-        }
-        let path = declared.constraint.as_ref().map_or(&declared.class, |c| &c.path);
-        let Ok(constraint) = self.lookup_path(own, path) else { return };
-        self.check_subtype(&constraint, found, component.name.span, path.span);
-    }
-
-    /// A redeclaration of a redeclaration needs the inner one to be replaceable, and keeps to its constraint, which keeps
-    /// to the one before (MLS 7.3).
-    fn check_chain(&mut self, declared: &'a ast::Component, own: View, all: &[(ArgKind<'a>, View)], found: &Found<'a>) {
-        let steps: Vec<(&'a ast::Component, View)> = all
-            .iter()
-            .filter_map(|(kind, view)| match kind {
-                ArgKind::Component(c) => Some((*c, *view)),
-                _ => None,
-            })
-            .chain([(declared, own)])
-            .collect();
-        for (k, &(step, view)) in steps.iter().enumerate() {
-            if k > 0 && !step.prefixes.replaceable && !std::ptr::eq(step, declared) {
-                let outer = steps[k - 1].0;
-                self.report(
-                    Diagnostic::new(Code::BadRedeclare, format!("`{}` is not replaceable any more", step.name.name))
-                        .at(outer.name.span, "redeclared again here")
-                        .at(step.name.span, "redeclared without `replaceable`")
-                        .help("write `redeclare replaceable` at the inner one")
-                        .note("Modelica 3.6, 7.3"),
-                );
-                return;
-            }
-            let Some(constraint) = &step.constraint else { continue };
-            let Ok(promised) = self.lookup_path(view, &constraint.path) else { continue };
-            let at = step.name.span;
-            // what stands here itself, and what takes its place in the end
-            let own_class = self.lookup_path(view, &step.class).ok();
-            let fits = own_class.is_none_or(|c| self.check_subtype(&promised, &c, at, constraint.path.span))
-                && self.check_subtype(&promised, found, steps[0].0.name.span, constraint.path.span);
-            let before = steps.get(k + 1).and_then(|(s, v)| {
-                let path = s.constraint.as_ref().map_or(&s.class, |c| &c.path);
-                Some((self.lookup_path(*v, path).ok()?, path.span))
-            });
-            let keeps = before.is_none_or(|(wider, span)| !fits || self.check_subtype(&wider, &promised, at, span));
-            if !fits || !keeps {
-                return;
-            }
-        }
-    }
-
-    /// Every public component of the constraining class must exist in the class that takes its place (MLS 6.4).
-    pub(in crate::instance) fn check_subtype(
-        &mut self,
-        constraint: &Found<'a>,
-        found: &Found<'a>,
-        at: Span,
-        constrained: Span,
-    ) -> bool {
-        let (Found::Class(want), Found::Class(have)) = (constraint, found) else { return true };
-        let want = self.template(want.class, want.parent);
-        let have = self.template(have.class, have.parent);
-        if have.broken || want.broken {
-            return true;
-        }
-        let missing = want.elements.iter().find(|e| !e.protected && !have.by_name.contains_key(&e.name));
-        let Some(missing) = missing else { return true };
-        let (want, have) = (self.library.full_name(want.class), self.library.full_name(have.class));
-        self.report(
-            Diagnostic::new(Code::BadRedeclare, format!("`{have}` cannot take the place of `{want}`"))
-                .at(at, format!("`{have}` has no `{}`", missing.name))
-                .at(constrained, format!("`{want}` is required here"))
-                .help(format!("use a class that extends `{want}`")),
-        );
-        false
-    }
-
-    /// Gives every variable its number: declaration order, depth first.
-    fn number_variables(&mut self) {
-        let mut order = Vec::with_capacity(self.variables.len());
-        self.number_scope(self.root, &mut order);
-        for i in 0..u32::try_from(self.variables.len()).expect("limited above") {
-            // Automatic `inner` components come last; constants of packages stand by their values.
-            if self.variables[i as usize].id.0 == u32::MAX && self.is_in_model(self.variables[i as usize].scope) {
-                self.number_variable(i, &mut order);
-            }
-        }
-        self.order = order;
-    }
-
-    fn is_in_model(&self, mut scope: ScopeId) -> bool {
-        while let Some(owner) = self.scope(scope).owner {
-            scope = owner;
-        }
-        scope == self.root
-    }
-
-    fn number_variable(&mut self, i: u32, order: &mut Vec<u32>) {
-        let data = &mut self.variables[i as usize];
-        if data.id.0 == u32::MAX && !data.string && !data.object {
-            data.id = VarId(u32::try_from(order.len()).expect("limited above"));
-            order.push(i);
-        }
-    }
-
-    fn number_scope(&mut self, scope: ScopeId, order: &mut Vec<u32>) {
-        for i in 0..self.scope(scope).elements.len() {
-            let s = self.scope(scope);
-            let outer = matches!(s.template.elements[i].kind, Kind::Component(c) if c.prefixes.outer);
-            if let (ElementState::Node(node), false) = (&s.elements[i], outer) {
-                self.number_node(*node, order);
-            }
-        }
-    }
-
-    fn number_node(&mut self, node: NodeId, order: &mut Vec<u32>) {
-        match self.node(node) {
-            Node::Var(i) => self.number_variable(*i, order),
-            Node::Object(scope) => self.number_scope(*scope, order),
-            Node::Array { elements, .. } => {
-                for &e in elements.clone().iter() {
-                    self.number_node(e, order);
-                }
-            }
         }
     }
 }

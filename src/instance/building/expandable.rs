@@ -7,9 +7,9 @@ use crate::instance::lookup::{Builtin, Found};
 use crate::instance::modifiers::Reached;
 use crate::instance::template::{Element, Kind};
 use crate::instance::{ClassRef, ElementState, Inherited, Instance, Node, NodeId, ScopeId, View};
-use crate::types::Type;
 use crate::syntax::ast::{self, ClassBody, Equation, EquationKind, Expr, ExprKind};
 use crate::syntax::symbol::Symbol;
+use crate::types::Type;
 use std::rc::Rc;
 
 /// Times that members travel from bus to bus; more than any chain of buses is long.
@@ -212,8 +212,8 @@ impl<'a> Instance<'a, '_> {
     }
 
     fn build_like(&mut self, plan: &Plan<'a>, found: &Found<'a>, dims: &[usize]) -> Option<NodeId> {
-        let extents: Vec<crate::instance::expressions::Extent> =
-            dims.iter().map(|&size| crate::instance::expressions::Extent { size, by: Type::Integer }).collect();
+        let extents: Vec<crate::instance::evaluation::ranges::Extent> =
+            dims.iter().map(|&size| crate::instance::evaluation::ranges::Extent { size, by: Type::Integer }).collect();
         self.build_shaped(plan, found, &extents, Reached::default())
     }
 

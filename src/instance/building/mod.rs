@@ -2,5 +2,9 @@
 
 pub mod components;
 pub(in crate::instance) mod expandable;
+pub(in crate::instance) mod given;
+pub(in crate::instance) mod numbers;
+pub(in crate::instance) mod outer;
 pub mod overconstrained;
+pub(in crate::instance) mod redeclared;
 pub(in crate::instance) mod restrictions;

@@ -1,17 +1,17 @@
 //! Overconstrained connectors (MLS 9.4): types whose values depend on each other, such as an orientation, and that say by a
 //! function `equalityConstraint` when two of them are equal. `network` finds out which connections need it.
 
+use crate::diag::{Code, Span};
+use crate::expr::{ExprId, Exprs};
 use crate::instance::algorithm::AlgorithmCall;
 use crate::instance::call::Callee;
 use crate::instance::lookup::Found;
 use crate::instance::template::{Kind, Template};
 use crate::instance::value::Val;
 use crate::instance::{ClassRef, ElementState, Instance, Node, NodeId, View};
-use crate::diag::{Code, Span};
-use crate::expr::{ExprId, Exprs};
-use crate::types::Type;
 use crate::syntax::ast::{self, Expr, ExprKind};
 use crate::syntax::symbol::Symbol;
+use crate::types::Type;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// The function by which a type says when two of its values are equal.
@@ -52,7 +52,13 @@ impl Default for Overconstrained<'_> {
 
 impl<'a> Instance<'a, '_> {
     /// Remembers a component of a type with a constraint, or all of an array of such records.
-    pub(in crate::instance) fn note_constraints(&mut self, node: NodeId, one: bool, found: &Found<'a>, template: &Template<'a>) {
+    pub(in crate::instance) fn note_constraints(
+        &mut self,
+        node: NodeId,
+        one: bool,
+        found: &Found<'a>,
+        template: &Template<'a>,
+    ) {
         let at = template.by_name.get(&self.overconstrained.name);
         if !at.is_some_and(|&i| matches!(template.elements[i as usize].kind, Kind::Class(_))) {
             return;
@@ -100,10 +106,8 @@ impl<'a> Instance<'a, '_> {
         let template = self.template(function.class, function.parent);
         let name = self.library.full_name(function.class);
         let callee = Callee { scope: self.package(&function), template, name };
-        let before = std::mem::replace(&mut self.eval.keep_asserts, true);
         let mark = self.eval.calls.len();
-        let value = self.call_function(&callee, values, Vec::new(), span);
-        self.eval.keep_asserts = before;
+        let value = self.in_mode(|m| m.keep_asserts = true, |s| s.call_function(&callee, values, Vec::new(), span));
         let asserts = self.eval.calls.split_off(mark);
         let mut values = Vec::new();
         value?.scalars(&mut values);
@@ -156,7 +160,13 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// `Connections.isRoot(R)` and `Connections.rooted(R)`.
-    pub(in crate::instance) fn connection_query(&mut self, name: &str, args: &'a [Expr], view: View, span: Span) -> Option<Val> {
+    pub(in crate::instance) fn connection_query(
+        &mut self,
+        name: &str,
+        args: &'a [Expr],
+        view: View,
+        span: Span,
+    ) -> Option<Val> {
         let [arg] = args else {
             return self.fail(Code::BadCall, &format!("`{name}` takes one overconstrained component"), span);
         };

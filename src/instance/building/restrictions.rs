@@ -1,9 +1,9 @@
 //! What a class may hold and extend by its kind, and what may stand where in it (MLS 4.6, 7.1.3, 11): read off the text of
 //! each class once, when it is first used.
 
+use crate::diag::{Code, Diagnostic, Span};
 use crate::instance::Instance;
 use crate::instance::lookup::Builtin;
-use crate::diag::{Code, Diagnostic, Span};
 use crate::resolve::ClassId;
 use crate::syntax::ast::{
     self, Argument, ArgumentKind, ClassBody, ClassKind, ElementKind, Expr, ExprKind, Import, Modification, Statement,
@@ -103,7 +103,11 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// Prefixes of a component whose class is a model or block, or of a connector (MLS 4.4.2, 4.4.4).
-    pub(in crate::instance) fn check_prefixes(&mut self, declared: &ast::Component, template: &crate::instance::template::Template<'a>) {
+    pub(in crate::instance) fn check_prefixes(
+        &mut self,
+        declared: &ast::Component,
+        template: &crate::instance::template::Template<'a>,
+    ) {
         let p = declared.prefix;
         let at = declared.name.span;
         let name = declared.name.name;
@@ -143,7 +147,11 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// A block has inputs and outputs only (MLS 4.6).
-    pub(in crate::instance) fn check_block_port(&mut self, declared: &ast::Component, template: &crate::instance::template::Template<'a>) {
+    pub(in crate::instance) fn check_block_port(
+        &mut self,
+        declared: &ast::Component,
+        template: &crate::instance::template::Template<'a>,
+    ) {
         let directed = |c: &ast::Component| {
             c.prefix.causality.is_some()
                 || matches!(c.prefix.variability, Some(Variability::Parameter | Variability::Constant))

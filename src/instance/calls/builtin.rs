@@ -1,12 +1,12 @@
 //! Built-in operators and functions (MLS 3.7, 10.3).
 
-use crate::instance::value::{Val, size_text, wider};
-use crate::instance::{Instance, View};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::expr::differentiate::Leaf;
 use crate::expr::{Binary, ExprId, Exprs, Node, Rel, Unary};
-use crate::types::{MessagePart, Type, Variability};
+use crate::instance::value::{Val, size_text, wider};
+use crate::instance::{Instance, View};
 use crate::syntax::ast::{Expr, ExprKind, Ident, Reference};
+use crate::types::{MessagePart, Type, Variability};
 use std::rc::Rc;
 
 /// Mathematical functions of one argument.
@@ -68,9 +68,7 @@ impl<'a> Instance<'a, '_> {
             "noEvent" => self.without_events(args.first(), name, view, span),
             "smooth" => self.without_events(args.get(1), name, view, span),
             "pre" => {
-                let before = std::mem::replace(&mut self.eval.before, true);
-                let value = self.one(name, args, view, span);
-                self.eval.before = before;
+                let value = self.in_mode(|m| m.before = true, |s| s.one(name, args, view, span));
                 value.and_then(|v| self.pre(&v, span))
             }
             "edge" | "change" => self.one(name, args, view, span).and_then(|v| self.changes(name, &v, span)),
@@ -165,14 +163,11 @@ impl<'a> Instance<'a, '_> {
         let Some(arg) = arg else {
             return self.fail(Code::BadCall, &format!("`{name}` needs an expression"), span);
         };
-        let before = std::mem::replace(&mut self.eval.no_event, true);
-        let value = self.eval(arg, view);
-        self.eval.no_event = before;
-        value
+        self.in_mode(|m| m.no_event = true, |s| s.eval(arg, view))
     }
 
     fn moment(&mut self, node: Node, span: Span) -> Option<Val> {
-        if self.eval.constant {
+        if self.eval.mode.constant {
             return self.fail(Code::NotConstant, "this is not known before the run", span);
         }
         Some(Val::Scalar(self.exprs.intern(node), Type::Boolean))
@@ -180,7 +175,7 @@ impl<'a> Instance<'a, '_> {
 
     /// `der` of any expression, by the chain rule where it is not a plain variable.
     fn der(&mut self, v: &Val, span: Span) -> Option<Val> {
-        if self.eval.constant {
+        if self.eval.mode.constant {
             return self.fail(Code::NotConstant, "a derivative is not known before the run", span);
         }
         if matches!(v.element_type(), Some(ty) if ty != Type::Real) {
@@ -217,7 +212,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     fn pre(&mut self, v: &Val, span: Span) -> Option<Val> {
-        let mut failed = self.eval.constant;
+        let mut failed = self.eval.mode.constant;
         let value = v.map(&mut |e, _| match self.exprs.node(e) {
             Node::Var(var) => self.exprs.pre(var),
             Node::Num(_) => e,
@@ -256,7 +251,7 @@ impl<'a> Instance<'a, '_> {
         if self.exprs.as_num(i).is_some_and(|x| x <= 0.0) {
             return self.fail(Code::OutOfRange, "the interval of `sample` must be positive", span);
         }
-        if self.eval.constant {
+        if self.eval.mode.constant {
             return self.fail(Code::NotConstant, "`sample` is not known before the run", span);
         }
         Some(Val::Scalar(self.exprs.sample(s, i), Type::Boolean))
@@ -274,7 +269,7 @@ impl<'a> Instance<'a, '_> {
     /// `inStream(h)`, `actualStream(h)`.
     fn stream(&mut self, name: &str, args: &'a [Expr], view: View, span: Span) -> Option<Val> {
         let value = self.one(name, args, view, span)?;
-        if self.eval.constant {
+        if self.eval.mode.constant {
             return self.fail(Code::NotConstant, "this is not known before the run", span);
         }
         let mut scalars = Vec::new();
@@ -300,7 +295,7 @@ impl<'a> Instance<'a, '_> {
         let ([delayed, time] | [delayed, time, _]) = args else {
             return self.fail(Code::BadCall, "`delay` takes an expression and a time", span);
         };
-        if self.eval.constant {
+        if self.eval.mode.constant {
             return self.fail(Code::NotConstant, "`delay` is not known before the run", span);
         }
         let longest = args.get(2).map(|e| self.constant(e, view).and_then(|v| v.as_number(&self.exprs)));
@@ -341,7 +336,7 @@ impl<'a> Instance<'a, '_> {
         let Ok([x, up, down]) = <[ExprId; 3]>::try_from(values?) else {
             return self.fail(Code::BadCall, "`semiLinear` takes three numbers", span);
         };
-        let quiet = self.eval.no_event || self.variability(x) <= Variability::Discrete;
+        let quiet = self.eval.mode.no_event || self.variability(x) <= Variability::Discrete;
         let c =
             if quiet { self.exprs.rel(Rel::Ge, x, Exprs::ZERO) } else { self.exprs.event_rel(Rel::Ge, x, Exprs::ZERO) };
         let (a, b) = (self.exprs.mul(up, x), self.exprs.mul(down, x));
@@ -370,7 +365,7 @@ impl<'a> Instance<'a, '_> {
 
     /// Whole part of a quotient with the events that Modelica asks for (MLS 3.7.2).
     fn whole(&mut self, e: ExprId) -> ExprId {
-        if self.eval.no_event || self.eval.procedure || self.variability(e) <= Variability::Discrete {
+        if self.eval.mode.no_event || self.eval.mode.procedure || self.variability(e) <= Variability::Discrete {
             self.exprs.floor(e)
         } else {
             self.exprs.event_floor(e)
@@ -411,7 +406,7 @@ impl<'a> Instance<'a, '_> {
         let turned = self.exprs.neg(e);
         let (down, up) = (self.whole(e), self.whole(turned));
         let up = self.exprs.neg(up);
-        let quiet = self.eval.no_event || self.eval.procedure || self.variability(e) <= Variability::Discrete;
+        let quiet = self.eval.mode.no_event || self.eval.mode.procedure || self.variability(e) <= Variability::Discrete;
         let positive =
             if quiet { self.exprs.rel(Rel::Ge, e, Exprs::ZERO) } else { self.exprs.event_rel(Rel::Ge, e, Exprs::ZERO) };
         self.exprs.if_(positive, down, up)
@@ -436,7 +431,12 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// `sum`, `product`, `min`, `max` over values.
-    pub(in crate::instance) fn reduction(&mut self, function: &'a Reference, values: Vec<Val>, span: Span) -> Option<Val> {
+    pub(in crate::instance) fn reduction(
+        &mut self,
+        function: &'a Reference,
+        values: Vec<Val>,
+        span: Span,
+    ) -> Option<Val> {
         let name = function.parts[0].name.name.as_str();
         let op = match name {
             "sum" => Binary::Add,
@@ -587,7 +587,7 @@ impl<'a> Instance<'a, '_> {
 
     /// A size: known before the run, or known inside the function being evaluated.
     fn dimension_in(&mut self, e: &'a Expr, view: View) -> Option<usize> {
-        if self.eval.frame == 0 && !self.eval.procedure {
+        if self.eval.frame == 0 && !self.eval.mode.procedure {
             return self.dimension(e, view);
         }
         let (x, _) = self.known_number(e, view)?;
@@ -677,9 +677,11 @@ impl<'a> Instance<'a, '_> {
             "size", "zeros", "ones", "fill", "linspace", "noEvent", "smooth", "pre", "edge", "change", "sample",
             "homotopy", "initial",
         ];
-        let mut d =
-            Diagnostic::new(Code::UnknownFunction, format!("there is no function `{}`", crate::instance::errors::short(&name)))
-                .at(function.span, "not found");
+        let mut d = Diagnostic::new(
+            Code::UnknownFunction,
+            format!("there is no function `{}`", crate::instance::errors::short(&name)),
+        )
+        .at(function.span, "not found");
         if name == "pow" {
             d = d.help("write `x^y`");
         } else if let Some(near) = crate::instance::errors::nearest(&name, KNOWN) {

@@ -1,18 +1,21 @@
 //! Calls: built-in functions, record constructors, user functions (written out as expressions where that is possible).
 
+use crate::diag::{Code, Diagnostic, Span};
+use crate::expr::ExprId;
 use crate::instance::builtin::retyped;
-use crate::instance::expressions::Work;
+use crate::instance::calls::binding::is_input;
+use crate::instance::calls::locals::in_order_of_use;
+use crate::instance::evaluation::state::Mode;
+use crate::instance::evaluation::state::Work;
 use crate::instance::files::Place;
 use crate::instance::lookup::{Builtin, Found};
 use crate::instance::template::{Kind, Template};
-use crate::instance::value::{Val, size_text};
+use crate::instance::value::Val;
 use crate::instance::vectorised::Given;
 use crate::instance::{ClassRef, Instance, ScopeId, View};
-use crate::diag::{Code, Diagnostic, Span};
-use crate::expr::{ExprId, Exprs};
-use crate::types::{Type, Variability};
 use crate::syntax::ast::{self, Causality, ClassKind, Expr, Ident, Reference};
 use crate::syntax::symbol::Symbol;
+use crate::types::{Type, Variability};
 use std::rc::Rc;
 
 /// Deepest nesting of function calls that are written out.
@@ -196,7 +199,7 @@ impl<'a> Instance<'a, '_> {
     /// whatever a text depends on.
     fn argument(&mut self, e: &'a Expr, text: bool, view: View) -> Option<Val> {
         let value = self.eval(e, view)?;
-        if text && !value.dims().is_empty() && self.eval.frame == 0 && !self.eval.procedure {
+        if text && !value.dims().is_empty() && self.eval.frame == 0 && !self.eval.mode.procedure {
             let mut scalars = Vec::new();
             value.scalars(&mut scalars);
             let fixed = scalars.iter().all(|e| self.variability(*e) <= Variability::Parameter);
@@ -207,7 +210,7 @@ impl<'a> Instance<'a, '_> {
         if let Val::Scalar(id, ty) = value
             && (text || ty == Type::Integer)
         {
-            let outside = self.eval.frame == 0 && !self.eval.procedure;
+            let outside = self.eval.frame == 0 && !self.eval.mode.procedure;
             let open = self.exprs.as_num(id).is_none() && self.variability(id) <= Variability::Parameter;
             if outside
                 && open
@@ -227,24 +230,8 @@ impl<'a> Instance<'a, '_> {
         Some(retyped(&self.eval(arg, view)?, Type::Enumeration(i)))
     }
 
-    /// Components of a function or record that pass a test.
-    pub(in crate::instance) fn formals(
-        &self,
-        callee: &Callee<'a>,
-        wanted: impl Fn(&ast::Component, bool) -> bool,
-    ) -> Vec<Formal<'a>> {
-        let with_index = (0u32..).zip(&callee.template.elements);
-        let found = with_index.filter_map(|(index, e)| match e.kind {
-            Kind::Component(component) if wanted(component, e.protected) => {
-                Some(Formal { name: e.name, component, index, view: View { scope: callee.scope, base: e.base } })
-            }
-            _ => None,
-        });
-        found.collect()
-    }
-
     /// A value of a record class from its constructor.
-    fn construct(
+    pub(in crate::instance) fn construct(
         &mut self,
         callee: &Callee<'a>,
         positional: Vec<Val>,
@@ -254,210 +241,13 @@ impl<'a> Instance<'a, '_> {
         let formals = self.formals(callee, |c, protected| {
             !protected && !matches!(c.prefix.variability, Some(ast::Variability::Constant))
         });
-        let before = self.enter_frame();
-        let bound = self.bind(callee, &formals, positional, named, span);
-        let mut fields = Vec::new();
-        if bound.is_some() {
-            for f in &formals {
-                let i = self.local(f.name);
-                fields.push((f.name, i.map(|i| self.eval.locals[i].1.clone())));
-            }
-        }
-        self.leave_frame(before);
-        bound?;
-        let fields: Option<Vec<_>> = fields.into_iter().map(|(n, v)| Some((n, v?))).collect();
-        let fields = fields?;
+        let fields = self.in_frame(|s| {
+            s.bind(callee, &formals, positional, named, span)?;
+            let value = |f: &Formal<'a>| Some((f.name, s.eval.locals[s.local(f.name)?].1.clone()));
+            formals.iter().map(value).collect::<Option<Vec<_>>>()
+        })?;
         let class = self.operator_class_of(&callee.template);
         Some(Val::Record(Rc::new(crate::instance::value::Record { fields, class })))
-    }
-
-    pub(in crate::instance) fn enter_frame(&mut self) -> (usize, usize, bool) {
-        let before = (self.eval.frame, self.eval.locals.len(), self.eval.no_event);
-        self.eval.frame = self.eval.locals.len();
-        self.eval.no_event = true;
-        before
-    }
-
-    pub(in crate::instance) fn leave_frame(&mut self, before: (usize, usize, bool)) {
-        self.eval.locals.truncate(before.1);
-        (self.eval.frame, _, self.eval.no_event) = before;
-    }
-
-    /// Does something in a frame of its own, with the arguments of a call bound to the inputs of its function.
-    pub(in crate::instance) fn with_inputs<T>(
-        &mut self,
-        callee: &Callee<'a>,
-        positional: Vec<Val>,
-        named: Vec<(Ident, Val)>,
-        span: Span,
-        f: impl FnOnce(&mut Self) -> Option<T>,
-    ) -> Option<T> {
-        let inputs = self.formals(callee, is_input);
-        let before = self.enter_frame();
-        let value = self.bind(callee, &inputs, positional, named, span).and_then(|()| f(self));
-        self.leave_frame(before);
-        value
-    }
-
-    /// Binds arguments to inputs in a fresh frame; defaults may use inputs before them.
-    pub(in crate::instance) fn bind(
-        &mut self,
-        callee: &Callee<'a>,
-        formals: &[Formal<'a>],
-        positional: Vec<Val>,
-        named: Vec<(Ident, Val)>,
-        span: Span,
-    ) -> Option<()> {
-        if positional.len() > formals.len() {
-            let message =
-                format!("`{}` takes {} arguments, and {} are given", callee.name, formals.len(), positional.len());
-            return self.fail(Code::BadCall, &message, span);
-        }
-        if let Some((name, _)) = named.iter().find(|(n, _)| formals.iter().all(|f| f.name != n.name)) {
-            let names: Vec<Symbol> = formals.iter().map(|f| f.name).collect();
-            let mut d = Diagnostic::new(Code::BadCall, format!("`{}` has no input `{}`", callee.name, name.name))
-                .at(name.span, "not an input");
-            d = match crate::instance::errors::nearest(name.name.as_str(), names.iter().map(|n| n.as_str())) {
-                Some(near) => d.help(format!("did you mean `{near}`?")),
-                None => d.help(crate::instance::errors::list_names("it takes", &names)),
-            };
-            self.report(d);
-            return None;
-        }
-        let mut positional = positional.into_iter();
-        for f in formals {
-            let given =
-                positional.next().or_else(|| named.iter().find(|(n, _)| n.name == f.name).map(|(_, v)| v.clone()));
-            let given_here = given.is_some();
-            let value = match given {
-                Some(v @ Val::Function(..)) if self.is_functional(f) => v,
-                Some(v) => self.fit_argument(callee, f, v, span)?,
-                None => match self.default_value(f)? {
-                    Some(v) => v,
-                    None => {
-                        let message = format!("`{}` needs a value for its input `{}`", callee.name, f.name);
-                        let d = Diagnostic::new(Code::BadCall, message)
-                            .at(span, "this call")
-                            .at(f.component.name.span, "declared here without a default");
-                        self.report(d);
-                        return None;
-                    }
-                },
-            };
-            let place = match given_here {
-                true => span,
-                false => self.reached(f.view.scope, f.index).binding.map_or(span, |b| b.expr.span),
-            };
-            self.check_bounds(callee, f, &value, place);
-            self.eval.locals.push((f.name, value));
-        }
-        Some(())
-    }
-
-    /// A number given to an input must lie within the bounds of its declaration; reported once however often it is called.
-    fn check_bounds(&mut self, callee: &Callee<'a>, f: &Formal<'a>, value: &Val, span: Span) {
-        let Some(x) = value.as_number(&self.exprs) else { return };
-        let bound = match (declared_number(f.component, "min"), declared_number(f.component, "max")) {
-            (Some(low), _) if x < low => format!("less than its `min`, {low}"),
-            (_, Some(high)) if x > high => format!("more than its `max`, {high}"),
-            _ => return,
-        };
-        let message = format!("the input `{}` of `{}` is {x}, {bound}", f.name, callee.name);
-        if self.diagnostics.iter().all(|d| d.message != message) {
-            self.report(
-                Diagnostic::new(Code::OutOfRange, message)
-                    .at(span, "this value")
-                    .at(f.component.name.span, "declared here")
-                    .help("give a value within the bounds, in the unit of the input"),
-            );
-        }
-    }
-
-    /// Checks an argument against the declared type and number of dimensions.
-    fn fit_argument(&mut self, callee: &Callee<'a>, f: &Formal<'a>, value: Val, span: Span) -> Option<Val> {
-        let wanted = match self.class_at(f.view, &f.component.class)? {
-            Found::Builtin(b) => Some(b),
-            Found::Class(c) => {
-                let t = self.template(c.class, c.parent);
-                if matches!(t.kind, ClassKind::Function { .. }) {
-                    let message = format!(
-                        "input `{}` of `{}` is a function, and this is {}",
-                        f.name,
-                        callee.name,
-                        value.describe()
-                    );
-                    return self.fail(Code::BadCall, &message, span);
-                }
-                if t.dims.is_empty() { t.builtin } else { None }
-            }
-            Found::Component(..) => None,
-        };
-        let Some(b) = wanted else { return Some(value) };
-        let declared = f.component.subscripts.len();
-        if value.dims().len() != declared {
-            let message = format!(
-                "input `{}` of `{}` is {}, and this is {}",
-                f.name,
-                callee.name,
-                if declared == 0 { "a single value".into() } else { format!("an array of {declared} dimensions") },
-                value.describe()
-            );
-            return self.fail(Code::BadCall, &message, span);
-        }
-        let fits = match (b, value.element_type()) {
-            (Builtin::Real, Some(Type::Real | Type::Integer)) => true,
-            (Builtin::Integer, Some(Type::Integer)) | (Builtin::Boolean, Some(Type::Boolean)) => true,
-            (Builtin::Enumeration(a), Some(Type::Enumeration(b))) => a == b,
-            (Builtin::Object, _) => matches!(value, Val::Object(_)),
-            (Builtin::String, _) => matches!(value.elements().first(), Some(Val::Text(_)) | None),
-            (_, None) => value.elements().is_empty(),
-            _ => false,
-        };
-        if !fits {
-            let message = format!(
-                "input `{}` of `{}` is of type {}, and this is {}",
-                f.name,
-                callee.name,
-                crate::instance::errors::builtin_name(b),
-                value.describe()
-            );
-            return self.fail(Code::BadCall, &message, span);
-        }
-        Some(if b == Builtin::Real { value.with_type(Type::Real) } else { value })
-    }
-
-    /// The declared default: `None` on failure, `Some(None)` when there is none.
-    fn default_value(&mut self, f: &Formal<'a>) -> Option<Option<Val>> {
-        let reached = self.reached(f.view.scope, f.index);
-        match reached.binding {
-            Some(b) => {
-                // In the frame of the call, so that earlier inputs are seen.
-                let value = if b.access.is_empty() { self.eval(b.expr, b.view) } else { self.binding_value(&b, true) };
-                value.map(Some)
-            }
-            None => match self.class_at(f.view, &f.component.class)? {
-                // A record without a value takes its fields' defaults.
-                Found::Class(c) if f.component.subscripts.is_empty() => self.default_record(&c),
-                _ => Some(None),
-            },
-        }
-    }
-
-    fn default_record(&mut self, class: &ClassRef<'a>) -> Option<Option<Val>> {
-        let template = self.template(class.class, class.parent);
-        if !matches!(template.kind, ClassKind::Record { .. }) {
-            return Some(None);
-        }
-        let scope = self.package(class);
-        let name = self.library.full_name(class.class);
-        let callee = Callee { scope, template, name };
-        let span = self.library.class(class.class).name.span;
-        let mark = self.diagnostics.len();
-        let value = self.construct(&callee, Vec::new(), Vec::new(), span);
-        if value.is_none() {
-            self.diagnostics.truncate(mark);
-        }
-        Some(value)
     }
 
     pub(in crate::instance) fn call_function(
@@ -533,7 +323,7 @@ impl<'a> Instance<'a, '_> {
         named: Vec<(Ident, Val)>,
         span: Span,
     ) -> Option<Val> {
-        if self.eval.procedure {
+        if self.eval.mode.procedure {
             return self.procedure_body(callee, positional, named, span);
         }
         if self.eval.depth > 0 {
@@ -561,7 +351,9 @@ impl<'a> Instance<'a, '_> {
                 wrong = Some(d.help("write `algorithm` and `:=`"));
             }
             let (mut targets, mut in_when) = (Vec::new(), Vec::new());
-            body.algorithms.iter().for_each(|s| crate::instance::algorithm::assigned(s, false, &mut targets, &mut in_when));
+            body.algorithms
+                .iter()
+                .for_each(|s| crate::instance::algorithm::assigned(s, false, &mut targets, &mut in_when));
             if let Some(part) = targets.iter().find(|p| inputs.iter().any(|f| f.name == p.name.name)) {
                 let message =
                     format!("`{}` is an input of `{}` and cannot be assigned to", part.name.name, callee.name);
@@ -598,14 +390,11 @@ impl<'a> Instance<'a, '_> {
         named: Vec<(Ident, Val)>,
         span: Span,
     ) -> Option<Val> {
-        let was = std::mem::replace(&mut self.eval.procedure, false);
-        let under = self.eval.under_procedure;
-        self.eval.under_procedure |= was;
-        let before = self.enter_frame();
-        let value = self.inline_body(callee, positional, named, span);
-        self.leave_frame(before);
-        (self.eval.procedure, self.eval.under_procedure) = (was, under);
-        value
+        let change = |m: &mut Mode| {
+            m.under_procedure |= m.procedure;
+            m.procedure = false;
+        };
+        self.in_mode(change, |s| s.in_frame(|s| s.inline_body(callee, positional, named, span)))
     }
 
     fn inline_body(
@@ -645,132 +434,6 @@ impl<'a> Instance<'a, '_> {
             _ => Some(Val::Tuple(Rc::new(outputs))),
         }
     }
-
-    /// The initial value of an output or protected component of a function; zero where nothing is said.
-    pub(in crate::instance) fn declared_local(&mut self, f: &Formal<'a>) -> Option<Val> {
-        let reached = self.reached(f.view.scope, f.index);
-        let value = match reached.binding {
-            Some(b) if b.access.is_empty() => Some(self.eval(b.expr, b.view)?),
-            Some(b) => Some(self.binding_value(&b, true)?),
-            None => None,
-        };
-        let blank = self.blank(f, value.as_ref())?;
-        match value {
-            None => Some(blank),
-            Some(v) => {
-                if v.dims() != blank.dims() {
-                    let message = format!(
-                        "`{}` has size {}, and its value {}",
-                        f.name,
-                        size_text(blank.dims()),
-                        size_text(v.dims())
-                    );
-                    return self.fail(Code::SizeMismatch, &message, f.component.name.span);
-                }
-                let ty = blank.element_type().unwrap_or(Type::Real);
-                Some(if ty == Type::Real { v.with_type(ty) } else { v })
-            }
-        }
-    }
-
-    /// Zeros in the declared shape.
-    fn blank(&mut self, f: &Formal<'a>, value: Option<&Val>) -> Option<Val> {
-        let mut found = self.class_at(f.view, &f.component.class)?;
-        // `output R r(x = u)`: fields take what the declaration says of them
-        let given = self.reached(f.view.scope, f.index).args;
-        if let Found::Class(c) = &mut found
-            && !given.is_empty()
-        {
-            c.args = given.into_iter().chain(c.args.iter().cloned()).collect();
-        }
-        let one = self.blank_one(&found, f.component.name.span)?;
-        let mut dims = Vec::new();
-        for (i, s) in f.component.subscripts.iter().enumerate() {
-            dims.push(match s {
-                // without a value of its own it takes the size of what is assigned to it (MLS 12.4.5)
-                ast::Subscript::All(_) => value.and_then(|v| v.dims().get(i).copied()).unwrap_or(0),
-                ast::Subscript::Expr(e) => match self.enumeration_range(e, f.view) {
-                    Some(all) => all.len(),
-                    None => self.known_number(e, f.view)?.0.max(0.0) as usize,
-                },
-            });
-        }
-        if dims.iter().product::<usize>() > 1_000_000 {
-            return self.fail(Code::TooLarge, "this array has more than a million elements", f.component.name.span);
-        }
-        Some(repeated(&one, dims))
-    }
-
-    fn blank_one(&mut self, found: &Found<'a>, span: Span) -> Option<Val> {
-        let of = |b: Builtin| match b {
-            Builtin::Real => Val::Scalar(Exprs::ZERO, Type::Real),
-            Builtin::Integer => Val::Scalar(Exprs::ZERO, Type::Integer),
-            Builtin::Boolean => Val::Scalar(Exprs::ZERO, Type::Boolean),
-            Builtin::Enumeration(i) => Val::Scalar(Exprs::ONE, Type::Enumeration(i)),
-            // an output of this type is made by what Rust knows of the function
-            Builtin::String | Builtin::Object => Val::text(""),
-        };
-        match found {
-            Found::Builtin(b) => Some(of(*b)),
-            Found::Class(c) => {
-                let t = self.template(c.class, c.parent);
-                let dims = self.type_dims(&t)?;
-                if let Some(b) = t.builtin {
-                    return Some(repeated(&of(b), dims));
-                }
-                let mut fields = Vec::new();
-                let scope = self.package(c);
-                let callee = Callee { scope, template: t, name: String::new() };
-                for f in self.formals(&callee, |_, _| true) {
-                    let value = self.declared_local(&f)?;
-                    fields.push((f.name, value));
-                }
-                let class = self.operator_class(c);
-                let one = Val::Record(Rc::new(crate::instance::value::Record { fields, class }));
-                Some(repeated(&one, dims))
-            }
-            Found::Component(..) => self.fail(Code::WrongClassKind, "a type is needed here", span),
-        }
-    }
-
-    /// The dimensions that a type brings, as `type Orientation = Real[3, 3]` does.
-    fn type_dims(&mut self, t: &Template<'a>) -> Option<Vec<usize>> {
-        let mut dims = Vec::new();
-        for (subscripts, base) in t.dims.iter().rev() {
-            let view = t.bases[*base as usize].parent;
-            for s in *subscripts {
-                dims.push(match s {
-                    ast::Subscript::All(span) => return self.fail(Code::NoValue, "this size is not given", *span),
-                    ast::Subscript::Expr(e) => self.extent(e, view)?.size,
-                });
-            }
-        }
-        Some(dims)
-    }
-}
-
-/// Locals so that each comes after those that its sizes and its value name (MLS 12.4.4).
-pub(in crate::instance) fn in_order_of_use<'f, 'a>(locals: &'f [Formal<'a>]) -> Vec<&'f Formal<'a>> {
-    let named: Vec<Vec<Symbol>> = locals.iter().map(|f| crate::instance::deduce::names_of_declaration(f.component)).collect();
-    let mut sorted: Vec<&Formal<'a>> = Vec::with_capacity(locals.len());
-    let mut open: Vec<usize> = (0..locals.len()).collect();
-    while !open.is_empty() {
-        let waits = |k: usize, on: usize| on != k && named[k].contains(&locals[on].name);
-        // those that use each other stay as they are declared
-        let at = open.iter().position(|&k| !open.iter().any(|&on| waits(k, on))).unwrap_or(0);
-        sorted.push(&locals[open.remove(at)]);
-    }
-    sorted
-}
-
-/// An array of these dimensions, all elements of which are one value.
-fn repeated(one: &Val, dims: Vec<usize>) -> Val {
-    if dims.is_empty() {
-        return one.clone();
-    }
-    let inner = one.dims().to_vec();
-    let elements = (0..dims.iter().product()).flat_map(|_| one.elements().to_vec()).collect();
-    Val::array(dims.into_iter().chain(inner).collect(), elements)
 }
 
 /// Whether a function has no output.
@@ -788,22 +451,6 @@ fn gives_text(template: &Template<'_>) -> bool {
         Kind::Component(c) => c.prefix.causality == Some(Causality::Output) && c.class.parts[0].name == "String",
         Kind::Class(_) => false,
     })
-}
-
-/// An attribute that is written as a number.
-fn declared_number(component: &ast::Component, attribute: &str) -> Option<f64> {
-    let arguments = &component.modification.as_ref()?.arguments;
-    let value = arguments.iter().find_map(|argument| match &argument.kind {
-        ast::ArgumentKind::Modify { path, modification, .. } if path.parts[0].name.as_str() == attribute => {
-            modification.as_ref()?.value.as_ref()
-        }
-        _ => None,
-    });
-    value?.as_number()
-}
-
-pub(in crate::instance) fn is_input(c: &ast::Component, protected: bool) -> bool {
-    !protected && c.prefix.causality == Some(Causality::Input)
 }
 
 fn has_external(class: &ast::Class) -> bool {

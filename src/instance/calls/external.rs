@@ -1,17 +1,17 @@
 //! Calls of external functions: those that [`crate::external`] knows by their C names are carried out, with the arguments
 //! of the C call in its order.
 
-use crate::instance::Instance;
-use crate::instance::call::Callee;
-use crate::instance::files::Place;
-use crate::instance::value::Val;
 use crate::diag::Code;
 use crate::expr::ExprId;
 use crate::expr::function::{External, Function, Handle, Stmt, Term};
 use crate::external::{Builtin, Given, NO_NAME, Object};
-use crate::types::Type;
+use crate::instance::Instance;
+use crate::instance::call::Callee;
+use crate::instance::files::Place;
+use crate::instance::value::Val;
 use crate::syntax::ast::{Causality, ClassBody, Ident};
 use crate::syntax::symbol::Symbol;
+use crate::types::Type;
 use std::sync::Arc;
 
 /// `result = name(arguments)`, as it stands behind `external`.
@@ -183,9 +183,10 @@ impl<'a> Instance<'a, '_> {
     /// The values with which outputs and protected variables go into the call, where they are declared with one.
     fn prepare_locals(&mut self, callee: &Callee<'a>) -> Option<()> {
         let formals = self.formals(callee, |c, p| {
-            !crate::instance::call::is_input(c, p) && c.modification.as_ref().is_some_and(|m| m.value.is_some())
+            !crate::instance::calls::binding::is_input(c, p)
+                && c.modification.as_ref().is_some_and(|m| m.value.is_some())
         });
-        for f in crate::instance::call::in_order_of_use(&formals) {
+        for f in crate::instance::calls::locals::in_order_of_use(&formals) {
             let value = self.declared_local(f)?;
             self.eval.locals.push((f.name, value));
         }
@@ -281,7 +282,8 @@ impl<'a> Instance<'a, '_> {
         for (name, blank) in blanks {
             filled.push((name, blank.map(&mut |e, _| results.next().unwrap_or(e))));
         }
-        let output = |f: &crate::instance::call::Formal<'a>| filled.iter().find(|(n, _)| *n == f.name).map(|(_, v)| v.clone());
+        let output =
+            |f: &crate::instance::call::Formal<'a>| filled.iter().find(|(n, _)| *n == f.name).map(|(_, v)| v.clone());
         let outputs: Option<Vec<Val>> = formals.iter().map(output).collect();
         Self::outputs(outputs?)
     }
@@ -321,13 +323,14 @@ impl<'a> Instance<'a, '_> {
         given: crate::instance::vectorised::Given,
         place: Place,
     ) -> Option<Val> {
-        let constructor = match self.member(&crate::instance::lookup::Found::Class(class.clone()), Symbol::new("constructor")) {
-            Some(crate::instance::lookup::Found::Class(c)) => c,
-            _ => {
-                let message = format!("`{}` has no `constructor`", self.library.full_name(class.class));
-                return self.fail(Code::BadCall, &message, place.call);
-            }
-        };
+        let constructor =
+            match self.member(&crate::instance::lookup::Found::Class(class.clone()), Symbol::new("constructor")) {
+                Some(crate::instance::lookup::Found::Class(c)) => c,
+                _ => {
+                    let message = format!("`{}` has no `constructor`", self.library.full_name(class.class));
+                    return self.fail(Code::BadCall, &message, place.call);
+                }
+            };
         let template = self.template(constructor.class, constructor.parent);
         let scope = self.package(&constructor);
         let callee = Callee { scope, template, name: self.library.full_name(constructor.class) };

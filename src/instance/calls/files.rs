@@ -1,14 +1,14 @@
 //! Tables that models read from files: the external functions behind `Signal.Functions.readTable` and `tableSize`,
 //! carried out while the model is built, so that sizes may depend on them.
 
+use crate::diag::{Code, Diagnostic, Span};
 use crate::instance::call::Callee;
 use crate::instance::value::Val;
 use crate::instance::{Instance, Node, View};
-use crate::diag::{Code, Diagnostic, Span};
-use crate::types::Type;
 use crate::results::table::{Axes, Matrix, read_table};
 use crate::syntax::ast::{ClassBody, Expr, ExprKind, Ident};
 use crate::syntax::symbol::Symbol;
+use crate::types::Type;
 use std::rc::Rc;
 
 /// An external function that bramah knows.

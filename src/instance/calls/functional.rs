@@ -1,16 +1,20 @@
 //! Functions as arguments of functions (MLS 12.4.2).
 
+use crate::diag::Code;
 use crate::instance::call::Formal;
 use crate::instance::lookup::Found;
 use crate::instance::value::Val;
 use crate::instance::{ClassRef, Instance, View};
-use crate::diag::Code;
 use crate::syntax::ast::{ClassKind, Expr, Ident, Path, Reference};
 use std::rc::Rc;
 
 impl<'a> Instance<'a, '_> {
     /// A function as a value; `None` for other classes.
-    pub(in crate::instance) fn function_value(&mut self, class: &ClassRef<'a>, bound: Vec<(Ident, Val)>) -> Option<Val> {
+    pub(in crate::instance) fn function_value(
+        &mut self,
+        class: &ClassRef<'a>,
+        bound: Vec<(Ident, Val)>,
+    ) -> Option<Val> {
         let template = self.template(class.class, class.parent);
         if !matches!(template.kind, ClassKind::Function { .. }) {
             return None;
@@ -53,7 +57,10 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// The function that an input of the function being carried out stands for.
-    pub(in crate::instance) fn functional_input(&self, function: &Reference) -> Option<(ClassRef<'a>, Rc<Vec<(Ident, Val)>>)> {
+    pub(in crate::instance) fn functional_input(
+        &self,
+        function: &Reference,
+    ) -> Option<(ClassRef<'a>, Rc<Vec<(Ident, Val)>>)> {
         let [part] = function.parts.as_slice() else { return None };
         match &self.eval.locals[self.local(part.name.name)?].1 {
             Val::Function(f, bound) => Some((self.functions[*f as usize].clone(), bound.clone())),

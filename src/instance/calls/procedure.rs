@@ -4,18 +4,21 @@
 //! Expressions inside are built in the same pool, with locals standing as variables numbered from [`LOCAL`] on, and
 //! then turned into terms.
 
-use crate::instance::algorithm::assigned;
-use crate::instance::call::{Callee, in_order_of_use, is_input};
-use crate::instance::deduce::Body;
-use crate::instance::expressions::Pick;
-use crate::instance::value::Val;
-use crate::instance::{Instance, View};
 use crate::diag::{Code, Span};
 use crate::expr::function::{Function, Stmt, Term};
 use crate::expr::{ExprId, Exprs, FunctionId, Node, VarId};
-use crate::types::Type;
+use crate::instance::algorithm::assigned;
+use crate::instance::call::Callee;
+use crate::instance::calls::binding::is_input;
+use crate::instance::calls::locals::in_order_of_use;
+use crate::instance::deduce::Body;
+use crate::instance::evaluation::indices::Pick;
+use crate::instance::evaluation::state::Mode;
+use crate::instance::value::Val;
+use crate::instance::{Instance, View};
 use crate::syntax::ast::{self, Causality, Expr, ExprKind, Ident, Reference, Statement, StatementKind};
 use crate::syntax::symbol::Symbol;
+use crate::types::Type;
 
 /// First number of the variables that stand for slots.
 const LOCAL: u32 = 0x4000_0000;
@@ -40,12 +43,9 @@ impl<'a> Instance<'a, '_> {
         named: Vec<(Ident, Val)>,
         span: Span,
     ) -> Option<Val> {
-        let before = self.enter_frame();
-        let inputs = self.formals(callee, is_input);
-        let bound = self.bind(callee, &inputs, positional, named, span);
-        let values: Vec<Val> = self.eval.locals[self.eval.frame..].iter().map(|(_, v)| v.clone()).collect();
-        self.leave_frame(before);
-        bound?;
+        let values = self.with_inputs(callee, positional, named, span, |s| {
+            Some(s.eval.locals[s.eval.frame..].iter().map(|(_, v)| v.clone()).collect::<Vec<Val>>())
+        })?;
         let key = self.procedure_key(callee, &values);
         let known = self.procedures.get(&key).cloned();
         let (function, shapes) = match known {
@@ -103,14 +103,9 @@ impl<'a> Instance<'a, '_> {
         span: Span,
     ) -> Option<(FunctionId, Vec<Val>)> {
         let outer = std::mem::take(&mut self.eval.translation);
-        let was = std::mem::replace(&mut self.eval.procedure, true);
         let not_inline = std::mem::replace(&mut self.eval.not_inline, false);
-        let before = self.enter_frame();
-        let constant = std::mem::replace(&mut self.eval.constant, false);
-        let result = self.translate_body(callee, values, key, span);
-        self.eval.constant = constant;
-        self.leave_frame(before);
-        self.eval.procedure = was;
+        let change = |m: &mut Mode| (m.procedure, m.constant) = (true, false);
+        let result = self.in_mode(change, |s| s.in_frame(|s| s.translate_body(callee, values, key, span)));
         let refused = std::mem::replace(&mut self.eval.not_inline, not_inline);
         self.eval.translation = outer;
         if result.is_none() && refused {
@@ -184,9 +179,7 @@ impl<'a> Instance<'a, '_> {
             self.eval.locals.clone_from(&before);
             let slots = u32::try_from(captures.len()).expect("limited sizes");
             self.eval.translation = Translation { slots, statements: Vec::new(), captures: Some(captures) };
-            self.eval.procedure = true;
-            made = self.translate_loop(s, &changed, view);
-            self.eval.procedure = false;
+            made = self.in_mode(|m| m.procedure = true, |i| i.translate_loop(s, &changed, view));
             captures = self.eval.translation.captures.take().unwrap_or_default();
             if made.is_none() {
                 break;
@@ -357,30 +350,26 @@ impl<'a> Instance<'a, '_> {
         named: Vec<(Ident, Val)>,
         span: Span,
     ) -> Option<Val> {
-        let before = self.enter_frame();
-        let inputs = self.formals(callee, is_input);
-        let done = self.bind(callee, &inputs, positional, named, span).and_then(|()| {
-            let locals = self.formals(callee, |c, p| !is_input(c, p));
+        self.with_inputs(callee, positional, named, span, |s| {
+            let locals = s.formals(callee, |c, p| !is_input(c, p));
             for f in in_order_of_use(&locals) {
-                let value = self.declared_local(f)?;
-                let slots = self.slots_like(&value);
-                self.store(&slots, &value);
-                self.eval.locals.push((f.name, slots));
+                let value = s.declared_local(f)?;
+                let slots = s.slots_like(&value);
+                s.store(&slots, &value);
+                s.eval.locals.push((f.name, slots));
             }
             for (base, i) in callee.template.bases.iter().zip(0u32..) {
                 let ast::ClassBody::Long(body) = &base.ast.body else { continue };
                 let view = View { scope: callee.scope, base: i };
                 for section in &body.algorithms {
-                    if let Some(s) = section.iter().find(|s| returns(s)) {
-                        return self.fail(Code::Unsupported, "a `return` of a function without outputs", s.span);
+                    if let Some(end) = section.iter().find(|s| returns(s)) {
+                        return s.fail(Code::Unsupported, "a `return` of a function without outputs", end.span);
                     }
-                    self.procedure_statements(section, view)?;
+                    s.procedure_statements(section, view)?;
                 }
             }
             Some(Val::Tuple(Vec::new().into()))
-        });
-        self.leave_frame(before);
-        done
+        })
     }
 
     fn boolean_term(&mut self, v: &Val, span: Span) -> Option<Term> {
@@ -485,7 +474,12 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// An element of an array in slots at an index known at run time only; other arrays are copied into slots first.
-    pub(in crate::instance) fn indexed_slot(&mut self, dims: &[usize], elements: &[Val], picks: &[Pick]) -> Option<Val> {
+    pub(in crate::instance) fn indexed_slot(
+        &mut self,
+        dims: &[usize],
+        elements: &[Val],
+        picks: &[Pick],
+    ) -> Option<Val> {
         if picks.iter().any(|p| matches!(p, Pick::Many(_))) {
             return None;
         }

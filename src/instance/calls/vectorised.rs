@@ -1,10 +1,11 @@
 //! Functions of single values called with arrays: one call for each element (MLS 12.4.6).
 
+use crate::diag::{Code, Diagnostic, Span};
 use crate::instance::Instance;
-use crate::instance::call::{Callee, Formal, is_input};
+use crate::instance::call::{Callee, Formal};
+use crate::instance::calls::binding::is_input;
 use crate::instance::lookup::Found;
 use crate::instance::value::{Val, stack};
-use crate::diag::{Code, Diagnostic, Span};
 use crate::syntax::ast::Ident;
 use std::rc::Rc;
 
@@ -19,7 +20,12 @@ pub(in crate::instance) struct Given {
 
 impl<'a> Instance<'a, '_> {
     /// Calls a function, element by element where arguments have more dimensions than their inputs.
-    pub(in crate::instance) fn call_elementwise(&mut self, callee: &Callee<'a>, given: Given, span: Span) -> Option<Val> {
+    pub(in crate::instance) fn call_elementwise(
+        &mut self,
+        callee: &Callee<'a>,
+        given: Given,
+        span: Span,
+    ) -> Option<Val> {
         let mut values = given.positional.iter().chain(given.named.iter().map(|(_, v)| v));
         if values.all(|v| v.dims().is_empty()) {
             return self.call_function(callee, given.positional, given.named, span);

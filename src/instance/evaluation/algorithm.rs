@@ -1,16 +1,17 @@
 //! Statements carried out on symbolic values: what an algorithm computes, as expressions.
 
+use crate::diag::{Code, Diagnostic, Span};
+use crate::expr::{ExprId, Exprs, Rel};
 use crate::instance::deduce::Body;
-use crate::instance::expressions::{Pick, places};
+use crate::instance::evaluation::indices::Pick;
+use crate::instance::evaluation::indices::places;
 use crate::instance::lookup::Found;
 use crate::instance::template::Kind;
 use crate::instance::value::{Val, size_text};
 use crate::instance::{Instance, View};
-use crate::diag::{Code, Diagnostic, Span};
-use crate::expr::{ExprId, Exprs, Rel};
-use crate::types::{Type, Variability};
 use crate::syntax::ast::{Component, Expr, ExprKind, Reference, ReferencePart, Statement, StatementKind, Subscript};
 use crate::syntax::symbol::Symbol;
+use crate::types::{Type, Variability};
 use std::rc::Rc;
 
 /// How a sequence of statements ended.
@@ -380,14 +381,14 @@ impl<'a> Instance<'a, '_> {
 
     /// Whether a value that changes decides if the present statement is carried out.
     fn may_not_come_here(&self) -> bool {
-        !self.eval.guards.is_empty() || self.eval.procedure || self.eval.under_procedure
+        !self.eval.guards.is_empty() || self.eval.mode.procedure || self.eval.mode.under_procedure
     }
 
     /// `assert` in a function: known to hold, known to fail, or left to a procedure.
     fn statement_call(&mut self, call: &'a Expr, view: View) -> Option<Flow> {
         if let ExprKind::Call { function, args, .. } = &call.kind {
             match function.parts[0].name.name.as_str() {
-                "assert" if (self.eval.frame > 0 || self.eval.depth > 0) && !self.eval.keep_asserts => {
+                "assert" if (self.eval.frame > 0 || self.eval.depth > 0) && !self.eval.mode.keep_asserts => {
                     let c = self.eval(args.first()?, view)?;
                     return match c.as_number(&self.exprs) {
                         Some(x) if x != 0.0 => Some(Flow::Next),
@@ -450,9 +451,7 @@ impl<'a> Instance<'a, '_> {
         let Some(condition) = args.first().or_else(|| by_name("condition")) else {
             return self.fail(Code::BadCall, "`assert` needs a condition and a message", call.span);
         };
-        let was = self.set_no_event(true);
-        let value = self.eval(condition, view);
-        self.set_no_event(was);
+        let value = self.in_mode(|m| m.no_event = true, |s| s.eval(condition, view));
         let value = value?;
         let Some((condition, Type::Boolean)) = value.scalar() else {
             return self.wrong_type("a Boolean", &value, condition.span);
@@ -493,7 +492,11 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// Runs statements that are reached under a condition only.
-    pub(in crate::instance) fn guarded<T>(&mut self, guard: ExprId, f: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
+    pub(in crate::instance) fn guarded<T>(
+        &mut self,
+        guard: ExprId,
+        f: impl FnOnce(&mut Self) -> Option<T>,
+    ) -> Option<T> {
         self.eval.guards.push(guard);
         let done = f(self);
         self.eval.guards.pop();
@@ -594,9 +597,7 @@ impl<'a> Instance<'a, '_> {
         let outside = std::mem::take(&mut self.eval.calls);
         for (condition, body) in branches {
             let conditions = self.when_conditions(condition, view)?;
-            let was = std::mem::replace(&mut self.eval.no_event, true);
-            let done = self.execute(body, view);
-            self.eval.no_event = was;
+            let done = self.in_mode(|m| m.no_event = true, |s| s.execute(body, view));
             let calls = std::mem::take(&mut self.eval.calls);
             done?;
             let frame = self.eval.frame;

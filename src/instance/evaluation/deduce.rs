@@ -1,15 +1,15 @@
 //! Loops without a range, `for i loop x[i] = ...`: it is `1:size(x, 1)`, after an array that the variable indexes alone
 //! (MLS 10.4.1.1, 11.2.2.1).
 
-use crate::instance::expressions::Extent;
+use crate::diag::{Code, Diagnostic};
+use crate::instance::evaluation::ranges::Extent;
 use crate::instance::lookup::Found;
 use crate::instance::{Instance, Node, View};
-use crate::diag::{Code, Diagnostic};
-use crate::types::Type;
 use crate::syntax::ast::{
     Component, Equation, EquationKind, Expr, ExprKind, Reference, Statement, StatementKind, Subscript,
 };
 use crate::syntax::symbol::Symbol;
+use crate::types::Type;
 
 /// What a loop repeats.
 #[derive(Clone, Copy)]

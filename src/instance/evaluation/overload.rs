@@ -1,15 +1,16 @@
 //! Operator records: operators and constructors that a record class gives its values (MLS 14).
 
-use crate::instance::call::{Callee, Formal, is_input};
+use crate::diag::{Code, Diagnostic, Span};
+use crate::instance::call::{Callee, Formal};
+use crate::instance::calls::binding::is_input;
 use crate::instance::lookup::{Builtin, Found};
 use crate::instance::template::Template;
 use crate::instance::value::Val;
 use crate::instance::vectorised::Given;
 use crate::instance::{ClassRef, Instance};
-use crate::diag::{Code, Diagnostic, Span};
-use crate::types::Type;
 use crate::syntax::ast::{BinaryOp, Causality, ClassKind, UnaryOp};
 use crate::syntax::symbol::Symbol;
+use crate::types::Type;
 
 /// The name of the operator element behind an operator.
 fn name_of(op: BinaryOp) -> Option<&'static str> {
@@ -65,7 +66,13 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// A binary operator on operator records; `None` where neither side is one.
-    pub(in crate::instance) fn overloaded_binary(&mut self, op: BinaryOp, a: &Val, b: &Val, span: Span) -> Option<Option<Val>> {
+    pub(in crate::instance) fn overloaded_binary(
+        &mut self,
+        op: BinaryOp,
+        a: &Val,
+        b: &Val,
+        span: Span,
+    ) -> Option<Option<Val>> {
         let classes: Vec<u32> = [a, b].into_iter().filter_map(Self::record_class).collect();
         if classes.is_empty() {
             return None;
@@ -127,7 +134,12 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// A unary operator on an operator record; `None` where it is none.
-    pub(in crate::instance) fn overloaded_unary(&mut self, op: UnaryOp, value: &Val, span: Span) -> Option<Option<Val>> {
+    pub(in crate::instance) fn overloaded_unary(
+        &mut self,
+        op: UnaryOp,
+        value: &Val,
+        span: Span,
+    ) -> Option<Option<Val>> {
         let class = Self::record_class(value)?;
         let name = match op {
             UnaryOp::Minus | UnaryOp::ElementMinus => "'-'",

@@ -2,9 +2,9 @@
 
 use crate::expr::{ExprId, Exprs};
 use crate::external::Object;
-use crate::types::{MessagePart, Type};
 use crate::syntax::ast::Ident;
 use crate::syntax::symbol::Symbol;
+use crate::types::{MessagePart, Type};
 use std::rc::Rc;
 
 /// A value.
@@ -235,6 +235,19 @@ fn unify(mut elements: Vec<Val>) -> Vec<Val> {
 pub fn size_text(dims: &[usize]) -> String {
     let parts: Vec<String> = dims.iter().map(usize::to_string).collect();
     format!("[{}]", parts.join(", "))
+}
+
+impl Val {
+    /// Numbers of the wider of their own and the given type.
+    pub(in crate::instance) fn with_type(&self, ty: Type) -> Val {
+        match self {
+            Val::Scalar(e, own) => Val::Scalar(*e, wider(*own, ty).unwrap_or(*own)),
+            Val::Array { dims, elements } => {
+                Val::array(dims.clone(), elements.iter().map(|v| v.with_type(ty)).collect())
+            }
+            other => other.clone(),
+        }
+    }
 }
 
 /// A part of a text, where its value is known.

@@ -1,9 +1,9 @@
 //! Names: from the innermost place outwards, through inherited elements, imports and enclosing classes (MLS 5.3).
 
+use crate::diag::{Code, Diagnostic, Span};
 use crate::instance::modifiers::{Arg, ArgKind, Reached};
 use crate::instance::template::{Base, Element, Kind, Source, Template, What};
 use crate::instance::{ClassRef, ElementState, Enumeration, Inherited, Instance, NodeId, ROOT, Scope, ScopeId, View};
-use crate::diag::{Code, Diagnostic, Span};
 use crate::resolve::ClassId;
 use crate::syntax::ast::{self, ClassBody, Import};
 use crate::syntax::symbol::Symbol;
@@ -327,7 +327,12 @@ impl<'a> Instance<'a, '_> {
 
     /// The base class named in an `extends` clause or short class: looked up beside and around the class, not in what
     /// it inherits.
-    pub(in crate::instance) fn find_base(&mut self, class: ClassId, parent: View, path: &ast::Path) -> Option<Found<'a>> {
+    pub(in crate::instance) fn find_base(
+        &mut self,
+        class: ClassId,
+        parent: View,
+        path: &ast::Path,
+    ) -> Option<Found<'a>> {
         let own = !path.global && matches!(self.library.class(class).body, ClassBody::Long(_));
         if own {
             let bare = self.bare_scope(class, parent);
@@ -465,7 +470,8 @@ impl<'a> Instance<'a, '_> {
             reached.take(arg);
         }
         let of_record = binding.filter(|_| matches!(element.kind, Kind::Component(_))).map(|b| {
-            let access = b.access.iter().copied().chain([crate::instance::modifiers::Access::Field(element.name)]).collect();
+            let access =
+                b.access.iter().copied().chain([crate::instance::modifiers::Access::Field(element.name)]).collect();
             crate::instance::modifiers::Binding { access, ..b }
         });
         // constants come with the class, not with a value of it (MLS 12.6)

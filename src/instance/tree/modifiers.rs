@@ -1,7 +1,7 @@
 //! Which modifier reaches which element: arguments travel from the outermost modification inwards, outer before inner.
 
-use crate::instance::View;
 use crate::diag::Span;
+use crate::instance::View;
 use crate::syntax::ast::{self, ArgumentKind, Expr, Modification};
 use crate::syntax::symbol::Symbol;
 use std::rc::Rc;

@@ -1,8 +1,8 @@
 //! What a class holds, inherited elements included: gathered once per class, shared by all its instances.
 
+use crate::diag::{Code, Diagnostic, Span};
 use crate::instance::lookup::{Builtin, Found};
 use crate::instance::{ClassRef, Instance, View};
-use crate::diag::{Code, Diagnostic, Span};
 use crate::resolve::ClassId;
 use crate::syntax::ast::{self, ArgumentKind, ClassBody, ElementKind};
 use crate::syntax::symbol::Symbol;
