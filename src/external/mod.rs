@@ -2,6 +2,7 @@
 //! Library's tables, texts and random numbers. [`builtin`] has them by the names of the C functions.
 
 mod curve;
+mod fourier;
 mod linear;
 mod options;
 mod random;
@@ -90,6 +91,7 @@ pub fn builtin(name: &str) -> Option<Builtin> {
         "ModelicaRandom_xorshift128plus" => Function(|_| Some(Arc::new(Draw(Generator::Plus128)))),
         "ModelicaRandom_xorshift1024star" => Function(|_| Some(Arc::new(Draw(Generator::Star1024)))),
         "ModelicaRandom_setInternalState_xorshift1024star" | "ModelicaInternal_print" => Nothing,
+        "ModelicaFFT_kiss_fftr" => Function(|_| Some(Arc::new(fourier::Spectrum::default()))),
         "dgesv" => Function(|_| Some(Arc::new(linear::Solve::default()))),
         "dgelsy" => Values(linear::least_squares),
         "ModelicaStrings_length" => Values(|g| one(text(g, 0)?.len() as f64)),
