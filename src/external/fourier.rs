@@ -24,7 +24,7 @@ impl External for Spectrum {
     fn value(&self, output: usize, args: &[f64]) -> f64 {
         let n = args.len();
         let frequencies = n / 2 + 1;
-        let Some(line) = output.checked_sub(1) else { return if n % 2 == 0 { 0.0 } else { 1.0 } };
+        let Some(line) = output.checked_sub(1) else { return if n.is_multiple_of(2) { 0.0 } else { 1.0 } };
         let (phase, k) = (line >= frequencies, line % frequencies);
         let (mut re, mut im) = (0.0, 0.0);
         for (j, u) in args.iter().enumerate() {

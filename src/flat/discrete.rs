@@ -49,7 +49,8 @@ fn check_equations(instance: &mut Instance<'_, '_>, flat: &FlatModel, assigned: 
                 && !variable.input
                 && !assigned.contains(&v)
                 && !matches!(instance.exprs.node(other), Node::Var(_));
-            if own && e.origin.kind == OriginKind::Declared && instance.variability(other) <= Variability::Discrete {
+            let written = matches!(e.origin.kind, OriginKind::Declared | OriginKind::Binding);
+            if own && written && instance.variability(other) <= Variability::Discrete {
                 let message = format!("`{}` is `discrete` and gets its value outside `when`", variable.name);
                 let d = Diagnostic::new(Code::TypeMismatch, message).at(e.origin.span, "this equation");
                 instance.diagnostics.push(

@@ -3,14 +3,10 @@
 
 use super::{Equation, FlatModel, Origin, OriginKind};
 use crate::expr::{Binary, ExprId, Exprs, Rel};
-use crate::instance::{Instance, StreamMember};
+use crate::instance::{Instance, LEAST_FLOW, StreamMember};
 use crate::network::Network;
 
 use super::numbers::Numbers;
-
-/// Flow that counts at least, in the unit of the connector's flow, so that there is a mixture where nothing flows: far below
-/// what a solver resolves.
-const LEAST_FLOW: f64 = 1e-10;
 
 /// Tells the instance which stream variables are joined, so that `inStream` has a meaning in its equations.
 pub(super) fn prepare(instance: &mut Instance<'_, '_>, network: &Network) {

@@ -125,6 +125,14 @@ impl<'a> Instance<'a, '_> {
                 }
                 self.check_nested_prefixes(declared, template);
             }
+            ClassKind::Record { operator: true } if p.flow => {
+                // flows of a node are summed up, and an open one is zero
+                let lacks = |o: &&&str| !template.by_name.contains_key(&Symbol::new(o));
+                if let Some(operator) = ["'+'", "'0'"].iter().find(lacks) {
+                    let what = format!("`{name}` is `flow`, and its class has no operator {operator}");
+                    self.refuse(breach(what, at, "flows are added, and begin at zero", "9.3"), None);
+                }
+            }
             _ => {}
         }
     }

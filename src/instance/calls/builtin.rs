@@ -3,6 +3,7 @@
 use crate::diag::{Code, Diagnostic, Span};
 use crate::expr::differentiate::Leaf;
 use crate::expr::{Binary, ExprId, Exprs, Node, Rel, Unary};
+use crate::instance::LEAST_FLOW;
 use crate::instance::value::{Val, size_text, wider};
 use crate::instance::{Instance, View};
 use crate::syntax::ast::{Expr, ExprKind, Ident, Reference};
@@ -340,7 +341,15 @@ impl<'a> Instance<'a, '_> {
         let c =
             if quiet { self.exprs.rel(Rel::Ge, x, Exprs::ZERO) } else { self.exprs.event_rel(Rel::Ge, x, Exprs::ZERO) };
         let (a, b) = (self.exprs.mul(up, x), self.exprs.mul(down, x));
-        Some(Val::Scalar(self.exprs.if_(c, a, b), Type::Real))
+        let value = self.exprs.if_(c, a, b);
+        // where nothing flows the slopes of unknowns are equal (MLS 3.7.4.5): a flow far below others says so
+        let fixed = [up, down].iter().all(|&e| self.variability(e) <= Variability::Discrete);
+        if fixed {
+            return Some(Val::Scalar(value, Type::Real));
+        }
+        let (difference, least) = (self.exprs.sub(up, down), self.exprs.num(LEAST_FLOW));
+        let exchange = self.exprs.mul(least, difference);
+        Some(Val::Scalar(self.exprs.add(value, exchange), Type::Real))
     }
 
     fn mathematics(&mut self, op: Unary, v: &Val, span: Span) -> Option<Val> {

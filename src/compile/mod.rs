@@ -1,6 +1,8 @@
 //! The pipeline: from files to a flat model, a DAE and a system ready to run. Every command and test goes this way.
 
-use crate::diag::{Checked, Code, Diagnostic, Sources, Span};
+mod messages;
+
+use crate::diag::{Checked, Code, Diagnostic, Sources};
 use crate::flat::{self, FlatModel};
 use crate::instance::{self, Instance, ModelRequest, Override};
 use crate::lower::{self, System};
@@ -80,7 +82,7 @@ pub fn compile(world: &dyn World, request: &Request, options: &lower::Options) -
         let system = Arc::new(lower::lower(dae.clone(), options));
         Model { flat: Arc::new(flat), graph, dae, system }
     });
-    sort_messages(&mut diagnostics);
+    messages::sort_messages(&mut diagnostics);
     Outcome { sources, diagnostics, value: model }
 }
 
@@ -89,7 +91,7 @@ pub fn sort(world: &dyn World, request: &Request) -> Outcome<(FlatModel, Graph, 
     let Outcome { sources, mut diagnostics, value } = flatten(world, request);
     let value = value.and_then(|f| {
         diagnostics.extend(unit_check::check(&f.flat));
-        of_libraries(&mut diagnostics, &sources, request);
+        messages::of_libraries(&mut diagnostics, &sources, request);
         let dae = analyze(&f.flat).sink(&mut diagnostics);
         Some((f.flat, f.graph, dae?))
     });
@@ -143,10 +145,10 @@ pub fn inspect<T>(
         diagnostics.retain(|d| d.code != Code::BadModel);
     }
     all.extend(diagnostics);
-    once(&mut all);
-    all.extend(other_versions(&mut library));
-    missing_once(&mut all);
-    of_libraries(&mut all, &library.sources, request);
+    messages::once(&mut all);
+    all.extend(messages::other_versions(&mut library));
+    messages::missing_once(&mut all);
+    messages::of_libraries(&mut all, &library.sources, request);
     let all: Vec<Diagnostic> = all.into_iter().map(|d| if d.is_error() { d.advised() } else { d }).collect();
     let failed = all.iter().any(Diagnostic::is_error);
     Outcome { sources: std::mem::take(&mut library.sources), diagnostics: all, value: value.filter(|_| !failed) }
@@ -340,116 +342,6 @@ fn has_experiment(class: &ast::Class) -> bool {
     arguments
         .into_iter()
         .any(|a| matches!(&a.kind, ast::ArgumentKind::Modify { path, .. } if path.parts[0].name == "experiment"))
-}
-
-/// Errors first shown where they stand: by file and place, messages without a place first.
-fn sort_messages(diagnostics: &mut [Diagnostic]) {
-    diagnostics.sort_by_key(|d| d.labels.first().map(|l| (l.span.file, l.span.start)));
-}
-
-/// One mistake in a class shows in each of its instances: one message is enough where all places are the same. Two open
-/// ports of one component differ in the second place.
-fn once(diagnostics: &mut Vec<Diagnostic>) {
-    let mut seen = rustc_hash::FxHashSet::default();
-    diagnostics.retain(|d| {
-        let places: Vec<Span> = d.labels.iter().map(|l| l.span).collect();
-        places.is_empty() || seen.insert((d.code, places))
-    });
-}
-
-/// A class that is not there is named wherever it is asked for: the first place stands for all.
-fn missing_once(diagnostics: &mut Vec<Diagnostic>) {
-    let mut first: Vec<(usize, usize)> = Vec::new();
-    for (i, d) in diagnostics.iter().enumerate().filter(|(_, d)| d.code == Code::UnknownClass) {
-        match first.iter_mut().find(|(f, _)| diagnostics[*f].message == d.message) {
-            Some((_, more)) => *more += 1,
-            None => first.push((i, 0)),
-        }
-    }
-    for &(i, more) in first.iter().filter(|(_, more)| *more > 0) {
-        let places = if more == 1 { "place" } else { "places" };
-        diagnostics[i].notes.push(format!("the same at {more} more {places}"));
-    }
-    let mut at = 0;
-    diagnostics.retain(|d| {
-        at += 1;
-        d.code != Code::UnknownClass || first.iter().any(|(f, _)| *f == at - 1)
-    });
-}
-
-/// Libraries of other versions than the user's classes say they use, `uses(Modelica(version = "3.2.3"))`, unless the library
-/// says that nothing has to be converted (MLS 18.8).
-fn other_versions(library: &mut Library<'_>) -> Vec<Diagnostic> {
-    let mut found = Vec::new();
-    for id in library.own.clone() {
-        let class = library.class(id);
-        for used in class.annotation.iter().flat_map(|a| inner(&a.arguments, "uses")) {
-            let ast::ArgumentKind::Modify { path, modification: Some(m), .. } = &used.kind else { continue };
-            let Some(wanted) = texts(&m.arguments, "version").next() else { continue };
-            let name = path.parts[0].name;
-            let Some(annotation) = library.loaded(name).and_then(|c| library.class(c).annotation.as_ref()) else {
-                continue;
-            };
-            let Some(have) = texts(&annotation.arguments, "version").next() else { continue };
-            let mut free = inner(&annotation.arguments, "conversion")
-                .flat_map(|a| texts(std::slice::from_ref(a), "noneFromVersion"));
-            if have == wanted || free.any(|v| v == wanted) {
-                continue;
-            }
-            let text = format!("`{}` uses `{name}` {wanted}, and {have} is loaded", class.name.name);
-            let d = Diagnostic::new(Code::OtherVersion, text).at(used.span, format!("written for {wanted}"));
-            found.push(d.help(format!("give the folder of `{name}` {wanted} with `--library`, or convert the model")));
-        }
-    }
-    found
-}
-
-/// The arguments inside `name(...)` of an annotation.
-fn inner<'a>(arguments: &'a [ast::Argument], name: &'static str) -> impl Iterator<Item = &'a ast::Argument> {
-    arguments
-        .iter()
-        .filter_map(move |a| match &a.kind {
-            ast::ArgumentKind::Modify { path, modification: Some(m), .. } if path.parts[0].name == name => {
-                Some(&m.arguments)
-            }
-            _ => None,
-        })
-        .flatten()
-}
-
-/// The texts of `name = "..."` in an annotation.
-fn texts<'a>(arguments: &'a [ast::Argument], name: &'static str) -> impl Iterator<Item = &'a str> {
-    arguments.iter().filter_map(move |a| match &a.kind {
-        ast::ArgumentKind::Modify { path, modification: Some(m), .. } if path.parts[0].name == name => {
-            match &m.value.as_ref()?.kind {
-                ast::ExprKind::String(text) => Some(&**text),
-                _ => None,
-            }
-        }
-        _ => None,
-    })
-}
-
-/// What is said of the texts of libraries: warnings there are for those who write them, and of several errors the first one
-/// stands for all, for the others are elsewhere in a class that is not the user's or follow from it.
-fn of_libraries(diagnostics: &mut Vec<Diagnostic>, sources: &Sources, request: &Request) {
-    let foreign = |d: &Diagnostic| {
-        let file = d.labels.first().map(|l| Path::new(sources.get(l.span.file).path.as_str()));
-        file.is_some_and(|file| request.libraries.iter().any(|folder| file.starts_with(folder)))
-    };
-    diagnostics.retain(|d| d.is_error() || !foreign(d));
-    let mut errors = diagnostics.iter().enumerate().filter(|(_, d)| d.is_error() && foreign(d)).map(|(i, _)| i);
-    let (Some(first), rest) = (errors.next(), errors.count()) else { return };
-    if rest == 0 {
-        return;
-    }
-    let plural = if rest == 1 { "error" } else { "errors" };
-    diagnostics[first].notes.push(format!("{rest} more {plural} in the texts of libraries"));
-    let mut at = 0;
-    diagnostics.retain(|d| {
-        at += 1;
-        at - 1 <= first || !(d.is_error() && foreign(d))
-    });
 }
 
 /// Compiles one text held in memory; for tests and examples.
