@@ -21,6 +21,7 @@ pub const PARTS: [(&str, &[&str]); 4] = [
             "initialization",
             "long_runs",
             "libraries",
+            "validation/libraries",
         ],
     ),
     ("Model and bench", &["study", "identify", "gap", "validation/gap", "sensitivity", "sweep", "linearize"]),
