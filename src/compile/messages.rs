@@ -34,11 +34,13 @@ pub(super) fn missing_once(diagnostics: &mut Vec<Diagnostic>) {
         let places = if more == 1 { "place" } else { "places" };
         diagnostics[i].notes.push(format!("the same at {more} more {places}"));
     }
-    let mut at = 0;
-    diagnostics.retain(|d| {
-        at += 1;
-        d.code != Code::UnknownClass || first.iter().any(|(f, _)| *f == at - 1)
-    });
+    retain_indexed(diagnostics, |i, d| d.code != Code::UnknownClass || first.iter().any(|(f, _)| *f == i));
+}
+
+/// Keeps what passes a test of its place in the list.
+fn retain_indexed(diagnostics: &mut Vec<Diagnostic>, keep: impl Fn(usize, &Diagnostic) -> bool) {
+    let mut next = 0..;
+    diagnostics.retain(|d| next.next().is_some_and(|i| keep(i, d)));
 }
 
 /// What is said of the texts of libraries: warnings there are for those who write them, and of several errors the first one
@@ -58,11 +60,7 @@ pub(super) fn of_libraries(diagnostics: &mut Vec<Diagnostic>, sources: &Sources,
     }
     let plural = if rest == 1 { "error" } else { "errors" };
     diagnostics[first].notes.push(format!("{rest} more {plural} in the texts of libraries"));
-    let mut at = 0;
-    diagnostics.retain(|d| {
-        at += 1;
-        at - 1 <= first || !(d.is_error() && foreign(d))
-    });
+    retain_indexed(diagnostics, |i, d| i <= first || !(d.is_error() && foreign(d)));
 }
 
 /// Libraries of other versions than the user's classes say they use, `uses(Modelica(version = "3.2.3"))`, unless the library
@@ -73,14 +71,13 @@ pub(super) fn other_versions(library: &mut Library<'_>) -> Vec<Diagnostic> {
         let class = library.class(id);
         for used in class.annotation.iter().flat_map(|a| inner(&a.arguments, "uses")) {
             let ast::ArgumentKind::Modify { path, modification: Some(m), .. } = &used.kind else { continue };
-            let Some(wanted) = texts(&m.arguments, "version").next() else { continue };
+            let Some(wanted) = texts(m.arguments.iter(), "version").next() else { continue };
             let name = path.parts[0].name;
             let Some(annotation) = library.loaded(name).and_then(|c| library.class(c).annotation.as_ref()) else {
                 continue;
             };
-            let Some(have) = texts(&annotation.arguments, "version").next() else { continue };
-            let mut free = inner(&annotation.arguments, "conversion")
-                .flat_map(|a| texts(std::slice::from_ref(a), "noneFromVersion"));
+            let Some(have) = texts(annotation.arguments.iter(), "version").next() else { continue };
+            let mut free = texts(inner(&annotation.arguments, "conversion"), "noneFromVersion");
             if have == wanted || free.any(|v| v == wanted) {
                 continue;
             }
@@ -106,8 +103,8 @@ fn inner<'a>(arguments: &'a [ast::Argument], name: &'static str) -> impl Iterato
 }
 
 /// The texts of `name = "..."` in an annotation.
-fn texts<'a>(arguments: &'a [ast::Argument], name: &'static str) -> impl Iterator<Item = &'a str> {
-    arguments.iter().filter_map(move |a| match &a.kind {
+fn texts<'a>(arguments: impl Iterator<Item = &'a ast::Argument>, name: &'static str) -> impl Iterator<Item = &'a str> {
+    arguments.filter_map(move |a| match &a.kind {
         ast::ArgumentKind::Modify { path, modification: Some(m), .. } if path.parts[0].name == name => {
             match &m.value.as_ref()?.kind {
                 ast::ExprKind::String(text) => Some(&**text),

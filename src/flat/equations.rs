@@ -518,14 +518,8 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
         let ExprKind::Call { function, .. } = &call.kind else { return };
         match function.parts[0].name.name.as_str() {
             "assert" => {
-                if let Some(mut a) = self.assertion(call, view, span) {
-                    for guard in self.guards.clone().into_iter().rev() {
-                        a.condition = self.instance.exprs.implies(guard, a.condition);
-                    }
-                    if a.condition != Exprs::ONE {
-                        self.flat.asserts.push(a);
-                    }
-                }
+                let assert = self.assertion(call, view, span);
+                self.push_guarded(assert);
             }
             "reinit" | "terminate" => {
                 let name = function.parts[0].name.name;
@@ -535,13 +529,26 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
                         .help("write `when condition then ... end when;` around it"),
                 );
             }
-            // said of the network, which has heard it
-            "Connections" if network::is_said(function) => {}
+            // a statement about the connection graph, which `network` has read
+            "Connections" if network::is_graph_statement(function) => {}
             _ => {
                 for call in self.instance.call_keeping_assertions(call, view) {
-                    self.algorithm_call(call, view, false);
+                    let origin = self.origin(call.span, view);
+                    let assert = assert_of(self.instance, call, origin);
+                    self.push_guarded(assert);
                 }
             }
+        }
+    }
+
+    /// An assertion in the branches of the `if` equations around it.
+    fn push_guarded(&mut self, assert: Option<Assert>) {
+        let Some(mut assert) = assert else { return };
+        for guard in self.guards.clone().into_iter().rev() {
+            assert.condition = self.instance.exprs.implies(guard, assert.condition);
+        }
+        if assert.condition != Exprs::ONE {
+            self.flat.asserts.push(assert);
         }
     }
 
@@ -589,31 +596,28 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
 
     /// An `assert` of an algorithm section outside `when`; one of an initial section is judged at the start only.
     fn algorithm_call(&mut self, call: AlgorithmCall, view: View, initial: bool) {
-        let Some(condition) = call.condition else {
-            self.bad_call(call.span, "`terminate` can only stand inside a `when`");
+        let span = call.span;
+        let origin = self.origin(span, view);
+        let Some(mut assert) = assert_of(self.instance, call, origin) else {
+            self.bad_call(span, "`terminate` can only stand inside a `when`");
             return;
         };
-        let mut condition = self.instance.exprs.implies(call.guard, condition);
         if initial {
-            condition = self.at_start_only(condition);
+            assert.condition = self.at_start_only(assert.condition);
         }
-        let origin = self.origin(call.span, view);
-        if condition != Exprs::ONE {
-            self.flat.asserts.push(Assert { condition, message: message(call.message), warning: call.warning, origin });
+        if assert.condition != Exprs::ONE {
+            self.flat.asserts.push(assert);
         }
     }
 
     /// An `assert` or `terminate` inside a `when` of an algorithm section.
     fn algorithm_action(&mut self, call: AlgorithmCall, view: View, out: &mut Vec<WhenAction>) {
         let origin = self.origin(call.span, view);
-        let message = message(call.message);
-        match call.condition {
-            Some(condition) => {
-                let condition = self.instance.exprs.implies(call.guard, condition);
-                out.push(WhenAction::Assert(Assert { condition, message, warning: call.warning, origin }));
-            }
-            None => out.push(WhenAction::Terminate { message, guard: call.guard, origin }),
+        if call.condition.is_none() {
+            out.push(WhenAction::Terminate { message: message(call.message), guard: call.guard, origin });
+            return;
         }
+        out.extend(assert_of(self.instance, call, origin).map(WhenAction::Assert));
     }
 
     fn section_failed(&mut self, section: &'a [Statement]) {
@@ -696,12 +700,6 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
     }
 }
 
-fn scalars(v: &Val) -> Vec<ExprId> {
-    let mut found = Vec::new();
-    v.scalars(&mut found);
-    found
-}
-
 /// Several `when`s of an algorithm that assign one variable become one: of those that fire at once the last one counts
 /// (MLS 11.2.7). Where one of them reads what another one assigns, or a branch leaves the variable alone, they stay as they
 /// are, and the variable is determined twice.
@@ -714,8 +712,9 @@ fn in_order(
         w.branches.iter().flat_map(|b| &b.values).map(|(name, _)| *name).collect()
     };
     let read = |w: &AlgorithmWhen, name: Symbol| {
-        let own = originals.iter().find(|(n, _)| *n == name).map(|(_, v)| scalars(v)).unwrap_or_default();
-        let values: Vec<ExprId> = w.branches.iter().flat_map(|b| &b.values).flat_map(|(_, v)| scalars(v)).collect();
+        let own = originals.iter().find(|(n, _)| *n == name).map(|(_, v)| v.all_scalars()).unwrap_or_default();
+        let values: Vec<ExprId> =
+            w.branches.iter().flat_map(|b| &b.values).flat_map(|(_, v)| v.all_scalars()).collect();
         let before = instance.exprs.dependencies(&values).pres;
         own.iter().any(|&e| matches!(instance.exprs.node(e), Node::Var(v) if before.contains(&v)))
     };
@@ -750,17 +749,22 @@ fn in_order(
 /// What expressions of an instance need to have a meaning, each once.
 pub(super) fn watch(instance: &mut Instance<'_, '_>, flat: &mut FlatModel, calls: Vec<AlgorithmCall>, holder: u32) {
     for call in calls {
-        let Some(condition) = call.condition else { continue };
-        let condition = instance.exprs.implies(call.guard, condition);
         let origin = Origin { span: call.span, instance: holder, kind: OriginKind::Declared };
-        let known = |a: &Assert| a.condition == condition && a.origin.span == call.span;
-        if condition != Exprs::ONE && !flat.asserts.iter().rev().take(8).any(known) {
-            flat.asserts.push(Assert { condition, message: message(call.message), warning: call.warning, origin });
+        let Some(assert) = assert_of(instance, call, origin) else { continue };
+        let known = |a: &Assert| a.condition == assert.condition && a.origin.span == origin.span;
+        if assert.condition != Exprs::ONE && !flat.asserts.iter().rev().take(8).any(known) {
+            flat.asserts.push(assert);
         }
     }
 }
 
-pub(super) fn message(text: Option<Val>) -> Message {
+/// An `assert` of an algorithm as one of the model; `None` for a `terminate`.
+pub(super) fn assert_of(instance: &mut Instance<'_, '_>, call: AlgorithmCall, origin: Origin) -> Option<Assert> {
+    let condition = instance.exprs.implies(call.guard, call.condition?);
+    Some(Assert { condition, message: message(call.message), warning: call.warning, origin })
+}
+
+fn message(text: Option<Val>) -> Message {
     match text {
         Some(Val::Text(parts)) => {
             let mut joined: Vec<MessagePart> = Vec::new();

@@ -1,8 +1,8 @@
 //! Overconstrained components that are equal by the constraint of their type (MLS 9.4).
 
-use super::equations::message;
+use super::equations::assert_of;
 use super::numbers::Numbers;
-use super::{Assert, Equation, FlatModel, Origin, OriginKind};
+use super::{Equation, FlatModel, Origin, OriginKind};
 use crate::expr::Exprs;
 use crate::instance::Instance;
 use crate::network::Network;
@@ -16,9 +16,7 @@ pub(super) fn equations(instance: &mut Instance<'_, '_>, network: &Network, numb
             flat.equations.push(Equation { lhs: value, rhs: Exprs::ZERO, origin });
         }
         for call in residue.asserts {
-            let Some(condition) = call.condition else { continue };
-            let condition = instance.exprs.implies(call.guard, condition);
-            flat.asserts.push(Assert { condition, message: message(call.message), warning: call.warning, origin });
+            flat.asserts.extend(assert_of(instance, call, origin));
         }
     }
 }

@@ -1,6 +1,6 @@
 //! `connect` equations to connection sets (MLS 9.2).
 
-use super::overconstrained::{Forest, Link, is_said};
+use super::overconstrained::{Forest, Link, is_graph_statement};
 use super::{Connection, FlowSet, Network, PotentialSet, SignalPair, StreamSet};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::instance::deduce::Body;
@@ -158,18 +158,18 @@ impl Collector {
                 }
                 EquationKind::Call(call) => {
                     if let ExprKind::Call { function, args, .. } = &call.kind
-                        && is_said(function)
+                        && is_graph_statement(function)
                     {
-                        self.forest.say(instance, function, args, view, e.span);
+                        self.forest.add(instance, function, args, view, e.span);
                     }
                 }
-                EquationKind::For { iterators, body } if has_connect(body) => {
+                EquationKind::For { iterators, body } if concerns_network(body) => {
                     instance.for_each(iterators, Body::Equations(body), view, &mut |instance| {
                         self.equations(instance, body, view, base);
                     });
                 }
                 EquationKind::If { branches, otherwise } => {
-                    let connects = branches.iter().any(|(_, b)| has_connect(b)) || has_connect(otherwise);
+                    let connects = branches.iter().any(|(_, b)| concerns_network(b)) || concerns_network(otherwise);
                     if connects && let Some(body) = choose(instance, branches, otherwise, view) {
                         self.equations(instance, body, view, base);
                     }
@@ -334,13 +334,15 @@ pub fn component_scopes(instance: &Instance<'_, '_>) -> Vec<ScopeId> {
     all.map(|(i, _)| ScopeId(i)).collect()
 }
 
-fn has_connect(equations: &[Equation]) -> bool {
+fn concerns_network(equations: &[Equation]) -> bool {
     equations.iter().any(|e| match &e.kind {
         EquationKind::Connect(..) => true,
-        EquationKind::Call(call) => matches!(&call.kind, ExprKind::Call { function, .. } if is_said(function)),
-        EquationKind::For { body, .. } => has_connect(body),
+        EquationKind::Call(call) => {
+            matches!(&call.kind, ExprKind::Call { function, .. } if is_graph_statement(function))
+        }
+        EquationKind::For { body, .. } => concerns_network(body),
         EquationKind::If { branches, otherwise } => {
-            branches.iter().any(|(_, b)| has_connect(b)) || has_connect(otherwise)
+            branches.iter().any(|(_, b)| concerns_network(b)) || concerns_network(otherwise)
         }
         _ => false,
     })

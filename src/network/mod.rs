@@ -7,7 +7,7 @@ mod overconstrained;
 
 pub use graph::{ComponentBox, Graph, Wire};
 pub use overconstrained::Link;
-pub(crate) use overconstrained::is_said;
+pub(crate) use overconstrained::is_graph_statement;
 
 use crate::diag::Span;
 use crate::instance::{Instance, NodeId, ScopeId, StreamMember};

@@ -5,6 +5,7 @@
 use crate::diag::{Code, Diagnostic, Span};
 use crate::instance::{Instance, NodeId, ScopeId, View};
 use crate::syntax::ast::{Expr, Reference};
+use petgraph::unionfind::UnionFind;
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::VecDeque;
 
@@ -52,7 +53,7 @@ pub(super) struct Spanned {
 }
 
 /// Whether a call is a statement about the connection graph.
-pub(crate) fn is_said(function: &Reference) -> bool {
+pub(crate) fn is_graph_statement(function: &Reference) -> bool {
     let [package, what] = function.parts.as_slice() else { return false };
     package.name.name == "Connections" && matches!(what.name.name.as_str(), "branch" | "root" | "potentialRoot")
 }
@@ -68,7 +69,7 @@ impl Forest {
     }
 
     /// Takes `Connections.branch`, `root` or `potentialRoot`.
-    pub(super) fn say<'a>(
+    pub(super) fn add<'a>(
         &mut self,
         instance: &mut Instance<'a, '_>,
         function: &Reference,
@@ -105,8 +106,8 @@ impl Forest {
 
     /// Chooses the spanning trees and their roots.
     pub(super) fn span(mut self, instance: &mut Instance<'_, '_>) -> (Vec<Link>, Spanned) {
-        let ends: Vec<(usize, usize)> =
-            self.links.clone().iter().map(|l| (self.number(l.a), self.number(l.b))).collect();
+        let links = std::mem::take(&mut self.links);
+        let ends: Vec<(usize, usize)> = links.iter().map(|l| (self.number(l.a), self.number(l.b))).collect();
         let mut trees = Trees::new(self.nodes.len());
         for &(a, b) in &self.branches {
             trees.join(a, b);
@@ -126,12 +127,12 @@ impl Forest {
             let tree = trees.of(offer.node);
             trees.root[tree].get_or_insert(offer.node);
         }
-        let links = ends.iter().zip(&kept).filter(|(_, k)| **k).map(|(e, _)| *e);
-        let edges: Vec<(usize, usize)> = self.branches.iter().copied().chain(links).collect();
+        let kept_ends = ends.iter().zip(&kept).filter(|(_, k)| **k).map(|(e, _)| *e);
+        let edges: Vec<(usize, usize)> = self.branches.iter().copied().chain(kept_ends).collect();
         for node in 0..self.nodes.len() {
             let tree = trees.of(node);
             if trees.root[tree].is_none() {
-                self.no_root(instance, node, &ends);
+                self.no_root(instance, node, &links, &ends);
                 trees.root[tree] = Some(node);
             }
         }
@@ -140,15 +141,15 @@ impl Forest {
         let nearer = self.branches.iter().filter(|(a, b)| depth[*a] < depth[*b]);
         let rooted = nearer.map(|(a, _)| self.nodes[*a]).collect();
         let roots = roots.into_iter().map(|n| self.nodes[n]).collect();
-        (self.links, Spanned { kept, roots, rooted })
+        (links, Spanned { kept, roots, rooted })
     }
 
-    fn no_root(&self, instance: &mut Instance<'_, '_>, node: usize, ends: &[(usize, usize)]) {
+    fn no_root(&self, instance: &mut Instance<'_, '_>, node: usize, links: &[Link], ends: &[(usize, usize)]) {
         let name = instance.node_name(self.nodes[node]);
         let message = format!("nothing that `{name}` is connected to can be a root");
         let mut d = Diagnostic::new(Code::BadConnect, message).note("Modelica 3.6, 9.4");
         if let Some(at) = ends.iter().position(|&(a, b)| a == node || b == node) {
-            d = d.at(self.links[at].span, "joined here");
+            d = d.at(links[at].span, "joined here");
         }
         instance.diagnostics.push(d.help(
             "connect a component that fixes the reference, such as a ground or a world, or state `Connections.root`",
@@ -158,33 +159,29 @@ impl Forest {
 
 /// Disjoint trees with their roots.
 struct Trees {
-    parent: Vec<usize>,
+    sets: UnionFind<usize>,
+    /// The root of each tree, at the node that stands for it.
     root: Vec<Option<usize>>,
 }
 
 impl Trees {
     fn new(count: usize) -> Self {
-        Trees { parent: (0..count).collect(), root: vec![None; count] }
+        Trees { sets: UnionFind::new(count), root: vec![None; count] }
     }
 
-    fn of(&mut self, mut node: usize) -> usize {
-        while self.parent[node] != node {
-            self.parent[node] = self.parent[self.parent[node]];
-            node = self.parent[node];
-        }
-        node
+    fn of(&self, node: usize) -> usize {
+        self.sets.find(node)
     }
 
-    fn is_root(&mut self, node: usize) -> bool {
-        let tree = self.of(node);
-        self.root[tree] == Some(node)
+    fn is_root(&self, node: usize) -> bool {
+        self.root[self.of(node)] == Some(node)
     }
 
     fn join(&mut self, a: usize, b: usize) {
-        let (a, b) = (self.of(a), self.of(b));
-        let root = self.root[a].or(self.root[b]);
-        self.parent[a.max(b)] = a.min(b);
-        self.root[a.min(b)] = root;
+        let root = self.root[self.of(a)].or(self.root[self.of(b)]);
+        self.sets.union(a, b);
+        let tree = self.of(a);
+        self.root[tree] = root;
     }
 
     /// Joins two trees unless they are one, or both have a root.

@@ -79,7 +79,6 @@ pub fn solve(system: &System, scales: &Scales, modes: &mut Modes, values: &mut [
     modes.after = false;
     let mut start = Start { system, scales, modes, blocks: Blocks::new(&system.initial, scales, modes) };
     let guesses = values.to_vec();
-    values[Layout::LAMBDA] = 1.0;
     // the root that the model asks for is the one that the simplified equations lead to (MLS 3.7.4)
     let followed = worth_homotopy(&system.dae) && start.homotopy(values, &guesses).is_ok();
     let result = if followed {

@@ -2,9 +2,11 @@
 
 use super::draft::{Draft, Role, RowKind};
 use super::{Action, ActionKind};
+use crate::expr::visit::Dependencies;
 use crate::expr::{ExprId, Exprs, Node, VarId};
 use crate::flat::{Equation, Origin, OriginKind, Type, Variability, When, WhenAction, WhenBranch};
-use rustc_hash::FxHashMap;
+use petgraph::unionfind::UnionFind;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Translates all `when` clauses, which leaves none.
 pub(super) fn translate_whens(draft: &mut Draft) {
@@ -120,28 +122,6 @@ fn add_actions(draft: &mut Draft, when: &When, fires: &[ExprId]) {
     }
 }
 
-/// Discrete unknowns and values before events that are one at the start, by equations of the model and of the start.
-#[derive(Default)]
-struct Equals {
-    parent: FxHashMap<ExprId, ExprId>,
-}
-
-impl Equals {
-    fn root(&self, mut e: ExprId) -> ExprId {
-        while let Some(&up) = self.parent.get(&e) {
-            e = up;
-        }
-        e
-    }
-
-    fn join(&mut self, a: ExprId, b: ExprId) {
-        let (a, b) = (self.root(a), self.root(b));
-        if a != b {
-            self.parent.insert(a, b);
-        }
-    }
-}
-
 /// The variable of `v` or `pre(v)`, where it is a discrete unknown.
 fn discrete_atom(draft: &Draft, e: ExprId) -> Option<VarId> {
     match draft.exprs.node(e) {
@@ -150,37 +130,50 @@ fn discrete_atom(draft: &Draft, e: ExprId) -> Option<VarId> {
     }
 }
 
+/// Whether both sides of an equation are such.
+fn joins_atoms(draft: &Draft, q: &Equation) -> bool {
+    [q.lhs, q.rhs].iter().all(|&e| discrete_atom(draft, e).is_some())
+}
+
+/// Whether nothing but parameters and values before events is read.
+fn of_parameters(draft: &Draft, found: &Dependencies) -> bool {
+    found.ders.is_empty() && !found.time && found.vars.iter().all(|&u| draft.role(u) == Role::Parameter)
+}
+
 /// `a = value` among the initial equations, where the model says `a = pre(v)`, is the start of `v` (MLS 8.6).
 fn absorb_through_equals(draft: &mut Draft) {
-    let is_atom = |draft: &Draft, q: &Equation| [q.lhs, q.rhs].iter().all(|&e| discrete_atom(draft, e).is_some());
     let known = |draft: &Draft, e: ExprId| {
         let found = draft.exprs.dependencies(&[e]);
-        let fixed = found.vars.iter().all(|&u| draft.role(u) == Role::Parameter);
-        found.ders.is_empty() && found.pres.is_empty() && !found.time && fixed
+        found.pres.is_empty() && of_parameters(draft, &found)
     };
-    let mut equals = Equals::default();
-    for q in draft.equations.iter().chain(&draft.initial_equations).filter(|q| is_atom(draft, q)) {
-        equals.join(q.lhs, q.rhs);
+    let given = |draft: &Draft, q: &Equation| {
+        let sides = [(q.lhs, q.rhs), (q.rhs, q.lhs)];
+        sides.into_iter().find(|&(a, value)| discrete_atom(draft, a).is_some() && known(draft, value))
+    };
+    if !draft.initial_equations.iter().any(|q| given(draft, q).is_some()) {
+        return;
     }
-    let mut before: FxHashMap<ExprId, Vec<VarId>> = FxHashMap::default();
-    for q in draft.equations.iter().chain(&draft.initial_equations).filter(|q| is_atom(draft, q)) {
-        for e in [q.lhs, q.rhs] {
-            if let Node::Pre(v) = draft.exprs.node(e) {
-                before.entry(equals.root(e)).or_default().push(v);
-            }
+    let all = draft.equations.iter().chain(&draft.initial_equations);
+    let joining: Vec<Equation> = all.filter(|q| joins_atoms(draft, q)).copied().collect();
+    let mut equals = UnionFind::new(draft.exprs.len());
+    for q in &joining {
+        equals.union(q.lhs.index(), q.rhs.index());
+    }
+    let mut before: FxHashMap<usize, Vec<VarId>> = FxHashMap::default();
+    for e in joining.iter().flat_map(|q| [q.lhs, q.rhs]) {
+        if let Node::Pre(v) = draft.exprs.node(e) {
+            before.entry(equals.find(e.index())).or_default().push(v);
         }
     }
-    let mut said: FxHashMap<ExprId, ExprId> = FxHashMap::default();
+    let mut said: FxHashSet<usize> = FxHashSet::default();
     let mut rest = Vec::new();
     for q in std::mem::take(&mut draft.initial_equations) {
-        let sides = [(q.lhs, q.rhs), (q.rhs, q.lhs)];
-        let given = sides.into_iter().find(|&(a, value)| discrete_atom(draft, a).is_some() && known(draft, value));
-        let class = given.map(|(a, value)| (equals.root(a), value));
+        let class = given(draft, &q).map(|(a, value)| (equals.find(a.index()), value));
         match class.and_then(|(class, value)| Some((class, value, before.get(&class)?))) {
             Some((class, value, starts))
-                if !said.contains_key(&class) && starts.iter().all(|v| !draft.variables[v.index()].fixed) =>
+                if !said.contains(&class) && starts.iter().all(|v| !draft.variables[v.index()].fixed) =>
             {
-                said.insert(class, value);
+                said.insert(class);
                 for v in starts {
                     draft.variables[v.index()].start = Some(value);
                     draft.variables[v.index()].fixed = true;
@@ -190,7 +183,7 @@ fn absorb_through_equals(draft: &mut Draft) {
         }
     }
     // what joins those says no more
-    rest.retain(|q| !(is_atom(draft, q) && said.contains_key(&equals.root(q.lhs))));
+    rest.retain(|q| !(joins_atoms(draft, q) && said.contains(&equals.find(q.lhs.index()))));
     draft.initial_equations = rest;
 }
 
@@ -237,8 +230,7 @@ fn given_pre(draft: &mut Draft, equation: &Equation) -> Option<(VarId, ExprId)> 
         _ => return None,
     };
     let found = draft.exprs.dependencies(&[value]);
-    let known = found.ders.is_empty() && !found.time && found.vars.iter().all(|&u| draft.role(u) == Role::Parameter);
-    if !known || draft.role(v) != Role::Discrete {
+    if !of_parameters(draft, &found) || draft.role(v) != Role::Discrete {
         return None;
     }
     let mut replacements = Vec::with_capacity(found.pres.len());

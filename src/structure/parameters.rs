@@ -43,7 +43,7 @@ fn decide_conditions(draft: &mut Draft, before: &[VarId], members: &[VarId]) -> 
             if found.time || !found.ders.is_empty() || !found.pres.is_empty() {
                 continue;
             }
-            if !found.vars.iter().all(|u| before.contains(u)) {
+            if !found.vars.iter().all(|u| !values[u.index()].is_nan()) {
                 continue;
             }
             let holds = draft.exprs.eval(condition, &mut |node| match node {

@@ -78,7 +78,7 @@ impl<'a> Instance<'a, '_> {
     fn build_model(&mut self, request: &ModelRequest) {
         let class = self.library.class(request.class);
         let name = self.library.full_name(request.class);
-        let nothing = Rc::new(empty_template(request.class));
+        let nothing = Rc::new(Template::empty(request.class, ClassKind::Class));
         self.new_scope(nothing.clone(), String::new(), Rc::from([]), None, class.name.span);
         let parent = self.surroundings(request.class);
         // The model's scope is number 1, so that `Instance::root` is known before it is built.
@@ -715,19 +715,4 @@ fn hides_result(c: &ast::Component) -> Option<bool> {
         }
         _ => None,
     })
-}
-
-fn empty_template<'a>(class: ClassId) -> Template<'a> {
-    Template {
-        class,
-        bases: Vec::new(),
-        elements: Vec::new(),
-        by_name: FxHashMap::default(),
-        builtin: None,
-        builtin_args: Vec::new(),
-        dims: Vec::new(),
-        prefix: ast::TypePrefix::default(),
-        kind: ClassKind::Class,
-        broken: false,
-    }
 }

@@ -12,7 +12,8 @@ use crate::instance::{ClassRef, ElementState, Instance, Node, NodeId, View};
 use crate::syntax::ast::{self, Expr, ExprKind};
 use crate::syntax::symbol::Symbol;
 use crate::types::Type;
-use rustc_hash::{FxHashMap, FxHashSet};
+use indexmap::IndexMap;
+use rustc_hash::{FxBuildHasher, FxHashSet};
 
 /// The function by which a type says when two of its values are equal.
 const CONSTRAINT: &str = "equalityConstraint";
@@ -22,8 +23,7 @@ pub struct Overconstrained<'a> {
     /// `equalityConstraint`
     name: Symbol,
     /// All of them, with the classes of those that are variables and arrays; records know theirs themselves.
-    nodes: Vec<(NodeId, Option<ClassRef<'a>>)>,
-    number: FxHashMap<NodeId, usize>,
+    nodes: IndexMap<NodeId, Option<ClassRef<'a>>, FxBuildHasher>,
     /// Roots of the connection graph, once the network is known.
     pub roots: FxHashSet<NodeId>,
     /// First sides of branches that are nearer to the root than their second sides.
@@ -42,8 +42,7 @@ impl Default for Overconstrained<'_> {
     fn default() -> Self {
         Overconstrained {
             name: Symbol::new(CONSTRAINT),
-            nodes: Vec::new(),
-            number: FxHashMap::default(),
+            nodes: IndexMap::default(),
             roots: FxHashSet::default(),
             rooted: FxHashSet::default(),
         }
@@ -72,14 +71,13 @@ impl<'a> Instance<'a, '_> {
             _ => vec![node],
         };
         for node in nodes {
-            self.overconstrained.number.insert(node, self.overconstrained.nodes.len());
-            self.overconstrained.nodes.push((node, class.clone()));
+            self.overconstrained.nodes.insert(node, class.clone());
         }
     }
 
     /// Whether a component is overconstrained.
     pub fn is_overconstrained(&self, node: NodeId) -> bool {
-        self.overconstrained.number.contains_key(&node)
+        self.overconstrained.nodes.contains_key(&node)
     }
 
     /// The constraint function of a component.
@@ -88,8 +86,7 @@ impl<'a> Instance<'a, '_> {
         let found = match *self.node(node) {
             Node::Object(scope) => self.lookup(View { scope, base: 0 }, name),
             _ => {
-                let number = *self.overconstrained.number.get(&node)?;
-                let class = self.overconstrained.nodes[number].1.clone()?;
+                let class = self.overconstrained.nodes.get(&node)?.clone()?;
                 self.member(&Found::Class(class), name)
             }
         };
@@ -136,7 +133,7 @@ impl<'a> Instance<'a, '_> {
     pub fn constraint_sizes(&mut self) -> Vec<(Vec<u32>, usize)> {
         let mut found = Vec::new();
         for k in 0..self.overconstrained.nodes.len() {
-            let node = self.overconstrained.nodes[k].0;
+            let (&node, _) = self.overconstrained.nodes.get_index(k).expect("counted");
             let mut variables = Vec::new();
             self.variables_of(node, &mut variables);
             let size = self.constraint_size(node).unwrap_or(variables.len());

@@ -2,11 +2,11 @@
 
 use crate::diag::{Code, Diagnostic, Span};
 use crate::expr::ExprId;
+use crate::instance::algorithm::Flow;
 use crate::instance::builtin::retyped;
 use crate::instance::calls::binding::is_input;
 use crate::instance::calls::locals::in_order_of_use;
-use crate::instance::evaluation::state::Mode;
-use crate::instance::evaluation::state::Work;
+use crate::instance::evaluation::state::{Mode, Work};
 use crate::instance::files::Place;
 use crate::instance::lookup::{Builtin, Found};
 use crate::instance::template::{Kind, Template};
@@ -411,13 +411,9 @@ impl<'a> Instance<'a, '_> {
             let value = self.declared_local(f)?;
             self.eval.locals.push((f.name, value));
         }
-        for (i, base) in callee.template.bases.iter().enumerate() {
-            let ast::ClassBody::Long(body) = &base.ast.body else { continue };
-            let view = View { scope: callee.scope, base: u32::try_from(i).expect("few bases") };
-            for section in &body.algorithms {
-                if self.execute(section, view)? == crate::instance::algorithm::Flow::Return {
-                    break;
-                }
+        for (section, view) in sections(callee) {
+            if self.execute(section, view)? == Flow::Return {
+                break;
             }
         }
         let outputs: Vec<Val> = locals
@@ -434,6 +430,18 @@ impl<'a> Instance<'a, '_> {
             _ => Some(Val::Tuple(Rc::new(outputs))),
         }
     }
+}
+
+/// The algorithm sections of a function, those of its bases included, with where their names are looked up.
+pub(in crate::instance) fn sections<'a>(callee: &Callee<'a>) -> Vec<(&'a [ast::Statement], View)> {
+    let mut found = Vec::new();
+    for (base, i) in callee.template.bases.iter().zip(0u32..) {
+        if let ast::ClassBody::Long(body) = &base.ast.body {
+            let view = View { scope: callee.scope, base: i };
+            found.extend(body.algorithms.iter().map(|section| (section.as_slice(), view)));
+        }
+    }
+    found
 }
 
 /// Whether a function has no output.

@@ -8,7 +8,7 @@ use crate::diag::{Code, Span};
 use crate::expr::function::{Function, Stmt, Term};
 use crate::expr::{ExprId, Exprs, FunctionId, Node, VarId};
 use crate::instance::algorithm::assigned;
-use crate::instance::call::Callee;
+use crate::instance::call::{Callee, Formal, sections};
 use crate::instance::calls::binding::is_input;
 use crate::instance::calls::locals::in_order_of_use;
 use crate::instance::deduce::Body;
@@ -105,7 +105,7 @@ impl<'a> Instance<'a, '_> {
         let outer = std::mem::take(&mut self.eval.translation);
         let not_inline = std::mem::replace(&mut self.eval.not_inline, false);
         let change = |m: &mut Mode| (m.procedure, m.constant) = (true, false);
-        let result = self.in_mode(change, |s| s.in_frame(|s| s.translate_body(callee, values, key, span)));
+        let result = self.in_mode(change, |s| s.in_frame(|s| s.translate_body(callee, values, key)));
         let refused = std::mem::replace(&mut self.eval.not_inline, not_inline);
         self.eval.translation = outer;
         if result.is_none() && refused {
@@ -115,26 +115,14 @@ impl<'a> Instance<'a, '_> {
         result
     }
 
-    fn translate_body(
-        &mut self,
-        callee: &Callee<'a>,
-        values: &[Val],
-        key: String,
-        span: Span,
-    ) -> Option<(FunctionId, Vec<Val>)> {
+    fn translate_body(&mut self, callee: &Callee<'a>, values: &[Val], key: String) -> Option<(FunctionId, Vec<Val>)> {
         let inputs = self.formals(callee, is_input);
         for (f, v) in inputs.iter().zip(values) {
             let local = if self.specialised(v) { v.clone() } else { self.slots_like(v) };
             self.eval.locals.push((f.name, local));
         }
         let count = self.eval.translation.slots;
-        let locals = self.formals(callee, |c, p| !is_input(c, p));
-        for f in in_order_of_use(&locals) {
-            let value = self.declared_local(f)?;
-            let slots = self.slots_like(&value);
-            self.store(&slots, &value);
-            self.eval.locals.push((f.name, slots));
-        }
+        let locals = self.locals_in_slots(callee)?;
         let shapes: Vec<Val> = locals
             .iter()
             .filter(|f| f.component.prefix.causality == Some(Causality::Output))
@@ -148,22 +136,29 @@ impl<'a> Instance<'a, '_> {
             Function { name: callee.name.clone(), inputs: count, slots: 0, outputs: outputs.clone(), body: Vec::new() };
         let id = self.exprs.add_function(blank);
         self.procedures.insert(key.clone(), (id, shapes.clone()));
-        for (base, i) in callee.template.bases.iter().zip(0u32..) {
-            let ast::ClassBody::Long(body) = &base.ast.body else { continue };
-            let view = View { scope: callee.scope, base: i };
-            for section in &body.algorithms {
-                if self.procedure_statements(section, view).is_none() {
-                    self.procedures.remove(&key);
-                    return None;
-                }
+        for (section, view) in sections(callee) {
+            if self.procedure_statements(section, view).is_none() {
+                self.procedures.remove(&key);
+                return None;
             }
         }
-        let _ = span;
         let body = std::mem::take(&mut self.eval.translation.statements);
         let slots = self.eval.translation.slots;
         let f = &mut self.exprs.functions[id.0 as usize];
         (f.slots, f.body) = (slots, body);
         Some((id, shapes))
+    }
+
+    /// Outputs and protected variables in slots, with the values that they begin with.
+    fn locals_in_slots(&mut self, callee: &Callee<'a>) -> Option<Vec<Formal<'a>>> {
+        let locals = self.formals(callee, |c, p| !is_input(c, p));
+        for f in in_order_of_use(&locals) {
+            let value = self.declared_local(f)?;
+            let slots = self.slots_like(&value);
+            self.store(&slots, &value);
+            self.eval.locals.push((f.name, slots));
+        }
+        Some(locals)
     }
 
     /// Carries out a loop of a model's algorithm section as a procedure of what it reads, for it runs as often as
@@ -351,22 +346,12 @@ impl<'a> Instance<'a, '_> {
         span: Span,
     ) -> Option<Val> {
         self.with_inputs(callee, positional, named, span, |s| {
-            let locals = s.formals(callee, |c, p| !is_input(c, p));
-            for f in in_order_of_use(&locals) {
-                let value = s.declared_local(f)?;
-                let slots = s.slots_like(&value);
-                s.store(&slots, &value);
-                s.eval.locals.push((f.name, slots));
-            }
-            for (base, i) in callee.template.bases.iter().zip(0u32..) {
-                let ast::ClassBody::Long(body) = &base.ast.body else { continue };
-                let view = View { scope: callee.scope, base: i };
-                for section in &body.algorithms {
-                    if let Some(end) = section.iter().find(|s| returns(s)) {
-                        return s.fail(Code::Unsupported, "a `return` of a function without outputs", end.span);
-                    }
-                    s.procedure_statements(section, view)?;
+            s.locals_in_slots(callee)?;
+            for (section, view) in sections(callee) {
+                if let Some(end) = section.iter().find(|s| returns(s)) {
+                    return s.fail(Code::Unsupported, "a `return` of a function without outputs", end.span);
                 }
+                s.procedure_statements(section, view)?;
             }
             Some(Val::Tuple(Vec::new().into()))
         })
@@ -380,18 +365,9 @@ impl<'a> Instance<'a, '_> {
     }
 
     fn procedure_assign(&mut self, target: &'a Expr, value: &Val, view: View, span: Span) -> Option<()> {
-        let ExprKind::Reference(r) = &target.kind else {
-            return self.fail(Code::TypeMismatch, "only a variable can be assigned to", target.span);
-        };
+        let (r, i) = self.assigned_local(target)?;
         let name = r.parts[0].name;
-        let Some(i) = self.local(name.name) else {
-            self.unknown_name(name.name, name.span, &[]);
-            return None;
-        };
-        let value = match value {
-            Val::Tuple(values) => values[0].clone(),
-            other => other.clone(),
-        };
+        let value = value.first_output();
         let mut place = self.eval.locals[i].1.clone();
         let whole = r.parts.len() == 1 && r.parts[0].subscripts.is_empty() && place.dims() != value.dims();
         if whole && place.elements().is_empty() && self.takes_any_size(view, name.name) {

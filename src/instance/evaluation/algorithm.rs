@@ -11,7 +11,7 @@ use crate::instance::value::{Val, size_text};
 use crate::instance::{Instance, View};
 use crate::syntax::ast::{Component, Expr, ExprKind, Reference, ReferencePart, Statement, StatementKind, Subscript};
 use crate::syntax::symbol::Symbol;
-use crate::types::{Type, Variability};
+use crate::types::{MessagePart, Type, Variability};
 use std::rc::Rc;
 
 /// How a sequence of statements ended.
@@ -135,13 +135,11 @@ impl<'a> Instance<'a, '_> {
             let (a, b) = (&before[i].1, &self.eval.locals[i].1);
             match a.zip(b, &mut |x, y, _| self.exprs.if_(test, x, y)) {
                 Some(merged) => self.eval.locals[i].1 = merged,
-                // which text it is, no one can tell from here on
-                None if matches!(
-                    (a, b),
-                    (Val::Text(_), Val::Text(_) | Val::Tuple(_)) | (Val::Tuple(_), Val::Text(_))
-                ) =>
-                {
-                    self.eval.locals[i].1 = Val::Tuple(Rc::new(Vec::new()));
+                // which of the two it is is not known before the run, and a message can say no more
+                None if matches!((a, b), (Val::Text(_), Val::Text(_))) => {
+                    let words = MessagePart::Text("a text by a condition that is ".into());
+                    let parts = vec![words, MessagePart::Value(test, Type::Boolean)];
+                    self.eval.locals[i].1 = Val::Text(Rc::new(parts));
                 }
                 None => {
                     self.eval.not_inline = true;
@@ -196,20 +194,24 @@ impl<'a> Instance<'a, '_> {
         Some(())
     }
 
-    /// `target := value` for a local, or for a variable that the algorithm section was given as one.
-    fn assign(&mut self, target: &'a Expr, value: Val, view: View, span: Span) -> Option<()> {
+    /// The local that a target names, or a message.
+    pub(in crate::instance) fn assigned_local(&mut self, target: &'a Expr) -> Option<(&'a Reference, usize)> {
         let ExprKind::Reference(r) = &target.kind else {
             return self.fail(Code::TypeMismatch, "only a variable can be assigned to", target.span);
         };
         let name = r.parts[0].name;
-        let Some(i) = self.local(name.name) else {
+        let local = self.local(name.name);
+        if local.is_none() {
             self.unknown_name(name.name, name.span, &[]);
-            return None;
-        };
-        let value = match value {
-            Val::Tuple(values) => values[0].clone(),
-            other => other,
-        };
+        }
+        local.map(|i| (r, i))
+    }
+
+    /// `target := value` for a local, or for a variable that the algorithm section was given as one.
+    fn assign(&mut self, target: &'a Expr, value: Val, view: View, span: Span) -> Option<()> {
+        let (r, i) = self.assigned_local(target)?;
+        let name = r.parts[0].name;
+        let value = value.first_output();
         let old = self.eval.locals[i].1.clone();
         let whole = r.parts.len() == 1 && r.parts[0].subscripts.is_empty();
         if whole && old.dims().len() == value.dims().len() && self.is_flexible(view, name.name) {

@@ -1,18 +1,19 @@
 //! Doors for `flat`, which walks the equations and algorithm sections.
 
+use crate::instance::algorithm::{AlgorithmCall, AlgorithmWhen};
 use crate::instance::deduce::Body;
 use crate::instance::evaluation::state::Work;
 use crate::instance::lookup::Found;
 use crate::instance::value::Val;
 use crate::instance::{Instance, View};
-use crate::syntax::ast::{Expr, ReferencePart};
+use crate::syntax::ast::{Equation, Expr, Iterator as LoopIterator, ReferencePart, Statement};
 use crate::syntax::symbol::Symbol;
 
 impl<'a> Instance<'a, '_> {
     /// Runs something for every value of the iterators, innermost last.
     pub fn for_each(
         &mut self,
-        iterators: &'a [crate::syntax::ast::Iterator],
+        iterators: &'a [LoopIterator],
         repeated: Body<'a>,
         view: View,
         body: &mut dyn FnMut(&mut Self),
@@ -27,12 +28,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// The values of a loop variable.
-    pub fn loop_values(
-        &mut self,
-        iterator: &'a crate::syntax::ast::Iterator,
-        body: &'a [crate::syntax::ast::Equation],
-        view: View,
-    ) -> Option<Vec<Val>> {
+    pub fn loop_values(&mut self, iterator: &'a LoopIterator, body: &'a [Equation], view: View) -> Option<Vec<Val>> {
         self.iterate(iterator, Body::Equations(body), view)
     }
 
@@ -67,12 +63,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// Carries out an algorithm section of the model on the `count` locals that were pushed for it.
-    pub fn run_section(
-        &mut self,
-        section: &'a [crate::syntax::ast::Statement],
-        view: View,
-        count: usize,
-    ) -> Option<()> {
+    pub fn run_section(&mut self, section: &'a [Statement], view: View, count: usize) -> Option<()> {
         self.eval.work = Work::allowed([MOST_SECTION_STEPS, MOST_SECTION_STEPS]);
         self.eval.not_inline = false;
         let end = self.eval.locals.len();
@@ -85,11 +76,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// Calls a function for what it asserts.
-    pub fn call_keeping_assertions(
-        &mut self,
-        call: &'a Expr,
-        view: View,
-    ) -> Vec<crate::instance::algorithm::AlgorithmCall> {
+    pub fn call_keeping_assertions(&mut self, call: &'a Expr, view: View) -> Vec<AlgorithmCall> {
         self.eval.calls.clear();
         self.in_mode(|m| m.keep_asserts = true, |s| s.eval_all(call, view));
         std::mem::take(&mut self.eval.calls)
@@ -102,12 +89,12 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// What must hold besides equations, and `terminate`s, met outside `when` since the last call.
-    pub fn take_calls(&mut self) -> Vec<crate::instance::algorithm::AlgorithmCall> {
+    pub fn take_calls(&mut self) -> Vec<AlgorithmCall> {
         std::mem::take(&mut self.eval.calls)
     }
 
     /// The `when`s met since the last call.
-    pub fn take_whens(&mut self) -> Vec<crate::instance::algorithm::AlgorithmWhen> {
+    pub fn take_whens(&mut self) -> Vec<AlgorithmWhen> {
         std::mem::take(&mut self.eval.whens)
     }
 }

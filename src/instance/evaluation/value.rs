@@ -118,6 +118,21 @@ impl Val {
         }
     }
 
+    /// The value itself, or the first of several outputs.
+    pub fn first_output(&self) -> Val {
+        match self {
+            Val::Tuple(values) => values.first().unwrap_or(self).clone(),
+            other => other.clone(),
+        }
+    }
+
+    /// All scalars in order.
+    pub fn all_scalars(&self) -> Vec<ExprId> {
+        let mut found = Vec::new();
+        self.scalars(&mut found);
+        found
+    }
+
     /// All scalars inside, in order.
     pub fn scalars(&self, out: &mut Vec<ExprId>) {
         match self {

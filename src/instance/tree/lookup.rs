@@ -369,18 +369,7 @@ impl<'a> Instance<'a, '_> {
             }
         }
         let by_name: FxHashMap<_, _> = elements.iter().map(|e| e.name).zip(0u32..).collect();
-        let template = Template {
-            class,
-            bases: vec![base],
-            elements,
-            by_name,
-            builtin: None,
-            builtin_args: Vec::new(),
-            dims: Vec::new(),
-            prefix: ast::TypePrefix::default(),
-            kind: ast.kind,
-            broken: false,
-        };
+        let template = Template { bases: vec![base], elements, by_name, ..Template::empty(class, ast.kind) };
         let name = self.library.full_name(class);
         let scope = self.new_scope(Rc::new(template), name, Rc::from([]), None, ast.name.span);
         self.bare.insert((class, parent), scope);

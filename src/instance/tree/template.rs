@@ -56,6 +56,22 @@ pub struct Base<'a> {
 }
 
 impl Template<'_> {
+    /// A class that holds nothing.
+    pub(in crate::instance) fn empty(class: ClassId, kind: ast::ClassKind) -> Self {
+        Template {
+            class,
+            bases: Vec::new(),
+            elements: Vec::new(),
+            by_name: FxHashMap::default(),
+            builtin: None,
+            builtin_args: Vec::new(),
+            dims: Vec::new(),
+            prefix: ast::TypePrefix::default(),
+            kind,
+            broken: false,
+        }
+    }
+
     /// Whether this is an expandable connector.
     pub fn is_expandable(&self) -> bool {
         matches!(self.kind, ast::ClassKind::Connector { expandable: true })
@@ -148,18 +164,7 @@ impl<'a> Instance<'a, '_> {
             return t.clone();
         }
         let ast = self.library.class(class);
-        let mut t = Template {
-            class,
-            bases: Vec::new(),
-            elements: Vec::new(),
-            by_name: FxHashMap::default(),
-            builtin: None,
-            builtin_args: Vec::new(),
-            dims: Vec::new(),
-            prefix: ast::TypePrefix::default(),
-            kind: ast.kind,
-            broken: false,
-        };
+        let mut t = Template::empty(class, ast.kind);
         if self.gathering.is_empty() {
             self.gathered = 0;
         }
