@@ -7,7 +7,7 @@ use super::{
     Confidence, Equation, Experiment, FlatModel, InstanceInfo, Origin, OriginKind, StateSelect, Type, Variability,
     Variable,
 };
-use super::{balance, discrete, equations, overconstrained, ports, streams, vanish};
+use super::{balance, discrete, equations, overconstrained, ports, streams};
 use crate::diag::{Checked, Code, Diagnostic};
 use crate::expr::{ExprId, Exprs, VarId};
 use crate::instance::{ElementState, Instance, Node, ScopeId, View};
@@ -22,6 +22,7 @@ pub fn flatten(instance: &mut Instance<'_, '_>, network: &Network) -> Checked<Fl
     let numbers = Numbers::new(&scopes);
     flat.instances = scopes.iter().map(|&s| instance_info(instance, s, &numbers)).collect();
     flat.experiment = experiment(instance);
+    flat.varied = instance.varied;
     streams::prepare(instance, network);
     variables(instance, &numbers, &mut flat);
     instance.check_texts();
@@ -29,7 +30,6 @@ pub fn flatten(instance: &mut Instance<'_, '_>, network: &Network) -> Checked<Fl
     connections(instance, network, &numbers, &mut flat);
     overconstrained::equations(instance, network, &numbers, &mut flat);
     streams::equations(instance, network, &numbers, &mut flat);
-    vanish::without_vanishing(instance, &mut flat);
     discrete::check(instance, &flat);
     for (v, &i) in flat.variables.iter_mut().zip(&instance.order) {
         if v.variability == Variability::Parameter && instance.variables[i as usize].structural {

@@ -12,7 +12,6 @@ mod ports;
 mod print;
 mod roots;
 mod streams;
-mod vanish;
 
 pub use explain::explain;
 pub use flatten::flatten;
@@ -48,6 +47,8 @@ pub struct FlatModel {
     pub enumerations: Vec<(String, Vec<String>)>,
     /// The model's `experiment` annotation.
     pub experiment: Experiment,
+    /// Parameters get other values without compiling again: none that is 0 may be fixed with the structure for that.
+    pub varied: bool,
 }
 
 /// `annotation(experiment(...))`; `None` where nothing is said.

@@ -379,21 +379,11 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// Looks at values of parameters without fixing any with the structure.
-    pub fn without_fixing<T>(&mut self, look: impl FnOnce(&mut Self) -> T) -> T {
+    fn without_fixing<T>(&mut self, look: impl FnOnce(&mut Self) -> T) -> T {
         let structural: Vec<bool> = self.variables.iter().map(|v| v.structural).collect();
         let found = look(self);
         self.variables.iter_mut().zip(structural).for_each(|(v, was)| v.structural = was);
         found
-    }
-
-    /// Fixes the parameters of an expression with the structure of the model.
-    pub fn fix(&mut self, e: ExprId) {
-        for v in self.exprs.variables(e) {
-            let Some(&i) = self.order.get(v.index()) else { continue };
-            self.variables[i as usize].structural = true;
-            self.variables[i as usize].constant = None;
-        }
-        self.number_of(e);
     }
 
     /// Whether a value that stays the same through the run is only found at its start: it reads a parameter with

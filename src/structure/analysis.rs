@@ -8,8 +8,9 @@ use super::parameters::Known;
 use super::solve_block::BlockSolver;
 use super::sorting::{System, SystemRow};
 use super::{
-    ActionKind, Alias, Assign, Block, Dae, Selection, StateChoice, Unknown, alias, assertions, closed_groups, delays,
-    discrete, dummy_derivatives, duplicates, events, initial, messages, parameters, regularity,
+    ActionKind, Alias, Assign, Block, Dae, Selection, StateChoice, Unknown, alias, assertions, cancelling,
+    closed_groups, delays, discrete, dummy_derivatives, duplicates, events, initial, messages, parameters, regularity,
+    start_derivatives, zeros,
 };
 use crate::diag::{Checked, Diagnostic};
 use crate::expr::{Node, VarId};
@@ -22,7 +23,7 @@ use crate::flat::{Equation, FlatModel, Origin, OriginKind, StateSelect};
 /// A note lists start values that were chosen.
 pub fn analyze(flat: &FlatModel, choice: &StateChoice) -> Checked<Dae> {
     let mut diagnostics = Vec::new();
-    match run(flat, choice, &mut diagnostics) {
+    match settled(flat, choice, &mut diagnostics) {
         Ok(dae) if !diagnostics.iter().any(Diagnostic::is_error) => Checked::new(dae, diagnostics),
         Ok(_) => Checked::failed(diagnostics),
         Err(error) => {
@@ -32,7 +33,34 @@ pub fn analyze(flat: &FlatModel, choice: &StateChoice) -> Checked<Dae> {
     }
 }
 
-fn run(flat: &FlatModel, choice: &StateChoice, diagnostics: &mut Vec<Diagnostic>) -> Result<Dae, Diagnostic> {
+/// With the structure that parameters of value 0 leave.
+fn settled(flat: &FlatModel, choice: &StateChoice, diagnostics: &mut Vec<Diagnostic>) -> Result<Dae, Diagnostic> {
+    let mut decisive = Vec::new();
+    let mut last = run(flat, choice, &mut decisive, diagnostics)?;
+    while !decisive.is_empty() && !flat.varied {
+        let (mut further, mut said) = (decisive.clone(), Vec::new());
+        // where the model is singular with them, its equations as written tell more
+        let Ok(dae) = run(flat, choice, &mut further, &mut said) else { break };
+        if said.iter().any(Diagnostic::is_error) {
+            break;
+        }
+        (last, *diagnostics) = (dae, said);
+        if further.len() == decisive.len() {
+            break;
+        }
+        decisive = further;
+    }
+    Ok(last)
+}
+
+/// Without the products that are 0 by the parameters in `decisive`, to which those are added that have turned out to
+/// decide about the structure as well.
+fn run(
+    flat: &FlatModel,
+    choice: &StateChoice,
+    decisive: &mut Vec<VarId>,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> Result<Dae, Diagnostic> {
     let mut draft = Draft::new(flat);
     let order = parameters::order(&mut draft)?;
     let values = parameters::values(&draft, &order);
@@ -43,7 +71,9 @@ fn run(flat: &FlatModel, choice: &StateChoice, diagnostics: &mut Vec<Diagnostic>
     if !diagnostics.iter().any(Diagnostic::is_error) {
         diagnostics.extend(assertions::check(&draft, &mut known));
     }
+    zeros::take_out(&mut draft, &mut known, decisive);
     let aliases = alias::eliminate(&mut draft, &mut known, diagnostics);
+    cancelling::replace(&mut draft, &mut known);
     discrete::classify(&mut draft);
     discrete::absorb_initial_pres(&mut draft);
     refuse_input_derivatives(&draft)?;
@@ -61,9 +91,14 @@ fn run(flat: &FlatModel, choice: &StateChoice, diagnostics: &mut Vec<Diagnostic>
     let running = running_system(&draft, &reduction, &states)?;
 
     let mut blocks = Blocks::sort_running(&mut draft, &mut known, &running, &states.states);
-    let model = initial::Model { running: &running, states: &states.states, demoted: &states.demoted };
+    let with_derivatives = start_derivatives::add(&mut draft, &running, &states.states)?;
+    let at_start = with_derivatives.as_ref().unwrap_or(&running);
+    let model = initial::Model { running: at_start, states: &states.states, demoted: &states.demoted };
     let start = initial::assemble(&mut draft, &model);
     diagnostics.extend(start.diagnostics);
+    for system in [&running, &start.system] {
+        decisive.extend(zeros::decisive(&mut draft, &mut known, system));
+    }
     blocks.sort_initial(&mut draft, &mut known, &start.system);
     duplicates::share(&mut draft.exprs, &mut blocks.continuous);
     let rest = Rest { order, aliases, states: states.states, selections: chosen.selections };

@@ -11,7 +11,7 @@ use super::sorting::{System, SystemRow};
 use super::{Unknown, delays, discrete, messages, parameters};
 use crate::diag::Diagnostic;
 use crate::expr::{ExprId, Exprs, Node, VarId};
-use crate::flat::{Equation, Origin, OriginKind, Variability};
+use crate::flat::{Equation, Origin, OriginKind, StateSelect, Variability};
 use rustc_hash::FxHashMap;
 
 /// The matched system and what was decided on the way.
@@ -352,8 +352,8 @@ impl Assembly {
         self.checks.push((difference, index));
     }
 
-    /// States and what was differentiated before others: those with the more confident start, then those that would
-    /// rather be states.
+    /// States, what was differentiated and what would rather be a state and has a start, before others: those with the more
+    /// confident start, then those that would rather be states.
     fn start_candidates(&self, draft: &Draft, model: &Model) -> Vec<VarId> {
         let is_state = |v: &VarId| model.states.binary_search(v).is_ok();
         let is_differentiated = |v: &VarId| is_state(v) || model.demoted.binary_search(v).is_ok();
@@ -362,10 +362,13 @@ impl Assembly {
             (variable.state_select, variable.start.is_some())
         };
         let by_wish = |v: &VarId| (draft.variables[v.index()].confidence, !is_state(v), std::cmp::Reverse(wish(*v)));
-        let mut found: Vec<VarId> = model.states.iter().chain(model.demoted).copied().collect();
+        let (preferred, mut others): (Vec<VarId>, Vec<VarId>) =
+            draft.with_role(Role::Continuous).into_iter().filter(|v| !is_differentiated(v)).partition(|v| {
+                let variable = &draft.variables[v.index()];
+                variable.state_select >= StateSelect::Prefer && variable.start.is_some()
+            });
+        let mut found: Vec<VarId> = model.states.iter().chain(model.demoted).copied().chain(preferred).collect();
         found.sort_by_key(by_wish);
-        let mut others: Vec<VarId> =
-            draft.with_role(Role::Continuous).into_iter().filter(|v| !is_differentiated(v)).collect();
         others.sort_by_key(|&v| std::cmp::Reverse(wish(v)));
         found.extend(others);
         found.extend(draft.with_role(Role::FreeParameter));

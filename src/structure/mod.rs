@@ -7,6 +7,7 @@ mod alias;
 mod analysis;
 mod assertions;
 mod blt;
+mod cancelling;
 mod closed_groups;
 mod delays;
 mod discrete;
@@ -26,8 +27,10 @@ mod print;
 mod regularity;
 mod solve_block;
 mod sorting;
+mod start_derivatives;
 pub(crate) mod starts;
 mod tearing;
+mod zeros;
 
 pub use analysis::analyze;
 

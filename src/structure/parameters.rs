@@ -52,9 +52,7 @@ fn decide_conditions(draft: &mut Draft, before: &[VarId], members: &[VarId]) -> 
             });
             if holds.is_finite() {
                 chosen.push((e, if holds == 0.0 { no } else { yes }));
-                for u in found.vars {
-                    draft.variables[u.index()].variability = Variability::Constant;
-                }
+                fix(draft, &found.vars);
             }
         }
         // one at a time, from outside: what is chosen may hold further ones
@@ -133,6 +131,19 @@ impl Uses {
 
     fn of_variable(&self, v: VarId) -> &[VarId] {
         &self.used[self.starts[v.index()] as usize..self.starts[v.index() + 1] as usize]
+    }
+}
+
+/// Fixes parameters with the structure, and all that they are computed from.
+pub(super) fn fix(draft: &mut Draft, parameters: &[VarId]) {
+    let mut open = parameters.to_vec();
+    while let Some(v) = open.pop() {
+        let variable = &mut draft.variables[v.index()];
+        if std::mem::replace(&mut variable.variability, Variability::Constant) != Variability::Constant
+            && let Some(binding) = variable.binding
+        {
+            open.extend(draft.exprs.dependencies(&[binding]).vars);
+        }
     }
 }
 

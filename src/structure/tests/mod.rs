@@ -5,7 +5,7 @@ mod random;
 mod validity;
 
 use super::{Dae, StateChoice, analyze};
-use crate::flat::{OriginKind, StateSelect};
+use crate::flat::{FlatModel, OriginKind, StateSelect, Variability};
 use model::Model;
 
 fn dae(model: &Model) -> Dae {
@@ -338,4 +338,28 @@ fn two_speeds_of_one_position_are_one() {
     m.reals("s v1 v2 a1 a2").fixed("s = 0; v2 = 1");
     m.equations("v1 = der(s); a1 = der(v1); a2 = der(v2); v2 = der(s); a1 = -s; a2 = a1 + 0*v1");
     insta::assert_snapshot!(error(&m));
+}
+
+/// `R*i = v1 - v2` between two capacities: with `R = 0` one of them is no state, and `R` and what it comes from are fixed;
+/// another parameter of value 0 stays free.
+#[test]
+fn a_parameter_of_value_0_is_fixed_where_the_structure_hangs_on_it() {
+    let text = "model M
+          parameter Real R0 = 0, R = 2*R0, G = 0;
+          Real v1(start = 1, fixed = true), v2, i;
+        equation
+          der(v1) = -i - G*v1;
+          der(v2) = i;
+          R*i = v1 - v2;
+        end M;";
+    let flat = crate::flatten_text(text, None).value.expect("sound").flat;
+    let dae = crate::analyze(&flat).value.expect("sound");
+    assert_eq!(dae.states.len(), 1);
+    let variability = |name: &str| dae.variables.iter().find(|v| v.name == name).expect("declared").variability;
+    assert_eq!(
+        ["R0", "R", "G"].map(variability),
+        [Variability::Constant, Variability::Constant, Variability::Parameter]
+    );
+    let varied = crate::analyze(&FlatModel { varied: true, ..flat }).value.expect("sound");
+    assert_eq!(varied.states.len(), 2);
 }
