@@ -53,7 +53,7 @@ pub(super) struct LinearizeArgs {
     /// Values of a scheduling quantity, in its unit or with one: `p=1e6,2e6` or `n_p=200:1000:5` (from, to, count)
     #[arg(long, value_name = "NAME=VALUES")]
     grid: Vec<String>,
-    /// Where to write: .json, .csv, .mat or .mo, with --schedule .json or .csv; `-` for JSON on stdout
+    /// Where to write: .json, .csv, .mat or .mo; `-` for JSON on stdout
     #[arg(short, long, value_name = "FILE")]
     output_file: Option<String>,
     /// A picture of the frequency responses: .svg, .png or .html
@@ -156,7 +156,7 @@ fn linear_ending(path: &str) -> Result<&'static str, Failure> {
 }
 
 fn quasi_linear_ending(path: &str) -> Result<&'static str, Failure> {
-    files::ending(Path::new(path), "a quasi-linear form", &["json", "csv"])
+    files::ending(Path::new(path), "a quasi-linear form", &["json", "csv", "mat", "mo"])
 }
 
 fn write(linear: &StateSpace, path: &str, messages: &Messages) -> Result<(), Failure> {
@@ -300,6 +300,8 @@ fn quasi_linear(args: &LinearizeArgs, model: &Model, messages: &Messages) -> Res
     };
     match quasi_linear_ending(path)? {
         "csv" => write_text(path, &found.csv())?,
+        "mo" => write_text(path, &linear::scheduled_modelica(&found, &plot::stem(Path::new(path))))?,
+        "mat" => files::write(Path::new(path), &linear::scheduled_mat(&found))?,
         _ => write_text(path, &pretty(&found.json()))?,
     }
     messages.remark(words.trim_end());

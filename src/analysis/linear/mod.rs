@@ -4,11 +4,13 @@ mod export;
 mod frequency;
 mod modal;
 mod schedule;
+mod scheduled;
 
 pub use export::{csv, mat, modelica, words};
 pub use frequency::{bode, plane, response};
 pub use modal::{Pole, poles, zeros};
 pub use schedule::{Schedule, schedule};
+pub use scheduled::{mat as scheduled_mat, modelica as scheduled_modelica};
 
 use super::local::{Local, LocalError, Plan};
 use super::{Lifted, lift};

@@ -5,7 +5,7 @@
 //! g on each leg over the quantity itself is its column (the secant, not the slope, so nothing is lost), and what is
 //! left at rho = 0 belongs to the constant input 1.
 
-use super::{Chosen, Source};
+use super::{Chosen, Quantity, Source};
 use crate::analysis::local::Local;
 use crate::diag::{Code, Diagnostic};
 use crate::expr::VarId;
@@ -16,12 +16,16 @@ use serde_json::{Value, json};
 /// A model in quasi-linear form over a grid.
 #[derive(Clone, Debug)]
 pub struct Schedule {
+    /// The class.
+    pub class: String,
     /// Names of the scheduling quantities.
     pub rho: Vec<String>,
-    /// Names of the states.
-    pub states: Vec<String>,
-    /// Names of the inputs, `1` for the constant one behind them.
-    pub inputs: Vec<String>,
+    /// What each of them is a multiple of.
+    pub(super) legs: Vec<Leg>,
+    /// The states, with their values at the operating point.
+    pub states: Vec<Quantity>,
+    /// The inputs; behind them stands the constant one.
+    pub inputs: Vec<Quantity>,
     /// The points of the grid.
     pub points: Vec<Point>,
     /// Per state the largest difference between A x + B u and the rate, over the largest term of the row, at random
@@ -44,10 +48,11 @@ pub struct Point {
 
 /// A scheduling quantity: `factor * (w - origin)` of a state or input w.
 #[derive(Clone, Copy, Debug)]
-struct Leg {
-    column: usize,
-    factor: f64,
-    origin: f64,
+pub(super) struct Leg {
+    /// Among states, then inputs.
+    pub column: usize,
+    pub factor: f64,
+    pub origin: f64,
 }
 
 /// Evaluates the rates over states and inputs together.
@@ -113,7 +118,11 @@ pub fn schedule(
         let at = |i: u32| leg.factor * (low + (high - low) * f64::from(i) / 4.0 - leg.origin);
         (0..5).map(at).collect::<Vec<f64>>()
     };
-    let grid: Vec<Vec<f64>> = legs.iter().zip(grid).map(|(l, g)| g.clone().unwrap_or_else(|| even(l))).collect();
+    let mut grid: Vec<Vec<f64>> = legs.iter().zip(grid).map(|(l, g)| g.clone().unwrap_or_else(|| even(l))).collect();
+    for values in &mut grid {
+        values.sort_by(f64::total_cmp);
+        values.dedup();
+    }
     let mut points = Vec::new();
     for values in products(&grid) {
         let found = factorised(&mut field, &legs, &w0, &values);
@@ -121,10 +130,16 @@ pub fn schedule(
         points.push(Point { rho: values, a, b });
     }
     let (error, tried) = check(&mut field, &legs, &w0, ranges);
-    let name = |v: VarId| plan.system.dae.variables[v.index()].name.clone();
-    let states: Vec<String> = plan.state_variables().map(name).collect();
-    let columns = chosen.quantities().skip(states.len()).map(name).chain(["1".to_owned()]);
-    Ok(Schedule { rho, states, inputs: columns.collect(), points, error, tried })
+    let variables = &plan.system.dae.variables;
+    let quantity = |(v, value): (VarId, &f64)| {
+        let variable = &variables[v.index()];
+        let unit = variable.unit.as_deref().unwrap_or("").to_owned();
+        Quantity { name: variable.name.clone(), unit, value: *value, nominal: 1.0 }
+    };
+    let mut states: Vec<Quantity> = chosen.quantities().zip(&w0).map(quantity).collect();
+    let inputs = states.split_off(field.states);
+    let class = plan.system.dae.class.clone();
+    Ok(Schedule { class, rho, legs, states, inputs, points, error, tried })
 }
 
 fn no_value(why: &str) -> Diagnostic {
@@ -262,6 +277,16 @@ fn halton(k: usize, j: usize) -> f64 {
 }
 
 impl Schedule {
+    /// The variable of the Modelica model that stands for a column of (A, B): states, inputs, the constant one.
+    pub(super) fn symbol(&self, column: usize) -> String {
+        let n = self.states.len();
+        match column.checked_sub(n) {
+            None => format!("x_{}", column + 1),
+            Some(j) if j < self.inputs.len() => format!("u_{}", j + 1),
+            Some(_) => "1".to_owned(),
+        }
+    }
+
     /// Whether the form is exact at all states tried.
     pub fn is_exact(&self) -> bool {
         self.tried > 0 && self.error.iter().all(|e| *e <= 1e-12)
@@ -274,8 +299,8 @@ impl Schedule {
             self.points.iter().map(|p| json!({"rho": p.rho, "A": rows(&p.a), "B": rows(&p.b)})).collect();
         json!({
             "rho": self.rho,
-            "states": self.states,
-            "inputs": self.inputs,
+            "states": self.states.iter().map(|q| &q.name).collect::<Vec<_>>(),
+            "inputs": self.inputs.iter().map(|q| q.name.as_str()).chain(["1"]).collect::<Vec<_>>(),
             "exact": self.is_exact(),
             "error": self.error,
             "points": points,
@@ -285,7 +310,7 @@ impl Schedule {
     /// One line a point: the scheduling quantities, then the entries by rows.
     pub fn csv(&self) -> String {
         let entry = |letter: char, i: usize, j: usize| format!("\"{letter}[{},{}]\"", i + 1, j + 1);
-        let (n, m) = (self.states.len(), self.inputs.len());
+        let (n, m) = (self.states.len(), self.inputs.len() + 1);
         let mut head: Vec<String> = self.rho.iter().map(|r| format!("\"{r}\"")).collect();
         head.extend((0..n).flat_map(|i| (0..n).map(move |j| entry('A', i, j))));
         head.extend((0..n).flat_map(|i| (0..m).map(move |j| entry('B', i, j))));
@@ -308,7 +333,8 @@ impl Schedule {
                 &format!("exact: A x + B u meets the rates to {said} of the largest term, at {} states\n", self.tried);
         } else {
             out += &format!("not exact: A x + B u misses the rates by up to {said} of the largest term\n");
-            for (name, error) in self.states.iter().zip(&self.error).filter(|(_, e)| **e > 1e-12) {
+            for (state, error) in self.states.iter().zip(&self.error).filter(|(_, e)| **e > 1e-12) {
+                let name = &state.name;
                 out += &format!("  der({name}): {}\n", crate::results::number::rounded(*error, 2));
             }
         }

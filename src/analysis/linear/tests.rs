@@ -156,23 +156,47 @@ const PUMP: &str = "model M
   end M;";
 
 fn quasi_linear(rho: &[&str]) -> Schedule {
+    quasi_linear_at(rho, &vec![vec![1.0, 10.0]; rho.len()])
+}
+
+fn quasi_linear_at(rho: &[&str], grid: &[Vec<f64>]) -> Schedule {
     let (simulation, state) = start(PUMP);
     let model = simulation.model();
     let chosen = Chosen::scheduled(&model.flat, &strings(&["f", "u"]), &strings(rho)).expect("fits");
     let ranges = [(-40.0, 40.0), (0.0, 20.0), (10.0, 40.0), (0.0, 3.0)];
-    let grid: Vec<Option<Vec<f64>>> = rho.iter().map(|_| Some(vec![1.0, 10.0])).collect();
+    let grid: Vec<Option<Vec<f64>>> = grid.iter().cloned().map(Some).collect();
     schedule(&chosen, &state, &grid, &ranges).expect("has values")
 }
 
 #[test]
 fn the_quasi_linear_form_is_exact_where_the_rest_is_linear() {
     let exact = quasi_linear(&["p", "n"]);
-    assert_eq!(exact.inputs, ["f", "u", "1"]);
+    assert_eq!(exact.inputs.iter().map(|q| q.name.as_str()).collect::<Vec<_>>(), ["f", "u"]);
     assert_eq!((exact.points.len(), exact.is_exact()), (4, true), "{:?}", exact.error);
     let short = quasi_linear(&["p"]);
     assert!(!short.is_exact() && short.error[1] > 1e-3, "{:?}", short.error);
     assert!(short.words().contains("not exact"));
     assert_eq!(exact.csv().lines().count(), 5);
+}
+
+/// The written model follows the model it comes from: exactly scheduled it differs by the interpolation between the points of
+/// its grid, and at a point of the grid not at all.
+#[test]
+fn the_written_form_simulates() {
+    let form = quasi_linear_at(&["p", "n"], &[vec![12.0, 0.0, 3.0, 6.0], vec![0.0, 900.0, 1200.0, 1500.0, 1800.0]]);
+    let text = format!(
+        "{}\n{}\nmodel Beside\n  M bench(f = 30, u = 1);\n  Form form(u_1 = 30, u_2 = 1, x_1(start = 20), x_2(start = 5));\nend Beside;",
+        PUMP.replace("parameter Real f = 30;", "input Real f;"),
+        scheduled_modelica(&form, "Form")
+    );
+    let world = MemoryWorld::single("m.mo", &text);
+    let request = Request { source: "m.mo".into(), model: Some("Beside".into()), ..Request::default() };
+    let mut simulation = Simulation::compile(&world, &request).expect("the written form compiles");
+    let run = simulation.stop_time(0.2).run().expect("runs");
+    let last = |name: &str| *run.trajectory.column(name).expect("a column").last().expect("rows");
+    let (w, p) = (last("bench.w"), last("bench.p"));
+    assert!((last("form.x_1") - w).abs() < 1e-3 * w && (last("form.x_2") - p).abs() < 2e-2 * p, "{w} {p}");
+    assert!(scheduled_mat(&form).len() > 20 * 8 * (4 + 6));
 }
 
 /// The largest error of a shipped model's form over the terms of its rows, from states within a fifth (at least `least`)
