@@ -317,7 +317,7 @@ fn closed_circuits_keep_their_oil_over_100_s() {
     let mut tried = Vec::new();
     let mut found = Vec::new();
     // other forms of the drive and the pump of `System` run some seconds above: 100 s take minutes in a debug build
-    let slow = ["ServoPump.SampledDrive", "ServoPump.PistonPump"];
+    let slow = ["ServoPump.SampledDrive", "ServoPump.SampledFieldOrientedDrive", "ServoPump.PistonPump"];
     let quick = |c: &Circuit| !c.all.iter().any(|(_, class)| slow.contains(&class.as_str()));
     for circuit in circuits("models").into_iter().filter(|c| c.closed && quick(c)) {
         if let Some(t) = circuit.run_with(None, |s| _ = s.stop_time(100.0)) {

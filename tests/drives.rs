@@ -175,3 +175,207 @@ fn a_braking_motor_charges_its_link_by_what_the_rotor_loses() {
     let copper = 1.5 * 0.176 * (6.0f64 / 0.96).powi(2) * 0.18;
     near(link_1 - link_0, rotor_0 - rotor_1 - copper, 0.01);
 }
+
+/// A motor with buried magnets.
+struct Salient {
+    p: f64,
+    psi: f64,
+    l_d: f64,
+    l_q: f64,
+    r: f64,
+}
+
+const SALIENT: Salient = Salient { p: 4.0, psi: 0.06, l_d: 0.4e-3, l_q: 1.0e-3, r: 0.02 };
+const I_MAX: f64 = 100.0;
+const U_MAX: f64 = 300.0 / 1.732_050_807_568_877_2;
+
+impl Salient {
+    fn torque(&self, i_d: f64, i_q: f64) -> f64 {
+        1.5 * self.p * (self.psi * i_q + (self.l_d - self.l_q) * i_d * i_q)
+    }
+
+    fn voltage(&self, w: f64, i_d: f64, i_q: f64) -> f64 {
+        let w_e = self.p * w;
+        (self.r * i_d - w_e * self.l_q * i_q).hypot(self.r * i_q + w_e * (self.l_d * i_d + self.psi))
+    }
+
+    /// The greatest torque of all currents that the limits allow, by trying them.
+    fn greatest(&self, w: f64, voltage: f64) -> f64 {
+        let angles = (0..=1000).map(|k| std::f64::consts::FRAC_PI_2 * (1.0 + f64::from(k) / 1000.0));
+        let currents = angles.flat_map(|a| (1..=50).map(move |k| (a, I_MAX * f64::from(k) / 50.0)));
+        let points = currents.map(|(a, i): (f64, f64)| (i * a.cos(), i * a.sin()));
+        let allowed = points.filter(|(d, q)| self.voltage(w, *d, *q) <= voltage);
+        allowed.map(|(d, q)| self.torque(d, q)).fold(0.0, f64::max)
+    }
+}
+
+/// Full command at constant speed: torque, currents and voltage once they stand.
+fn at_full_command(w: f64, torque: f64) -> (f64, f64, f64, f64) {
+    let Salient { p, psi, l_d, l_q, r } = SALIENT;
+    let mut simulation = circuit(
+        &format!(
+            "Electrical.Drives.ServoMotor motor(T_max = 60, V_dc = 300,
+                redeclare Electrical.Drives.MaximumTorqueCurrent command(i_max = {I_MAX}),
+                motor(p = {p}, psi_f = {psi}, L_d = {l_d}, L_q = {l_q}, R_s = {r}));
+            Mechanical.Rotational.ConstantSpeed shaft(w_fixed = {w});"
+        ),
+        &format!("motor.T_ref = {torque}; connect(shaft.flange, motor.flange);"),
+    );
+    simulation.stop_time(0.3);
+    let t = run(&simulation);
+    let last = |name: &str| rig::last(&t, name);
+    (last("motor.T_e"), last("motor.motor.i_d"), last("motor.motor.i_q"), last("motor.command.u"))
+}
+
+/// Beyond the base speed of some 440 rad/s the torque is the most that current and voltage allow, driving and braking, both
+/// ways round; below it the current is the least that makes the torque.
+#[test]
+fn field_weakening_finds_the_greatest_torque_of_the_limits() {
+    for w in [100.0, 400.0, 600.0, 1000.0, 1600.0] {
+        for (sign, torque) in [(1.0, 60.0), (-1.0, -60.0)] {
+            let (found, i_d, i_q, u) = at_full_command(sign * w, torque);
+            let wanted = SALIENT.greatest(w, 0.95 * U_MAX);
+            assert!((found.abs() - wanted).abs() < 0.02 * wanted, "{w}: {found}, {wanted} by trying");
+            assert!(i_d.hypot(i_q) < 1.001 * I_MAX && u < U_MAX, "{w}: {i_d} {i_q} {u}");
+        }
+    }
+    // braking, the resistance helps: a little more than driving
+    let (found, ..) = at_full_command(1000.0, -60.0);
+    let wanted = SALIENT.greatest(1000.0, 0.95 * U_MAX);
+    assert!((1.0..1.1).contains(&(-found / wanted)), "{found} {wanted}");
+    let (found, i_d, i_q, _) = at_full_command(100.0, 20.0);
+    assert!((found - 20.0).abs() < 0.02 * 20.0, "{found}");
+    for turn in [-0.05_f64, 0.05] {
+        let (d, q) = (i_d * turn.cos() - i_q * turn.sin(), i_d * turn.sin() + i_q * turn.cos());
+        assert!(SALIENT.torque(d, q) < found, "the same current at another angle makes less torque");
+    }
+}
+
+/// Motors in star, in delta with windings of three times the impedance, and in rotating axes, on one supply.
+fn three_forms(supply: &str, windings: &str, stop: f64) -> Trajectory {
+    let mut simulation = circuit(
+        &format!(
+            "Electrical.ThreePhaseVoltage line(U = 460/sqrt(3), f = 60{supply});
+            Electrical.Ground ground;
+            Electrical.Machines.InductionMotorABC star({windings});
+            Electrical.Machines.InductionMotorABC delta(
+                R_s = 3*star.R_s, R_r = 3*star.R_r, L_ls = 3*star.L_ls, L_lr = 3*star.L_lr, L_m = 3*star.L_m);
+            Electrical.Machines.InductionMotor axes(f = 60, U = 460/sqrt(3));
+            Mechanical.Rotational.Inertia rotor[3](each J = 0.4);
+            Mechanical.Rotational.QuadraticLoad load[3](each tau_nominal = 100, each w_nominal = 188);
+            Real given(start = 0, fixed = true), used(start = 0, fixed = true);"
+        ),
+        "connect(line.neutral, ground.p);
+        connect(line.a, star.U1); connect(line.b, star.V1); connect(line.c, star.W1);
+        connect(star.U2, star.V2); connect(star.V2, star.W2);
+        connect(line.a, delta.U1); connect(line.b, delta.V1); connect(line.c, delta.W1);
+        connect(delta.U2, delta.V1); connect(delta.V2, delta.W1); connect(delta.W2, delta.U1);
+        connect(star.flange, rotor[1].flange_a); connect(delta.flange, rotor[2].flange_a);
+        connect(axes.flange, rotor[3].flange_a);
+        for k in 1:3 loop connect(rotor[k].flange_b, load[k].flange); end for;
+        der(given) = line.power;
+        der(used) = star.P_cu + delta.P_cu + star.T_e*star.w + delta.T_e*delta.w;",
+    );
+    simulation.stop_time(stop);
+    simulation.settings().interval = 5e-4;
+    simulation.settings().tolerance = 1e-7;
+    run(&simulation)
+}
+
+#[test]
+fn a_motor_in_phases_is_the_motor_in_rotating_axes_in_star_and_in_delta() {
+    let t = three_forms("", "", 1.0);
+    let reference = column(&t, "axes.T_e");
+    let largest = reference.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+    for form in ["star", "delta"] {
+        let torque = column(&t, &format!("{form}.T_e"));
+        let off = torque.iter().zip(reference).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(off < 1e-4 * largest, "{form}: {off} of {largest}");
+    }
+    assert!(column(&t, "star.i_0").iter().all(|i| *i == 0.0));
+    // what is neither shaft power nor heat is the field, the same after each period once all stands
+    let [given, used] = ["given", "used"].map(|n| at(&t, n, 1.0) - at(&t, n, 0.9));
+    near(used, given, 1e-6);
+}
+
+#[test]
+fn a_supply_with_two_phases_makes_the_torque_pulsate_at_twice_its_frequency() {
+    let t = three_forms(", phases = {1, 1, 0.6}", "unbalance = {0, 0, 0.5}", 1.0);
+    let (times, torque) = (&t.times, column(&t, "star.T_e"));
+    let mean = rig::mean_from(&t, "star.T_e", 0.8);
+    let amplitude = |f: f64| {
+        let (mut c, mut s, mut n) = (0.0_f64, 0.0_f64, 0.0_f64);
+        for (time, v) in times.iter().zip(torque).filter(|(time, _)| (0.8..1.0 - 1e-9).contains(*time)) {
+            let angle = 2.0 * std::f64::consts::PI * f * time;
+            (c, s, n) = (c + (v - mean) * angle.cos(), s + (v - mean) * angle.sin(), n + 0.5);
+        }
+        (c / n).hypot(s / n)
+    };
+    assert!(amplitude(120.0) > 0.3 * mean, "{} of {mean}", amplitude(120.0));
+    assert!(amplitude(60.0) < 0.02 * mean && amplitude(180.0) < 0.02 * mean);
+    let [given, used] = ["given", "used"].map(|n| at(&t, n, 1.0) - at(&t, n, 0.9));
+    near(used, given, 1e-5);
+}
+
+/// An induction motor under field-oriented control, at constant speed with more torque commanded than it may give, or free.
+fn field_oriented(set: &str, shaft: &str, joined: &str, stop: f64) -> Trajectory {
+    let mut simulation = circuit(
+        &format!(
+            "Electrical.Drives.FieldOrientedInductionDrive drive({set});
+            {shaft}
+            "
+        ),
+        joined,
+    );
+    simulation.stop_time(stop);
+    simulation.settings().tolerance = 1e-7;
+    run(&simulation)
+}
+
+/// With currents held the torque over the commanded one is known in closed form for any error of the rotor resistance.
+#[test]
+fn a_wrong_rotor_resistance_detunes_the_torque_as_the_closed_form_says() {
+    for k in [0.5, 0.8, 1.0, 1.5, 2.0] {
+        for turn in [1.0, -1.0] {
+            let t = field_oriented(
+                &format!("k_Rr = {k}, T_max = 150, I_max = 400, U_max = 2000"),
+                "Mechanical.Rotational.ConstantSpeed shaft(w_fixed = 50);",
+                &format!("connect(shaft.flange, drive.flange); drive.w_ref = {};", 50.0 + 100.0 * turn),
+                2.0,
+            );
+            let last = |name: &str| rig::last(&t, name);
+            let l_m = 13.08 / (120.0 * std::f64::consts::PI);
+            let l_r = l_m + 0.302 / (120.0 * std::f64::consts::PI);
+            let (i_d, i_q) = (last("drive.i_d"), last("drive.i_q"));
+            let s = k * i_q / i_d;
+            let wanted = 3.0 * l_m * l_m / l_r * (i_d * i_d + i_q * i_q) * s / (1.0 + s * s);
+            near(last("drive.T_e"), wanted, 1e-4);
+            near(3.0 * l_m * l_m / l_r * i_d * i_q, 150.0 * turn, 1e-4);
+            assert_eq!(
+                last("drive.psi_qr").abs() < 1e-6,
+                k == 1.0,
+                "the flux lies along d only where the controller is right"
+            );
+        }
+    }
+}
+
+/// Without a speed sensor the speed is found to a tenth of a radian per second under load, and with a wrong rotor resistance
+/// it is off by the error of the slip.
+#[test]
+fn the_observed_speed_is_right_and_off_by_the_error_of_the_slip() {
+    let free = "Mechanical.Rotational.Inertia rotor(J = 0.4);
+        Mechanical.Rotational.QuadraticLoad load(tau_nominal = 150, w_nominal = 150);";
+    let joined = "connect(drive.flange, rotor.flange_a); connect(rotor.flange_b, load.flange); drive.w_ref = W;";
+    for w in [150.0, -150.0, 60.0] {
+        let joined = joined.replace('W', &format!("{w}"));
+        let t = field_oriented("sensorless = true", free, &joined, 5.0);
+        assert!((rig::last(&t, "drive.w") - w).abs() < 0.1, "{} for {w}", rig::last(&t, "drive.w"));
+        let t = field_oriented("sensorless = true, k_Rr = 1.2, K_o = 30", free, &joined, 12.0);
+        let last = |name: &str| rig::last(&t, name);
+        let psi = last("drive.psi_dr").hypot(last("drive.psi_qr"));
+        let slip = 0.228 * last("drive.T_e") / (3.0 * psi * psi);
+        let off = last("drive.w_est") - last("drive.w");
+        assert!((off + 0.2 * slip / 2.0).abs() < 0.05 * slip.abs(), "{w}: off by {off}, slip {slip}");
+    }
+}

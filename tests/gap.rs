@@ -610,9 +610,12 @@ fn windows_of_a_run_down_begin_where_their_signal_says() {
 fn soft_oil_behind_a_check_valve_does_not_lead_the_simulation_astray() {
     let rig = "
         model Rig
-          extends ServoPump.DeadZone(break speed, break connect(speed.y, motor.w_ref));
+          extends ServoPump.DeadZone(
+              redeclare ServoPump.IdealDrive motor, break rotor, break speed, break connect(speed.y, motor.w_ref),
+              break connect(motor.flange, rotor.flange_a), break connect(rotor.flange_b, pump.flange));
           Interfaces.RealInput w_ref(unit = \"rad/s\", nominal = 3);
         equation
+          connect(motor.flange, pump.flange);
           connect(w_ref, motor.w_ref);
         end Rig;";
     let mut world = MemoryWorld::single("Rig.mo", rig);

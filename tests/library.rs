@@ -138,7 +138,9 @@ fn classes_are_described() {
     let roots = bramah::shipped::Shipped::roots().map(|r| (&shipped as &dyn World, r)).to_vec();
     let mut library = Library::new(&trees, roots);
     let mut silent = Vec::new();
-    for package in ["Interfaces", "Smooth", "Oil", "Hydraulic", "Mechanical", "Electrical", "Thermal", "Signal"] {
+    for package in
+        ["Interfaces", "Smooth", "Oil", "Hydraulic", "Pneumatic", "Mechanical", "Electrical", "Thermal", "Signal"]
+    {
         let mut open = vec![library.find(package).expect("it ships")];
         while let Some(id) = open.pop() {
             let class = library.class(id);

@@ -10,11 +10,15 @@ model ProportionalRelief "Relief valve whose setting follows a signal"
   parameter Boolean hysteretic = false "true: the magnet follows the command with play" annotation(Evaluate = true);
   parameter Real h(min = 0) = 0.3 "Play, in the unit of the command; 3 % of the range is usual";
   parameter SI.Time tau_h(min = 1e-6, max = 1) = 1e-3 "Time in which the play follows";
+  parameter Boolean steady = false "true: the setting has reached its command at the start" annotation(Evaluate = true);
   Real u_m "Command behind the play";
-  SI.Pressure p_set(start = 0, fixed = true, nominal = 1e6) "Setting";
+  SI.Pressure p_set(start = 0, fixed = not steady, nominal = 1e6) "Setting";
 initial equation
   if hysteretic then
     u_m = u;
+  end if;
+  if steady then
+    der(p_set) = 0;
   end if;
 equation
   assert(h >= 0, "The play h must not be negative");

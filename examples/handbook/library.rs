@@ -8,9 +8,10 @@ use bramah::syntax::symbol::Symbol;
 use std::collections::BTreeMap;
 
 /// Packages of the handbook, in the order in which they are shown.
-pub const PACKAGES: [&str; 16] = [
+pub const PACKAGES: [&str; 17] = [
     "Hydraulic",
     "Oil",
+    "Pneumatic",
     "Mechanical",
     "Electrical",
     "Thermal",

@@ -6,13 +6,15 @@ model Bench "The whole bench: charge pump, flushing, filters, cooler, relief val
   parameter SI.Frequency f(min = 0, max = 100) = 27.74 "Frequency command, where its source is constant";
   parameter SI.Voltage u(min = 0, max = 10) = 3 "Load command, where its source is constant";
   parameter SI.Volume V_line(min = 1e-6, displayUnit = "l") = 1.5e-3 "Volume of each side of the circuit";
+  parameter Boolean steady = true "true: all stands at the start, as the commands ask; false: starts from the values of the components" annotation(Evaluate = true);
   inner Oil.ClosedCircuitOil oil "Oil";
   replaceable Signal.Constant frequency(k = f) constrainedby Signal.Bases.Source "Source of the frequency command";
   replaceable Signal.Constant command(k = u) constrainedby Signal.Bases.Source "Source of the load command";
   Electrical.Drives.VfInverter inverter if control == Control.V_f "1: inverter";
   Electrical.Machines.InductionMotorSteady electricMotor(R_r = if motor == MotorType.A then 0.40 else 0.16) if control == Control.V_f "2: induction motor";
-  Electrical.Drives.SensorlessVectorDrive vectorDrive if control == Control.SFVC "1, 2: drive under vector control";
-  Signal.Gain synchronous(k = Modelica.Constants.pi) if control == Control.SFVC "Synchronous speed of four poles";
+  Electrical.Drives.FieldOrientedInductionDrive vectorDrive(sensorless = true, steady = steady, R_r = if motor == MotorType.A then 0.40 else 0.16) if control == Control.SFVC "1, 2: drive under vector control";
+  Electrical.Drives.SensorlessVectorDrive reducedDrive(steady = steady) if control == Control.SFVC_reduced "1, 2: the same, reduced to lags";
+  Signal.Gain synchronous(k = Modelica.Constants.pi) if control == Control.SFVC or control == Control.SFVC_reduced "Synchronous speed of four poles";
   Mechanical.Rotational.Inertia shaft_1(J = 0.35 + 0.02, w(start = 50)) "3: rotors of motor and pump, splitter gear 1:1";
   Mechanical.Rotational.Damper bearing_1(d = 0.02) "Friction of the motor";
   Mechanical.Rotational.TorqueSensor sensor_1 "4-1: torque before the pump";
@@ -36,7 +38,7 @@ model Bench "The whole bench: charge pump, flushing, filters, cooler, relief val
   Hydraulic.Filter filter_2 "14-2: filter of the flushing line";
   Hydraulic.Cooler cooler "15: radiator";
   Thermal.FixedTemperature oilTemperature(T = 318.15) "Temperature of the oil, held";
-  Hydraulic.ProportionalRelief loadRelief(k_u = 3.14e6, R_ov = 1.1e10) "16: proportional relief valve";
+  Hydraulic.ProportionalRelief loadRelief(steady = steady, k_u = 3.14e6, R_ov = 1.1e10) "16: proportional relief valve";
   Hydraulic.Tank tank "Tank";
   Mechanical.Rotational.Inertia shaft_2(J = 0.02 + J_L, w(start = 40)) "Hydraulic motor and load";
   Mechanical.Rotational.Damper bearing_2(d = 0.1) "Friction of the load";
@@ -45,6 +47,11 @@ model Bench "The whole bench: charge pump, flushing, filters, cooler, relief val
   Real n_m(unit = "rev/min", nominal = 1e3) "Speed of the hydraulic motor";
   SI.Pressure p(nominal = 1e7) "Pressure of the high side above the low side";
   SI.Torque T_e(nominal = 100) "Torque of the electric motor";
+initial equation
+  if steady then
+    {der(shaft_1.w), der(shaft_2.w)} = zeros(2);
+    {der(side_A.p), der(side_B.p), der(chargeLine.p), der(flushLine.p), der(loadLine.p)} = zeros(5);
+  end if;
 equation
   connect(frequency.y, inverter.f_ref);
   connect(inverter.f, electricMotor.f);
@@ -53,6 +60,8 @@ equation
   connect(frequency.y, synchronous.u);
   connect(synchronous.y, vectorDrive.w_ref);
   connect(vectorDrive.flange, shaft_1.flange_a);
+  connect(synchronous.y, reducedDrive.w_ref);
+  connect(reducedDrive.flange, shaft_1.flange_a);
   connect(shaft_1.flange_b, bearing_1.flange_a);
   connect(bearing_1.flange_b, housing.flange);
   connect(shaft_1.flange_b, chargePump.flange);

@@ -8,7 +8,7 @@ model Load "Speed held against a load pressure set by a throttle (paper's Fig. 1
   parameter SI.Torque T_rated(min = 0.1) = 3.18 "Rated torque of the motor";
   inner Oil.ServoPumpOil oil(T_0 = Modelica.Units.Conversions.from_degC(theta_oil)) "Oil";
   Signal.Ramp speed(height = Modelica.Units.Conversions.from_rpm(N_set), duration = abs(N_set)/ramp) "Speed command";
-  replaceable SampledDrive drive constrainedby Drive "1: servo motor";
+  replaceable SampledFieldOrientedDrive drive constrainedby Drive "1: servo motor";
   Mechanical.Rotational.Inertia rotor(J = 1.8e-4) "Inertia of motor and pump";
   Mechanical.Rotational.BearingFriction friction(tau_c = 0.01, tau_s = 0.05, w_s = 20, d = 0.2e-4) "Dry friction of seal and bearings";
   BenchPump pump(compression = false) "2: pump";
@@ -68,5 +68,5 @@ equation
   reserve = 1 - abs(pump.T_sh + friction.tau)/T_rated;
   annotation(
     experiment(StartTime = 0, StopTime = 8, Interval = 0.000625, Tolerance = 1e-5),
-    Documentation(info = "<html><p>The standard deviation of <code>N_meas</code> over the last 2 s, all samples of the drive, is that of tables 3 (600 r/min, 2 to 19 MPa) and 4 (10 MPa, 300 to 3000 r/min). It comes from a torque ripple once per revolution in proportion to the load, passed on by the speed loop, and from the resolution of the encoder; Stribeck friction adds little.</p><p>The throttle is at A: with a negative speed the pump delivers into B, where nothing but the relief valve takes its flow.</p></html>"));
+    Documentation(info = "<html><p>The standard deviation of <code>N_meas</code> over the last 2 s, all samples of the drive, is that of tables 3 (600 r/min, 2 to 19 MPa) and 4 (10 MPa, 300 to 3000 r/min). It comes from a torque ripple once per revolution in proportion to the load, passed on by the speed loop, and from the resolution of the encoder; Stribeck friction adds little.</p><p>The drive is a PMSM with current loops on an averaged inverter under a sampled speed controller; <code>redeclare ServoPump.SampledDrive drive</code> takes a torque with a lag in its place, <code>redeclare ServoPump.SwitchedDrive drive</code> the switching inverter. The throttle is at A: with a negative speed the pump delivers into B, where nothing but the relief valve takes its flow.</p></html>"));
 end Load;

@@ -6,8 +6,8 @@ model NoLoad "Flow over speed without load (paper's Fig. 7)"
   parameter Real theta_oil(unit = "degC", min = 0, max = 90) = 35 "Temperature of the oil";
   inner Oil.ServoPumpOil oil(T_0 = Modelica.Units.Conversions.from_degC(theta_oil)) "Oil";
   Signal.Ramp speed(height = Modelica.Units.Conversions.from_rpm(N_set), duration = abs(N_set)/ramp) "Speed command";
-  Mechanical.Rotational.Speed motor "Servo motor, its speed held exactly";
-  replaceable Electrical.Drives.IdealEncoder encoder "Encoder of the motor";
+  replaceable FieldOrientedDrive motor constrainedby Drive "Servo motor";
+  Mechanical.Rotational.Inertia rotor(J = 1.8e-4) "Inertia of motor and pump";
   BenchPump pump(compression = false) "Pump";
   Hydraulic.Volume volume_A(V = V_A) "Line at port A";
   Hydraulic.FlowSensor flowMeter "Flow meter";
@@ -23,8 +23,8 @@ model NoLoad "Flow over speed without load (paper's Fig. 7)"
   SI.Torque T_sh "Torque of the shaft";
 equation
   connect(speed.y, motor.w_ref);
-  connect(motor.flange, pump.flange);
-  connect(encoder.flange, pump.flange);
+  connect(motor.flange, rotor.flange_a);
+  connect(rotor.flange_b, pump.flange);
   connect(pump.port_b, reservoir.port);
   connect(pump.port_a, volume_A.port);
   connect(volume_A.port, flowMeter.port_a);
@@ -33,11 +33,11 @@ equation
   connect(reservoir.port, lineBack.port_a);
   connect(lineBack.port_b, flowMeter.port_b);
   N = Modelica.Units.Conversions.to_rpm(pump.w);
-  N_meas = Modelica.Units.Conversions.to_rpm(encoder.w);
+  N_meas = Modelica.Units.Conversions.to_rpm(motor.w_meas);
   p_A = volume_A.p;
   p_B = reservoir.p;
   Q_A = pump.Q_A;
-  T_e = -motor.flange.tau;
+  T_e = motor.T_e;
   T_sh = pump.T_sh;
   annotation(
     experiment(StartTime = 0, StopTime = 11, Interval = 0.02, Tolerance = 1e-6),

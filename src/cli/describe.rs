@@ -8,7 +8,7 @@ use crate::world::World;
 use std::fmt::Write;
 
 /// The packages to begin with.
-const PACKAGES: [&str; 6] = ["Hydraulic", "Oil", "Mechanical", "Electrical", "Thermal", "Signal"];
+const PACKAGES: [&str; 7] = ["Hydraulic", "Oil", "Pneumatic", "Mechanical", "Electrical", "Thermal", "Signal"];
 
 /// A page about a class that ships, `None` where there is none of this name.
 pub(super) fn describe(name: &str) -> Option<String> {

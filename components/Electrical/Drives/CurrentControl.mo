@@ -9,12 +9,14 @@ partial model CurrentControl "Field-oriented current control: voltages commanded
   Interfaces.RealOutput u_q(unit = "V") "Commanded voltage of the q axis";
   parameter Integer p(min = 1) = 8 "Pole pairs";
   parameter SI.Resistance R_s(min = 0) = 0.176 "Phase resistance known to the controller";
-  parameter SI.Inductance L(min = 1e-9) = 0.314e-3 "Inductance known to the controller";
+  parameter SI.Inductance L(min = 1e-9) = 0.314e-3 "Inductance of the q axis known to the controller";
+  parameter SI.Inductance L_d(min = 1e-9) = L "Inductance of the d axis known to the controller";
   parameter SI.MagneticFlux psi_f(min = 0) = 0.08 "Flux linkage known to the controller";
   parameter SI.AngularFrequency w_c(min = 1) = 2*Modelica.Constants.pi*500 "Bandwidth of the current loop";
   parameter SI.Voltage V_dc(min = 1) = 540 "Voltage of the DC link known to the controller";
 protected
-  parameter SI.Resistance K_p = L*w_c "Gain";
+  parameter SI.Resistance K_p = L*w_c "Gain of the q axis";
+  parameter SI.Resistance K_d = L_d*w_c "Gain of the d axis";
   parameter Real K_i(unit = "V/(A.s)") = R_s*w_c "Integral gain";
   parameter SI.Voltage u_max = V_dc/sqrt(3) "Greatest amplitude";
 equation

@@ -13,8 +13,8 @@ protected
 equation
   assert(T_s > 0 and T_s*w_c < 1, "The sampling period T_s must be positive and shorter than 1/w_c");
   when sample(0, T_s) then
-    v_d = K_p*(i_d_ref - i_d) + pre(x_d) - p*w*L*i_q;
-    v_q = K_p*(i_q_ref - i_q) + pre(x_q) + p*w*(L*i_d + psi_f);
+    v_d = K_d*(i_d_ref - i_d) + pre(x_d) - p*w*L*i_q;
+    v_q = K_p*(i_q_ref - i_q) + pre(x_q) + p*w*(L_d*i_d + psi_f);
     k = min(1, u_max/max(sqrt(v_d^2 + v_q^2), 1e-3));
     x_d = pre(x_d) + T_s*(K_i*(i_d_ref - i_d) + (k - 1)*v_d*w_c);
     x_q = pre(x_q) + T_s*(K_i*(i_q_ref - i_q) + (k - 1)*v_q*w_c);

@@ -8,11 +8,16 @@ model SensorlessVectorDrive "Induction motor under sensorless flux vector contro
   parameter SI.Time tau_w(min = 1e-6) = 50e-3 "Time constant of the estimated speed";
   parameter SI.Torque T_max(min = 1e-6) = 300 "Greatest torque";
   parameter SI.AngularVelocity w_start = 0 "Estimated speed at the start";
+  parameter Boolean steady = false "true: torque, controller and estimate stand at the start" annotation(Evaluate = true);
   SI.AngularVelocity w(nominal = 100) "Speed";
-  SI.AngularVelocity w_est(start = w_start, fixed = true, nominal = 100) "Estimated speed";
+  SI.AngularVelocity w_est(start = w_start, fixed = not steady, nominal = 100) "Estimated speed";
   SI.AngularVelocity e(nominal = 1) "Control error";
-  SI.Torque x(start = 0, fixed = true, nominal = 100) "Integral part";
-  SI.Torque T_e(start = 0, fixed = true, nominal = 100) "Torque of the motor";
+  SI.Torque x(start = 0, fixed = not steady, nominal = 100) "Integral part";
+  SI.Torque T_e(start = 0, fixed = not steady, nominal = 100) "Torque of the motor";
+initial equation
+  if steady then
+    {der(w_est), der(x), der(T_e)} = zeros(3);
+  end if;
 equation
   assert(K_p > 0 and tau_T > 0 and tau_w > 0 and T_max > 0, "K_p, time constants and T_max must be positive");
   w = der(flange.phi);

@@ -4,12 +4,14 @@ model ServoMotor "Torque-controlled PMSM with field-oriented current control and
   Interfaces.RotationalFlange flange "Shaft";
   Interfaces.Pin dc_p if externalSupply "Positive pin of the DC link";
   Interfaces.Pin dc_n if externalSupply "Negative pin of the DC link";
-  parameter SI.Torque T_max(min = 1e-6) = 9.54 "Greatest torque";
+  parameter SI.Torque T_max(min = 1e-6) = 9.54 "Greatest torque that is commanded";
   parameter SI.Voltage V_dc(min = 1) = 540 "Voltage of the DC link";
   parameter Boolean externalSupply = false "true: the DC link is joined to dc_p and dc_n, and V_dc is what the controller takes it for" annotation(Evaluate = true);
   Machines.PMSM motor "Motor";
   replaceable ContinuousCurrentControl control constrainedby CurrentControl(
-    p = motor.p, R_s = motor.R_s, L = motor.L_q, psi_f = motor.psi_f, V_dc = V_dc) "Current control";
+    p = motor.p, R_s = motor.R_s, L = motor.L_q, L_d = motor.L_d, psi_f = motor.psi_f, V_dc = V_dc) "Current control";
+  replaceable ZeroDirectCurrent command constrainedby CurrentCommand(
+    p = motor.p, L_d = motor.L_d, L_q = motor.L_q, psi_f = motor.psi_f, V_dc = V_dc) "Currents for the torque";
   replaceable AveragedInverter inverter constrainedby Inverter(p = motor.p) "Inverter";
   ConstantVoltage supply(V = V_dc) if not externalSupply "DC link of constant voltage";
   Ground ground if not externalSupply "Its reference";
@@ -17,8 +19,12 @@ model ServoMotor "Torque-controlled PMSM with field-oriented current control and
 equation
   assert(T_max > 0, "T_max must be positive");
   T_e = motor.T_e;
-  control.i_d_ref = 0;
-  control.i_q_ref = min(max(T_ref, -T_max), T_max)/(1.5*motor.p*motor.psi_f);
+  command.T = min(max(T_ref, -T_max), T_max);
+  command.u_d = control.u_d;
+  command.u_q = control.u_q;
+  command.i_q = motor.i_q;
+  control.i_d_ref = command.i_d_ref;
+  control.i_q_ref = command.i_q_ref;
   connect(control.i_d, motor.i_d);
   connect(control.i_q, motor.i_q);
   control.w = motor.w;
@@ -36,6 +42,6 @@ equation
   connect(dc_p, inverter.dc_p);
   connect(dc_n, inverter.dc_n);
   connect(motor.flange, flange);
-  annotation(Documentation(info = "<html><p><code>PMSM</code>, current control and inverter: torque follows its command within a millisecond until the voltage ends. Control and inverter can be exchanged: <code>ContinuousCurrentControl</code> (default) or <code>SampledCurrentControl</code>, <code>AveragedInverter</code> (default) or <code>SwitchingInverter</code>. Braking, the motor feeds the DC link; what that does to its voltage is up to what is joined to <code>dc_p</code> and <code>dc_n</code>.</p>
+  annotation(Documentation(info = "<html><p><code>PMSM</code>, current control and inverter: torque follows its command within a millisecond until the voltage ends. Control and inverter can be exchanged: <code>ContinuousCurrentControl</code> (default) or <code>SampledCurrentControl</code>, <code>AveragedInverter</code> (default) or <code>SwitchingInverter</code>. <code>command</code> chooses the currents: <code>ZeroDirectCurrent</code> (default) or <code>MaximumTorqueCurrent</code>, which uses the reluctance torque and goes beyond the base speed by weakening the field. Braking, the motor feeds the DC link; what that does to its voltage is up to what is joined to <code>dc_p</code> and <code>dc_n</code>.</p>
 <p>For longer runs <code>TorqueSource</code> is the same as a lag.</p></html>"));
 end ServoMotor;

@@ -15,8 +15,7 @@ pub fn mat(form: &Schedule) -> Vec<u8> {
     let mut put = |name: &str, rows: usize, values: &[f64]| {
         write_matrix(&mut out, name, rows, values).expect("writing to memory cannot fail");
     };
-    let rho: Vec<f64> =
-        (0..form.rho.len()).flat_map(|k| form.points.iter().map(move |p| p.rho[k])).collect();
+    let rho: Vec<f64> = (0..form.rho.len()).flat_map(|k| form.points.iter().map(move |p| p.rho[k])).collect();
     put("rho", form.points.len(), &rho);
     let n = form.states.len();
     let side_by_side = |of: &dyn Fn(&Point) -> &DMatrix<f64>| -> Vec<f64> {
@@ -46,7 +45,11 @@ pub fn modelica(form: &Schedule, name: &str) -> String {
     for (k, rho) in form.rho.iter().enumerate() {
         let _ = writeln!(out, "  Real rho_{} \"{rho}\";", k + 1);
     }
-    let _ = writeln!(out, "protected\n  Real e[{}] \"Entries of the matrices that are not 0\";\nequation", entries.len().max(1));
+    let _ = writeln!(
+        out,
+        "protected\n  Real e[{}] \"Entries of the matrices that are not 0\";\nequation",
+        entries.len().max(1)
+    );
     for (k, leg) in form.legs.iter().enumerate() {
         let of = form.symbol(leg.column);
         let _ = writeln!(out, "  rho_{} = {}*({of} - ({}));", k + 1, text(leg.factor), text(leg.origin));
@@ -83,7 +86,9 @@ fn entry(point: &Point, i: usize, j: usize) -> f64 {
 fn matrices(form: &Schedule, entries: &[(usize, usize)]) -> String {
     let grid = grid(form);
     let (d, k) = (grid.len(), entries.len().max(1));
-    let mut out = format!("  function matrices \"Entries of A and B between the points of the grid\"\n    input Real rho[{d}];\n    output Real e[{k}];\n  protected\n");
+    let mut out = format!(
+        "  function matrices \"Entries of A and B between the points of the grid\"\n    input Real rho[{d}];\n    output Real e[{k}];\n  protected\n"
+    );
     for (at, values) in grid.iter().enumerate() {
         let list: Vec<String> = values.iter().map(|v| text(*v)).collect();
         let _ = writeln!(out, "    constant Real grid_{}[{}] = {{{}}};", at + 1, values.len(), list.join(", "));

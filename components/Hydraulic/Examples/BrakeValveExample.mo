@@ -1,0 +1,31 @@
+within Hydraulic.Examples;
+model BrakeValveExample "A winch lifts, holds and lowers a load through its motor; without the valve the load would run away"
+  inner Oil.ISOVG46 oil "Oil";
+  PressureSource source(p = 200e5);
+  Tank tank(p = 6e5) "Return under pressure, so that the checks feed the motor";
+  Valve43Centre valve(q_nom = 4e-4, centre = SpoolCentre.float);
+  Volume line_1(V = 5e-4, p_start = 6e5);
+  Volume line_2(V = 5e-4, p_start = 6e5);
+  BrakeValve brake(p_set = 220e5, q_nom = 1e-3, p_crack = 0.3e5, pilotRatio = 3);
+  Volume side_A(V = 2e-4, p_start = 6e5);
+  Volume side_B(V = 2e-4, p_start = 80e5);
+  Pump motor(V = 40e-6, G = 1e-12, T_c = 2);
+  Mechanical.Rotational.Inertia drum(J = 0.05);
+  Mechanical.Rotational.ConstantTorque load(tau_constant = 50) "Pulls the drum towards lowering";
+  Signal.TimeTable command(table = [0, 0; 0.2, 0; 0.3, -0.5; 1.2, -0.5; 1.3, 0; 2, 0; 2.1, 0.5; 3, 0.5; 3.1, 0; 3.6, 0]);
+equation
+  connect(source.port, valve.port_P);
+  connect(valve.port_T, tank.port);
+  connect(valve.port_A, line_1.port);
+  connect(valve.port_B, line_2.port);
+  connect(line_1.port, brake.port_1);
+  connect(line_2.port, brake.port_2);
+  connect(brake.port_A, side_A.port);
+  connect(brake.port_B, side_B.port);
+  connect(side_A.port, motor.port_b);
+  connect(side_B.port, motor.port_a);
+  connect(motor.flange, drum.flange_a);
+  connect(drum.flange_b, load.flange);
+  connect(command.y, valve.u);
+  annotation(experiment(StartTime = 0, StopTime = 3.6, Interval = 0.01, Tolerance = 1e-6));
+end BrakeValveExample;

@@ -1,0 +1,35 @@
+within Hydraulic.Examples;
+model PriorityValveExample "A pump's flow rises, and the priority consumer gets its share first, whichever load is higher; a steering unit sets its own share"
+  inner Oil.ISOVG46 oil "Oil";
+  FlowSource pump(useInput = true);
+  Signal.Ramp delivery(offset = 5e-5, height = 4.5e-4, duration = 0.8, startTime = 0.1);
+  Volume supply(V = 2e-4, p_start = 60e5);
+  PriorityValve valve(q_priority = 2e-4, q_nom = 5e-4);
+  PressureSource steering(useInput = true);
+  PressureSource rest(useInput = true);
+  Signal.Trapezoid load_CF(amplitude = 80e5, offset = 50e5, rising = 0.1, holding = 0.2, falling = 0.1, startTime = 1);
+  Signal.Trapezoid load_EF(amplitude = 90e5, offset = 20e5, rising = 0.1, holding = 0.2, falling = 0.1, startTime = 1.4);
+  FlowSource pump_2(q = 5e-4);
+  Volume supply_2(V = 2e-4, p_start = 30e5);
+  PriorityValve steered(useLS = true, q_nom = 5e-4);
+  VariableOrifice unit(A_max = 1e-5) "Steering unit: the metering orifice";
+  Signal.Trapezoid turning(amplitude = 0.8, offset = 0.02, rising = 0.2, holding = 0.4, falling = 0.2, startTime = 0.3);
+  PressureSource cylinder(p = 60e5);
+  PressureSource other(p = 20e5);
+equation
+  connect(delivery.y, pump.q_in);
+  connect(pump.port, supply.port);
+  connect(supply.port, valve.port_P);
+  connect(valve.port_CF, steering.port);
+  connect(valve.port_EF, rest.port);
+  connect(load_CF.y, steering.p_in);
+  connect(load_EF.y, rest.p_in);
+  connect(pump_2.port, supply_2.port);
+  connect(supply_2.port, steered.port_P);
+  connect(steered.port_CF, unit.port_a);
+  connect(unit.port_b, cylinder.port);
+  connect(steered.port_LS, cylinder.port);
+  connect(turning.y, unit.u);
+  connect(steered.port_EF, other.port);
+  annotation(experiment(StartTime = 0, StopTime = 2, Interval = 0.004, Tolerance = 1e-6));
+end PriorityValveExample;

@@ -1,0 +1,65 @@
+within Hydraulic;
+model RotaryActuator "Rotary actuator with vanes: two chambers, leakage, friction, end stops, inertia of the shaft"
+  Interfaces.HydraulicPort port_1 "Chamber 1; its pressure turns positively";
+  Interfaces.HydraulicPort port_2 "Chamber 2; its pressure turns negatively";
+  Interfaces.RotationalFlange flange "Shaft";
+  parameter Integer z(min = 1, max = 4) = 1 "Number of vanes";
+  parameter SI.Radius r_i(min = 1e-3, max = 2, nominal = 0.1) = 0.025 "Radius of the shaft";
+  parameter SI.Radius r_o(min = 1e-3, max = 2, nominal = 0.1) = 0.06 "Radius of the bore";
+  parameter SI.Length width(min = 1e-3, max = 2, nominal = 0.1) = 0.06 "Width of the vanes";
+  parameter SI.Angle range(min = 0.05, max = 6.2, nominal = 1, displayUnit = "deg") = 270*Modelica.Constants.pi/180 "Angle from stop to stop";
+  parameter SI.Volume V_0(min = 1e-9, max = 10, nominal = 1e-4, displayUnit = "ml") = 3e-5 "Volume of a chamber at its end of the travel";
+  parameter SI.Inertia J(min = 1e-9, max = 1e6, nominal = 1e-2) = 0.01 "Inertia of shaft and vanes";
+  parameter Real C_i(unit = "m3/(s.Pa)", min = 0, max = 1e-9, nominal = 1e-12) = 1e-12 "Conductance of the leakage past the vanes at mu_C";
+  parameter SI.DynamicViscosity mu_C(min = 1e-4, max = 10, nominal = 0.03) = 0.04 "Viscosity of C_i";
+  parameter Boolean followViscosity = true "false: C_i is taken as it is" annotation(Evaluate = true);
+  parameter SI.Torque T_c(min = 0, max = 1e5, nominal = 1) = 5 "Dry friction without pressure";
+  parameter Real k_p(unit = "1", min = 0, max = 0.5) = 0.05 "Dry friction of the vane seals over the torque of the pressure difference";
+  parameter SI.RotationalDampingConstant b(min = 0, max = 1e5, nominal = 1) = 1 "Viscous friction";
+  parameter SI.AngularVelocity w_s(min = 1e-4, max = 10, nominal = 0.1) = 0.02 "Width of the sign of speed in the dry friction";
+  parameter SI.RotationalSpringConstant k(min = 1, max = 1e12, nominal = 1e5) = 1e6 "Stiffness of the stops";
+  parameter Real c(unit = "N.m.s/rad2", min = 0, max = 1e14, nominal = 1e5) = 1e6 "Damping of the stops per depth of penetration";
+  parameter SI.Pressure p_ambient(min = 0, max = 1e7, nominal = 1e5) = 101325 "Pressure outside";
+  parameter SI.Angle phi_start(min = -0.1, max = 6.3, nominal = 1, displayUnit = "deg") = range/2 "Angle at the start, from the stop where chamber 1 is smallest";
+  parameter SI.Pressure p_1_start(min = 1e3, max = 1e8, nominal = 1e6) = 101325 "Pressure of chamber 1 at the start";
+  parameter SI.Pressure p_2_start(min = 1e3, max = 1e8, nominal = 1e6) = 101325 "Pressure of chamber 2 at the start";
+  replaceable model Air = EntrainedAir.Frozen constrainedby EntrainedAir.Law "What becomes of the air in the oil";
+  RotaryChamber chamber_1(redeclare model Air = Air, D = D, side = 1, V_0 = V_0, phi_0 = 0, p_ambient = p_ambient, p_start = p_1_start) "Chamber 1";
+  RotaryChamber chamber_2(redeclare model Air = Air, D = D, side = -1, V_0 = V_0, phi_0 = range, p_ambient = p_ambient, p_start = p_2_start) "Chamber 2";
+  LaminarGap leak(G = C_i, mu_G = mu_C, followViscosity = followViscosity) "Leakage past the vanes";
+  Mechanical.Rotational.Inertia shaft(J = J, phi(start = phi_start)) "Shaft and vanes";
+  Mechanical.Rotational.EndStops stops(phi_min = 0, phi_max = range, k = k, c = c) "End stops";
+  Mechanical.Rotational.Torque friction "Friction of bearings and seals";
+  SI.Angle phi(nominal = 1) "Angle, 0 where chamber 1 is smallest";
+  SI.AngularVelocity w(nominal = 1) "Speed";
+  SI.Pressure p_1(nominal = 1e6) "Pressure of chamber 1";
+  SI.Pressure p_2(nominal = 1e6) "Pressure of chamber 2";
+  SI.Torque T_loss(nominal = 1) "Friction torque, against positive rotation";
+  SI.Power lossPower(nominal = 10) "Power lost by friction";
+protected
+  parameter Real D(unit = "m3/rad") = z*width*(r_o^2 - r_i^2)/2 "Volume per radian";
+equation
+  assert(r_o > r_i, "The bore r_o must be larger than the shaft r_i");
+  assert(z*range < 2*Modelica.Constants.pi, "So many vanes leave no room for this range: z times range must stay below a full turn");
+  assert(T_c >= 0 and k_p >= 0 and b >= 0, "The friction must not be negative");
+  assert(phi_start > -0.01*range and phi_start < 1.01*range, "The angle at the start phi_start must lie from 0 to the range");
+  connect(port_1, chamber_1.port);
+  connect(port_2, chamber_2.port);
+  connect(port_1, leak.port_a);
+  connect(leak.port_b, port_2);
+  connect(chamber_1.flange, shaft.flange_a);
+  connect(chamber_2.flange, shaft.flange_a);
+  connect(stops.flange, shaft.flange_a);
+  connect(friction.flange, shaft.flange_a);
+  connect(shaft.flange_b, flange);
+  phi = shaft.phi;
+  w = shaft.w;
+  p_1 = chamber_1.p;
+  p_2 = chamber_2.p;
+  T_loss = (T_c + k_p*D*Smooth.mag(p_1 - p_2, 1e4))*Smooth.sgn(w, w_s) + b*w;
+  friction.tau = -T_loss;
+  lossPower = T_loss*w;
+  annotation(Documentation(info = "<html>
+<p>Volume per radian <code>D = z width (r_o^2 - r_i^2)/2</code>; <code>J dw/dt = D (p_1 - p_2) - T_loss + tau_flange</code>, <code>T_loss = (T_c + k_p D |p_1 - p_2|) tanh(w/w_s) + b w</code>; each chamber as <code>RotaryChamber</code>, laminar leakage past the vanes, elastic stops at 0 and <code>range</code>. Two vanes double the torque and allow less than half a turn. The seals of vanes leak more than those of pistons: held under load, the shaft creeps.</p>
+<p>For the type with rack and pinion join a <code>Cylinder</code> to <code>Mechanical.Rotational.IdealRackAndPinion</code>. Source: the torque on a vane, integral of <code>dp width r dr</code>; dynamics as H. E. Merritt, Hydraulic Control Systems, Wiley 1967, section 6.1. The friction is written here in the form of <code>Pump</code>; the values are assumed.</p></html>"));
+end RotaryActuator;

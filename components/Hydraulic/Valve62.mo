@@ -1,0 +1,40 @@
+within Hydraulic;
+model Valve62 "6/2 way valve: two lines joined to one pair of consumer ports or to the other"
+  Interfaces.HydraulicPort port_1 "First line, from the directional valve";
+  Interfaces.HydraulicPort port_2 "Second line, from the directional valve";
+  Interfaces.HydraulicPort port_A1 "Consumer at u = 0, first line";
+  Interfaces.HydraulicPort port_A2 "Consumer at u = 0, second line";
+  Interfaces.HydraulicPort port_B1 "Consumer at u = 1, first line";
+  Interfaces.HydraulicPort port_B2 "Consumer at u = 1, second line";
+  Interfaces.RealInput u "Command: 0 joins 1 to A1 and 2 to A2, 1 joins 1 to B1 and 2 to B2";
+  outer Oil.Fluid oil "Oil of the circuit";
+  replaceable Spool.FirstOrder spool constrainedby Spool.Law "Motion of the spool";
+  parameter SI.VolumeFlowRate q_nom(min = 1e-8, max = 0.1, nominal = 1e-3) = 1e-3 "Flow through one edge when open, at dp_nom";
+  parameter SI.Pressure dp_nom(min = 1e3, max = 1e8, nominal = 1e6) = 3e5 "Pressure drop of q_nom at one edge";
+  parameter Real overlap(unit = "1", min = -0.5, max = 0.5) = 0.1 "Part of half the travel that an edge is closed beyond the middle; negative: both consumers joined on the way";
+  parameter Real rounding(unit = "1", min = 1e-4, max = 0.5) = 0.02 "Part of half the travel over which an edge opens smoothly";
+  parameter Real leak(unit = "1", min = 1e-9, max = 0.1) = 1e-4 "Leakage cross section of an edge over its greatest";
+  parameter Real C_d(unit = "1", min = 0.1, max = 1) = 0.65 "Discharge coefficient";
+  SpoolEdge edge_A1(A_max = A_max, overlap = overlap, rounding = rounding, leak = leak, C_d = C_d) "1 to A1";
+  SpoolEdge edge_A2(A_max = A_max, overlap = overlap, rounding = rounding, leak = leak, C_d = C_d) "2 to A2";
+  SpoolEdge edge_B1(A_max = A_max, overlap = overlap, rounding = rounding, leak = leak, C_d = C_d) "1 to B1";
+  SpoolEdge edge_B2(A_max = A_max, overlap = overlap, rounding = rounding, leak = leak, C_d = C_d) "2 to B2";
+protected
+  parameter SI.Area A_max = q_nom/(C_d*sqrt(2*dp_nom/oil.rho_0))/(1 + leak - rounding/(2*(1 - overlap))) "A_max of an edge: full travel passes q_nom at dp_nom";
+equation
+  assert(q_nom > 0 and dp_nom > 0, "q_nom and dp_nom must be positive");
+  connect(u, spool.u);
+  edge_A1.x = 1 - 2*min(max(spool.y, 0), 1);
+  edge_A2.x = 1 - 2*min(max(spool.y, 0), 1);
+  edge_B1.x = 2*min(max(spool.y, 0), 1) - 1;
+  edge_B2.x = 2*min(max(spool.y, 0), 1) - 1;
+  connect(port_1, edge_A1.port_a);
+  connect(edge_A1.port_b, port_A1);
+  connect(port_2, edge_A2.port_a);
+  connect(edge_A2.port_b, port_A2);
+  connect(port_1, edge_B1.port_a);
+  connect(edge_B1.port_b, port_B1);
+  connect(port_2, edge_B2.port_a);
+  connect(edge_B2.port_b, port_B2);
+  annotation(Documentation(info = "<html><p>The selector valve of mobile machines: one directional valve serves two consumers in turn. Four edges, <code>SpoolEdge</code>, at <code>x = 1 - 2 y</code> and <code>2 y - 1</code>, y being the position from 0 to 1; the consumer left alone is closed. At the end of the travel an edge passes <code>q_nom</code> at <code>dp_nom</code>. Passive, flow both ways. Flow forces are left out. Sources: edges: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, chapter 5; symbol: ISO 1219-1.</p></html>"));
+end Valve62;

@@ -1,0 +1,3 @@
+within Pneumatic;
+package Bases "What components share"
+end Bases;

@@ -1,0 +1,3 @@
+within Pneumatic;
+package Examples "A small circuit for each component"
+end Examples;

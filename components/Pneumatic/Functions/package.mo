@@ -1,0 +1,3 @@
+within Pneumatic;
+package Functions "Laws of flow"
+end Functions;

@@ -1,0 +1,34 @@
+within Pneumatic;
+model Valve53 "5/3 way valve, closed in the centre"
+  PneumaticPort port_1 "Supply";
+  PneumaticPort port_2 "Consumer 2";
+  PneumaticPort port_3 "Exhaust of consumer 2";
+  PneumaticPort port_4 "Consumer 4";
+  PneumaticPort port_5 "Exhaust of consumer 4";
+  Interfaces.RealInput u "Command, -1 to 1: 1 joins 1 to 4 and 2 to 3, -1 joins 1 to 2 and 4 to 5, 0 closes all";
+  replaceable Hydraulic.Spool.FirstOrder spool constrainedby Hydraulic.Spool.Law "Motion of the spool";
+  parameter Real C_max(unit = "m3/(s.Pa)", min = 1e-14, max = 1e-5, nominal = 1e-8) = 1e-8 "Sonic conductance of an open edge; 1e-8 m3/(s.Pa) is 1 dm3/(s.bar)";
+  parameter Real b(unit = "1", min = 0, max = 0.8) = 0.3 "Critical pressure ratio";
+  parameter Real overlap(unit = "1", min = -0.5, max = 0.5) = 0.1 "Travel before an edge opens";
+  parameter Real leak(unit = "1", min = 1e-9, max = 0.1) = 1e-5 "Sonic conductance of a closed edge over C_max";
+  SpoolEdge edge_14(C_max = C_max, b = b, overlap = overlap, leak = leak) "Port 1 to 4";
+  SpoolEdge edge_23(C_max = C_max, b = b, overlap = overlap, leak = leak) "Port 2 to 3";
+  SpoolEdge edge_12(C_max = C_max, b = b, overlap = overlap, leak = leak) "Port 1 to 2";
+  SpoolEdge edge_45(C_max = C_max, b = b, overlap = overlap, leak = leak) "Port 4 to 5";
+equation
+  assert(C_max > 0, "The sonic conductance C_max must be positive");
+  connect(u, spool.u);
+  edge_14.x = spool.y;
+  edge_23.x = spool.y;
+  edge_12.x = -spool.y;
+  edge_45.x = -spool.y;
+  connect(port_1, edge_14.port_a);
+  connect(edge_14.port_b, port_4);
+  connect(port_2, edge_23.port_a);
+  connect(edge_23.port_b, port_3);
+  connect(port_1, edge_12.port_a);
+  connect(edge_12.port_b, port_2);
+  connect(port_4, edge_45.port_a);
+  connect(edge_45.port_b, port_5);
+  annotation(Documentation(info = "<html><p>u = 1 joins 1 to 4 and 2 to 3, u = -1 joins 1 to 2 and 4 to 5, u = 0 closes all ports. Values between meter: a proportional valve. A negative <code>overlap</code> opens all ports in the centre. Each edge is a <code>SpoolEdge</code>, a restriction by ISO 6358 that passes both directions; the motion of the spool is replaceable (<code>Hydraulic.Spool.FirstOrder</code>, time constant <code>tau</code>, is the default, at rest at the start). Flow forces and the dead time of a solenoid are left out. Source: ISO 6358-1:2013 for the flow; numbers of the ports by ISO 11727:1999.</p></html>"));
+end Valve53;
