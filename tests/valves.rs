@@ -176,3 +176,153 @@ fn the_reservoir_keeps_its_oil_and_its_gas() {
     let error = empty.stop_time(10.0).run().expect_err("it runs dry").to_string();
     assert!(error.contains("E503") && error.contains("runs dry"), "{error}");
 }
+
+/// What the middle position of each centre joins: flow of each edge over that of an open one, P-A, P-B, A-T, B-T.
+#[test]
+fn the_centre_of_a_spool_joins_what_it_says() {
+    for (centre, joined) in [
+        ("closed", [0.0, 0.0, 0.0, 0.0]),
+        ("open", [0.5, 0.5, 0.5, 0.5]),
+        ("tandem", [0.0, 0.0, 0.0, 0.0]),
+        ("float", [0.0, 0.0, 0.5, 0.5]),
+        ("regenerative", [0.5, 0.5, 0.0, 0.0]),
+    ] {
+        for (u, expected) in [(0.0, joined), (1.0, [1.0, 0.0, 0.0, 1.0]), (-1.0, [0.0, 1.0, 1.0, 0.0])] {
+            let mut valve = circuit(
+                &format!(
+                    "{OIL} Hydraulic.Valve43Centre valve(centre = Hydraulic.SpoolCentre.{centre}, q_nom = 1e-3, dp_nom = 5e5);
+                    Hydraulic.PressureSource p(p = 15e5), a(p = 10e5), b(p = 10e5), t(p = 5e5);"
+                ),
+                &format!(
+                    "connect(p.port, valve.port_P); connect(a.port, valve.port_A); connect(b.port, valve.port_B);
+                    connect(t.port, valve.port_T); valve.u = {u};"
+                ),
+            );
+            let t = run(valve.stop_time(2.0));
+            for (edge, part) in ["PA", "PB", "AT", "BT"].iter().zip(expected) {
+                let found = last(&t, &format!("valve.edge_{edge}.q")) / 1e-3;
+                assert!((found - part).abs() < 0.01, "{centre} at {u}: {edge} {found}, not {part}");
+            }
+            if centre == "tandem" {
+                let found = last(&t, "valve.edge_PT.q") / 1e-3;
+                let wanted = if u == 0.0 { 2.0_f64.sqrt() } else { 0.0 };
+                assert!((found - wanted).abs() < 0.01, "tandem P to T at {u}: {found}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_flow_divider_shares_whatever_the_loads_dividing_and_combining() {
+    for (p_a, p_b, q) in
+        [(50e5, 50e5, 1e-3), (20e5, 120e5, 1e-3), (120e5, 20e5, 1e-3), (80e5, 60e5, -1e-3), (60e5, 80e5, -1e-3)]
+    {
+        let mut divider = circuit(
+            &format!(
+                "{OIL} Hydraulic.FlowDivider divider(share = 2/3); Hydraulic.FlowSource common(q = {q});
+                Hydraulic.PressureSource a(p = {p_a}), b(p = {p_b});"
+            ),
+            "connect(common.port, divider.port_P); connect(a.port, divider.port_A); connect(b.port, divider.port_B);",
+        );
+        let t = run(divider.stop_time(1.0));
+        near(last(&t, "divider.edge_A.q") / q, 2.0 / 3.0, 0.02);
+    }
+}
+
+#[test]
+fn power_control_follows_its_hyperbola() {
+    let t = run(&shipped("Hydraulic.Examples.PowerControlExample"));
+    let power = |time: f64| {
+        at(&t, "control.u", time) * 45e-6 / (2.0 * std::f64::consts::PI)
+            * 157.0
+            * (at(&t, "control.p", time) - 101_325.0)
+    };
+    let (u, p) = (column(&t, "control.u"), column(&t, "control.p"));
+    let on: Vec<f64> = t
+        .times
+        .iter()
+        .copied()
+        .zip(u.iter().zip(p))
+        .filter(|(_, (u, p))| **u < 0.95 && **p < 235e5)
+        .map(|(time, _)| time)
+        .collect();
+    assert!(on.len() > 20, "{} rows on the hyperbola", on.len());
+    on.iter().for_each(|time| near(power(*time), 11e3, 0.06));
+}
+
+#[test]
+fn the_hose_break_valve_closes_above_its_flow_and_opens_when_oil_comes_back() {
+    let mut fuse = circuit(
+        &format!(
+            "{OIL} Hydraulic.HydraulicFuse fuse(q_close = 5e-4, dp_close = 4e5); Hydraulic.PressureSource a(useInput = true), b(p = 10e5);"
+        ),
+        "connect(a.port, fuse.port_a); connect(b.port, fuse.port_b);
+        a.p_in = 10e5 + (if time < 1 then 3.5e5*time else if time < 2 then 5e5 else if time < 3 then 2e5 else -1e5);",
+    );
+    let t = run(fuse.stop_time(4.0));
+    near(at(&t, "fuse.q", 0.99), 5e-4 * (3.465_f64 / 4.0).sqrt(), 0.01);
+    assert!(at(&t, "fuse.q", 1.9) < 1e-5 && at(&t, "fuse.q", 2.9) < 1e-5, "closed, and still closed above dp_reset");
+    near(at(&t, "fuse.q", 3.9), -5e-4 * 0.5, 0.02);
+}
+
+/// Pressure under a load, stage by stage, from what each stage's area carries; the largest stage moves first.
+#[test]
+fn the_stages_of_a_telescopic_cylinder_follow_in_their_order() {
+    let t = run(&shipped("Hydraulic.Examples.TelescopicCylinderExample"));
+    let reached = |stage: usize| {
+        let s = column(&t, &format!("cylinder.s_rel[{stage}]"));
+        t.times[s.iter().position(|s| *s > 0.495).expect("it extends")]
+    };
+    let end = [1, 2, 3].map(reached);
+    assert!(end[0] < end[1] && end[1] < end[2], "{end:?}");
+    for (stage, area) in [(1, 113.1e-4), (2, 63.6e-4), (3, 28.3e-4)] {
+        let before = if stage == 1 { 0.0 } else { end[stage - 2] };
+        let time = 0.5 * (before + end[stage - 1]);
+        let friction: f64 = 100.0 + 2000.0 * at(&t, &format!("cylinder.v_rel[{stage}]"), time);
+        near(at(&t, "cylinder.p", time), 101_325.0 + (20e3 + friction) / area, 0.01);
+    }
+}
+
+#[test]
+fn a_rotary_actuator_turns_with_its_torque_and_holds_at_its_stops() {
+    let mut actuator = circuit(
+        &format!(
+            "{OIL} Hydraulic.RotaryActuator actuator(C_i = 0); Hydraulic.PressureSource p_1(p = 101e5), p_2(p = 1e5);
+            Mechanical.Rotational.Torque load;"
+        ),
+        "connect(p_1.port, actuator.port_1); connect(p_2.port, actuator.port_2); connect(load.flange, actuator.flange);
+        load.tau = if time < 0.5 then -800 else -500;",
+    );
+    let t = run(actuator.stop_time(3.0));
+    // D = w (r_o^2 - r_i^2)/2 = 89.25 ml/rad: 892 Nm, less 5 Nm and a twentieth of dry friction
+    let ideal = 0.06 * (0.06_f64.powi(2) - 0.025_f64.powi(2)) / 2.0 * 100e5;
+    near(ideal, 892.5, 1e-3);
+    assert!(at(&t, "actuator.flange.phi", 3.0) > 270.0_f64.to_radians() - 1e-3, "at the stop");
+    let w = at(&t, "actuator.w", 0.45);
+    assert!(w > 0.0 && w < 60.0, "{w}");
+}
+
+/// Every loss takes power in all four quadrants, and shaft and oil differ by the losses.
+#[test]
+fn the_machines_lose_power_in_all_four_quadrants() {
+    for class in ["VaneMachine", "GerotorMachine", "OrbitMotor", "RadialPistonMachine", "Pump", "GearPump"] {
+        for w in [-150.0, -3.0, 3.0, 150.0] {
+            for dp in [-150e5, -5e5, 5e5, 150e5] {
+                let mut machine = circuit(
+                    &format!(
+                        "{OIL} Hydraulic.{class} machine; Hydraulic.PressureSource a(p = {}), b(p = {});
+                        Mechanical.Rotational.ConstantSpeed shaft(w_fixed = {w});",
+                        160e5 + dp / 2.0,
+                        160e5 - dp / 2.0
+                    ),
+                    "connect(a.port, machine.port_a); connect(b.port, machine.port_b); connect(shaft.flange, machine.flange);",
+                );
+                let t = run(machine.stop_time(0.1));
+                let (shaft, oil, loss) =
+                    (last(&t, "machine.T_sh") * w, dp * last(&t, "machine.Q_A"), last(&t, "machine.lossPower"));
+                assert!(loss > 0.0, "{class} at {w} rad/s and {dp} Pa: {loss} W");
+                assert!((shaft - oil - loss).abs() < 1e-6 * shaft.abs().max(oil.abs()).max(loss), "{class} {w} {dp}");
+            }
+        }
+    }
+}
