@@ -309,3 +309,39 @@ fn accumulators_begin_at_their_pressure() {
         }
     }
 }
+
+/// What cannot be meant gets a word at its place: oil without a way out, a speed in rev/min, an accumulator that is empty.
+#[test]
+fn what_no_machine_stands_is_said() {
+    let said = |components: &str, equations: &str| -> String {
+        let mut simulation = circuit(&format!("inner Oil.ISOVG46 oil; {components}"), equations);
+        let run = simulation.stop_time(2.0).run().expect("runs all the same");
+        run.diagnostics.iter().map(|d| d.message.clone()).collect::<Vec<_>>().join("; ")
+    };
+    let pump = |w: f64, relief: &str| {
+        said(
+            &format!(
+                "Mechanical.Rotational.ConstantSpeed motor(w_fixed = {w}); Hydraulic.Pump pump(V = 10e-6);
+                Hydraulic.Tank tank; Hydraulic.Volume line(p_start = 1e6); Hydraulic.ReliefValve relief(p_set = 100e5);"
+            ),
+            &format!(
+                "connect(motor.flange, pump.flange); connect(tank.port, pump.port_b); connect(pump.port_a, line.port); {relief}"
+            ),
+        )
+    };
+    let right = "connect(line.port, relief.port_a); connect(relief.port_b, tank.port);";
+    let wrong = "connect(line.port, relief.port_b); connect(relief.port_a, tank.port);";
+    assert_eq!(pump(150.0, right), "");
+    assert!(pump(150.0, wrong).contains("joined the wrong way round"));
+    assert!(pump(1500.0, right).contains("rev/min"));
+    let accumulator = |p_start: &str| {
+        said(
+            &format!(
+                "Hydraulic.Accumulator store(p_pre = 50e5, p_start = {p_start}); Hydraulic.FlowSource source(q = 1e-5);"
+            ),
+            "connect(source.port, store.port);",
+        )
+    };
+    assert_eq!(accumulator("60e5"), "");
+    assert!(accumulator("10e5").contains("empty at the start"));
+}

@@ -30,6 +30,7 @@ protected
 equation
   assert(V_0 > 0 and p_pre > 0, "V_0 and the precharge p_pre must be positive");
   assert(p_pre < p_max, "The precharge p_pre must lie below p_max");
+  assert(p_start >= p_pre, "The accumulator is empty at the start: its precharge p_pre lies above p_start", AssertionLevel.warning);
   assert(p < 1.05*p_max, "The pressure exceeds p_max of the accumulator", AssertionLevel.warning);
   p = port.p;
   p_s = max(p, 1e-3*p_pre);

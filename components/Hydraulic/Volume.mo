@@ -15,6 +15,7 @@ equation
   assert(V > 0, "The volume V must be positive");
   assert(beta_wall > 0, "The modulus of the wall must be positive");
   assert(p > 0, "The oil cavitates: more is drawn than flows in, and the pressure lies at the floor of the oil's law. Is a check valve or a charge pump missing?", AssertionLevel.warning);
+  assert(p < oil.p_max, "The pressure exceeds p_max of the oil: more flows in than can leave. Is a relief valve missing, set too high, or joined the wrong way round?", AssertionLevel.warning);
   p = port.p;
   V_p = V*(1 + (p - oil.p_0)/beta_wall);
   (V_p/air.beta + V/beta_wall)*der(p) = air.port_density*port.q + air.swell;

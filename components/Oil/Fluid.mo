@@ -11,6 +11,7 @@ model Fluid "Oil of the circuit: laws of density with bulk modulus and of viscos
   parameter SI.DynamicViscosity mu_ref(min = 1e-4, max = 10, nominal = 0.03) = 0.0396 "Dynamic viscosity at T_mu and low pressure";
   parameter SI.Temperature T_mu(min = 220, max = 420) = 313.15 "Temperature of mu_ref";
   parameter SI.LinearTemperatureCoefficient lambda(min = 0, max = 0.2) = 0.035 "Viscosity falls by exp(-lambda) per kelvin";
+  parameter SI.Pressure p_max(min = 1e6, max = 1e10, nominal = 1e8) = 1e8 "Pressure above which a warning is given: no machine stands it";
   parameter Boolean useTemperatureInput = false "true: the temperature comes through T_in" annotation(Evaluate = true);
   replaceable function density = Oil.Compression.entrainedAir(beta_0 = beta_0, m = m, alpha_0 = alpha_0, n_g = n_g)
     constrainedby Oil.Compression.Law(rho_0 = rho_0, p_0 = p_0, x_u = x_u) "Density and tangent bulk modulus at a pressure";

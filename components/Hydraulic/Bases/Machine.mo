@@ -14,6 +14,7 @@ partial model Machine "Displacement machine in four quadrants: delivery and torq
   parameter SI.Pressure p_cav(min = 0, max = 1e6, nominal = 1e4) = 2e4 "Inlet pressure at which nothing is drawn in any more";
   parameter SI.Pressure p_fill(min = 100, max = 1e6, nominal = 1e4) = 3e4 "Inlet pressure above p_cav from which on the chambers fill";
   parameter SI.Pressure p_film0(nominal = 1e5) = oil.p_0 "Pressure above which the mean pressure of the gaps thickens the oil";
+  parameter SI.AngularVelocity w_max(min = 1e-3, max = 1e5, nominal = 100) = 900 "Speed above which a warning is given: 8600 rev/min";
   parameter Boolean useInput = false "true: the displacement follows u, -1 to 1" annotation(Evaluate = true);
   parameter Boolean useHeatPort = false "true: losses heat what is joined to heatPort, and the oil in the gaps has the temperature there" annotation(Evaluate = true);
   Interfaces.RealInput u(unit = "1") if useInput "Displacement over V";
@@ -50,6 +51,7 @@ equation
   assert(V > 0, "The displacement V must be positive");
   assert(deadVolume >= 0, "The dead volume must not be negative");
   assert(fill > 0.5 or n_abs < 0.1, "The machine runs dry: the pressure at its inlet lies below p_cav + p_fill/2. Is the inlet open, and does it turn the right way?", AssertionLevel.warning);
+  assert(abs(w) < w_max, "The machine turns faster than w_max: is a speed in rev/min given where rad/s are meant?", AssertionLevel.warning);
   connect(u, u_used);
   if not useInput then
     u_used = 1;

@@ -5,5 +5,5 @@ model VolumeExample "A volume filled by a constant flow"
   FlowSource source(q = 1e-5);
 equation
   connect(source.port, volume.port);
-  annotation(experiment(StartTime = 0, StopTime = 10, Interval = 0.02, Tolerance = 1e-6));
+  annotation(experiment(StartTime = 0, StopTime = 4, Interval = 0.008, Tolerance = 1e-6));
 end VolumeExample;
