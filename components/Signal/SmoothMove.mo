@@ -9,6 +9,10 @@ block SmoothMove "There and back without corners: smooth step up, hold, smooth s
   parameter SI.Time startTime = 0 "Begin";
 equation
   assert(rising > 0 and falling > 0, "rising and falling must be positive");
-  y = offset + amplitude*(Smooth.step((time - startTime)/rising) - Smooth.step((time - startTime - rising - holding)/falling));
-  annotation(Documentation(info = "<html><p>The greatest rate is 1.5 times the mean one.</p></html>"));
+  y = offset + amplitude*(if time < startTime then 0
+    elseif time < startTime + rising then Smooth.step((time - startTime)/rising)
+    elseif time < startTime + rising + holding then 1
+    elseif time < startTime + rising + holding + falling then 1 - Smooth.step((time - startTime - rising - holding)/falling)
+    else 0);
+  annotation(Documentation(info = "<html><p>The greatest rate is 1.5 times the mean one. Begin and end of each way are events, so that no step of the integrator passes over a move.</p></html>"));
 end SmoothMove;

@@ -1,0 +1,33 @@
+within Electrical.Examples;
+model FuseExample "A load within the rating, then a short circuit; another fuse under an alternating current"
+  ConstantVoltage source(V = 24);
+  Fuse fuse(I2t = 100, T = 1, useHeatPort = true);
+  Resistor wire(R = 0.2);
+  Resistor load(R = 4);
+  Switch short;
+  Signal.Step fault(startTime = 0.5);
+  Signal.GreaterThreshold closes(threshold = 0.5);
+  Signal.Sine sine(amplitude = 24, f = 50);
+  SignalVoltage alternating;
+  Fuse fuse2(I2t = 20, T = 10);
+  Resistor load2(R = 2);
+  Thermal.HeatCapacitor holder(C = 10);
+  Ground ground;
+equation
+  connect(source.p, fuse.p);
+  connect(fuse.n, wire.p);
+  connect(wire.n, load.p);
+  connect(load.n, source.n);
+  connect(short.p, load.p);
+  connect(short.n, load.n);
+  connect(fault.y, closes.u);
+  connect(closes.y, short.closed);
+  connect(source.n, ground.p);
+  connect(fuse.heatPort, holder.port);
+  connect(sine.y, alternating.v);
+  connect(alternating.p, fuse2.p);
+  connect(fuse2.n, load2.p);
+  connect(load2.n, alternating.n);
+  connect(alternating.n, ground.p);
+  annotation(experiment(StartTime = 0, StopTime = 1, Interval = 0.001, Tolerance = 1e-6));
+end FuseExample;

@@ -1,0 +1,31 @@
+within Mechanical.Translational.Examples;
+model LeverExample "A force through a lever on a mass and a spring; a lever whose pivot moves adds two ways"
+  Signal.Sine sine(amplitude = 50, f = 1);
+  Force push;
+  Mass left(m = 1);
+  Lever lever(l_a = 0.3, l_b = 0.1);
+  Mass right(m = 5);
+  SpringDamper spring(c = 20000, d = 200);
+  Fixed bearing;
+  Signal.Sine way_a(amplitude = 0.02, f = 1);
+  Signal.Sine way_p(amplitude = 0.01, f = 0.5);
+  Position cam_a;
+  Position cam_p;
+  Lever adder(l_a = 0.1, l_b = 0.1, sameSide = true);
+  SpringDamper valve(c = 100, d = 1);
+equation
+  connect(sine.y, push.f);
+  connect(push.flange, left.flange_a);
+  connect(left.flange_b, lever.flange_a);
+  connect(lever.pivot, bearing.flange);
+  connect(lever.flange_b, right.flange_a);
+  connect(right.flange_b, spring.flange_a);
+  connect(spring.flange_b, bearing.flange);
+  connect(way_a.y, cam_a.s_ref);
+  connect(way_p.y, cam_p.s_ref);
+  connect(cam_a.flange, adder.flange_a);
+  connect(cam_p.flange, adder.pivot);
+  connect(adder.flange_b, valve.flange_a);
+  connect(valve.flange_b, bearing.flange);
+  annotation(experiment(StartTime = 0, StopTime = 3, Interval = 0.005, Tolerance = 1e-6));
+end LeverExample;
