@@ -11,7 +11,11 @@ pub struct DiskWorld;
 impl World for DiskWorld {
     fn read(&self, path: &Path) -> Result<String, String> {
         let bytes = std::fs::read(path).map_err(|e| super::files::reason(&e))?;
-        String::from_utf8(bytes).map_err(|_| "it is not a text in UTF-8".to_owned())
+        String::from_utf8(bytes).map_err(|e| {
+            let valid = e.utf8_error().valid_up_to();
+            let line = 1 + e.as_bytes()[..valid].iter().filter(|b| **b == b'\n').count();
+            format!("line {line} holds bytes that are no text in UTF-8; save the file in that encoding")
+        })
     }
 
     fn list(&self, path: &Path) -> Option<Vec<(String, bool)>> {

@@ -205,7 +205,7 @@ fn find_model<'a>(
     note_shadowed(library);
     match &request.model {
         Some(name) => named_model(library, &given, name),
-        None => only_model(library, &given),
+        None => only_model(library, source, &given),
     }
 }
 
@@ -290,7 +290,7 @@ pub fn runnable(world: &dyn World, request: &Request) -> Result<Vec<String>, Vec
 }
 
 /// Without a name: the one class with an `experiment`, or the one model there is.
-fn only_model(library: &mut Library<'_>, given: &[ClassId]) -> Result<ClassId, Box<Diagnostic>> {
+fn only_model(library: &mut Library<'_>, source: &Path, given: &[ClassId]) -> Result<ClassId, Box<Diagnostic>> {
     let mut runnable = Vec::new();
     given.iter().for_each(|&id| collect_runnable(library, id, &mut runnable));
     let with_experiment: Vec<ClassId> =
@@ -308,7 +308,7 @@ fn only_model(library: &mut Library<'_>, given: &[ClassId]) -> Result<ClassId, B
     }
     let names: Vec<String> = runnable.iter().map(|&id| library.full_name(id)).collect();
     let d = if names.is_empty() {
-        Diagnostic::new(Code::BadModel, "there is no model to run")
+        Diagnostic::new(Code::BadModel, format!("there is no model to run in `{}`", source.display()))
             .help("a model is a `model` or `block` that is not `partial`")
     } else {
         Diagnostic::new(Code::BadModel, "several models could be run")

@@ -35,32 +35,31 @@ pub fn analyze(flat: &FlatModel, choice: &StateChoice) -> Checked<Dae> {
 
 /// With the structure that parameters of value 0 leave.
 fn settled(flat: &FlatModel, choice: &StateChoice, diagnostics: &mut Vec<Diagnostic>) -> Result<Dae, Diagnostic> {
-    let mut decisive = Vec::new();
-    let mut last = run(flat, choice, &mut decisive, diagnostics)?;
-    while !decisive.is_empty() && !flat.varied {
-        let (mut further, mut said) = (decisive.clone(), Vec::new());
+    let (mut last, mut decisive) = run(flat, choice, &[], diagnostics)?;
+    let mut known = 0;
+    while decisive.len() > known && !flat.varied {
+        known = decisive.len();
+        let mut said = Vec::new();
         // where the model is singular with them, its equations as written tell more
-        let Ok(dae) = run(flat, choice, &mut further, &mut said) else { break };
+        let Ok((dae, further)) = run(flat, choice, &decisive, &mut said) else { break };
         if said.iter().any(Diagnostic::is_error) {
             break;
         }
         (last, *diagnostics) = (dae, said);
-        if further.len() == decisive.len() {
-            break;
-        }
-        decisive = further;
+        decisive.extend(further);
+        decisive.sort_unstable();
+        decisive.dedup();
     }
     Ok(last)
 }
 
-/// Without the products that are 0 by the parameters in `decisive`, to which those are added that have turned out to
-/// decide about the structure as well.
+/// Without the products that are 0 by the parameters in `decisive`; with those that turn out to decide about the structure.
 fn run(
     flat: &FlatModel,
     choice: &StateChoice,
-    decisive: &mut Vec<VarId>,
+    decisive: &[VarId],
     diagnostics: &mut Vec<Diagnostic>,
-) -> Result<Dae, Diagnostic> {
+) -> Result<(Dae, Vec<VarId>), Diagnostic> {
     let mut draft = Draft::new(flat);
     let order = parameters::order(&mut draft)?;
     let values = parameters::values(&draft, &order);
@@ -96,16 +95,17 @@ fn run(
     let model = initial::Model { running: at_start, states: &states.states, demoted: &states.demoted };
     let start = initial::assemble(&mut draft, &model);
     diagnostics.extend(start.diagnostics);
-    for system in [&running, &start.system] {
-        decisive.extend(zeros::decisive(&mut draft, &mut known, system));
-    }
+    let mut further = zeros::decisive(&mut draft, &mut known, &running);
+    further.extend(zeros::decisive(&mut draft, &mut known, &start.system));
+    further.sort_unstable();
+    further.dedup();
     blocks.sort_initial(&mut draft, &mut known, &start.system);
     duplicates::share(&mut draft.exprs, &mut blocks.continuous);
     let rest = Rest { order, aliases, states: states.states, selections: chosen.selections };
     let mut dae = assemble(flat, draft, blocks, rest);
     dae.chosen_starts = start.chosen;
     dae.initial_checks.extend(start.checks);
-    Ok(dae)
+    Ok((dae, further))
 }
 
 fn make_discrete_equations(draft: &mut Draft) {

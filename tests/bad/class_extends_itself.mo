@@ -1,4 +1,4 @@
-//! E014 at 2: "extends itself"
+//! E014 at 2: "`A` extends `B` extends `A` again"
 model A
   extends B;
 end A;

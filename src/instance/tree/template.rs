@@ -209,12 +209,17 @@ impl<'a> Instance<'a, '_> {
         t.bases.push(Base::of(class, ast, parent));
         if chain.contains(&class) || chain.len() > DEEPEST {
             let name = self.library.full_name(class);
-            self.report(
-                Diagnostic::new(Code::CyclicExtends, format!("`{name}` extends itself"))
-                    .at(ast.name.span, "this class is among its own bases")
-                    .class(name)
-                    .help("remove one of the `extends` clauses of the circle"),
-            );
+            let from = chain.iter().position(|&c| c == class).unwrap_or(0);
+            let circle: Vec<String> =
+                chain[from..].iter().map(|&c| format!("`{}`", self.library.full_name(c))).collect();
+            let mut made = Diagnostic::new(Code::CyclicExtends, format!("`{name}` extends itself"))
+                .at(ast.name.span, "this class is among its own bases")
+                .class(name.clone())
+                .help("remove one of the `extends` clauses of the circle");
+            if circle.len() > 1 {
+                made = made.note(format!("{} extends `{name}` again", circle.join(" extends ")));
+            }
+            self.report(made);
             t.broken = true;
             return base;
         }
