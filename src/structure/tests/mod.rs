@@ -363,3 +363,21 @@ fn a_parameter_of_value_0_is_fixed_where_the_structure_hangs_on_it() {
     let varied = crate::analyze(&FlatModel { varied: true, ..flat }).value.expect("sound");
     assert_eq!(varied.states.len(), 2);
 }
+
+/// A factor whose 0 shows only once aliases are gone: it decides about the structure again and again, and is looked at
+/// once.
+#[test]
+fn a_product_that_stays_does_not_go_round_for_ever() {
+    let text = "model M
+          parameter Real p = 0;
+          Real x(start = 1, fixed = true), w, i, c, d;
+        equation
+          d = p;
+          0 = c - d;
+          der(x) = -i;
+          c*i = x - w;
+          der(w) = i;
+        end M;";
+    let flat = crate::flatten_text(text, None).value.expect("sound").flat;
+    assert!(crate::analyze(&flat).value.is_some());
+}
