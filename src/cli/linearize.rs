@@ -300,8 +300,8 @@ fn quasi_linear(args: &LinearizeArgs, model: &Model, messages: &Messages) -> Res
     };
     match quasi_linear_ending(path)? {
         "csv" => write_text(path, &found.csv())?,
-        "mo" => write_text(path, &linear::scheduled_modelica(&found, &plot::stem(Path::new(path))))?,
-        "mat" => files::write(Path::new(path), &linear::scheduled_mat(&found))?,
+        "mo" => write_text(path, &found.modelica(&plot::stem(Path::new(path))))?,
+        "mat" => files::write(Path::new(path), &found.mat())?,
         _ => write_text(path, &pretty(&found.json()))?,
     }
     messages.remark(words.trim_end());
@@ -319,7 +319,9 @@ fn ranges(model: &Model, chosen: &Chosen, state: &State) -> Result<Vec<(f64, f64
         let column = rows.columns.get(k).map_or(&[] as &[f64], Vec::as_slice);
         let now = state.values[v.index()];
         let (low, high) = column.iter().fold((now, now), |(l, h), x| (l.min(*x), h.max(*x)));
-        let margin = if high > low { 0.1 * (high - low) } else { 0.2 * now.abs() };
+        // what moves by less than the run can tell stands still
+        let moves = high - low > settings.tolerance * high.abs().max(low.abs());
+        let margin = if moves { 0.1 * (high - low) } else { 0.2 * now.abs() };
         (low - margin, high + margin)
     };
     Ok(all.iter().enumerate().map(|(k, &v)| range(k, v)).collect())

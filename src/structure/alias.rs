@@ -423,10 +423,7 @@ fn rewrite(draft: &mut Draft, targets: &[Signed]) {
     let derivative = draft.derivative.clone();
     let roles = draft.roles.clone();
     let map = draft.rewritten(|pool, node| match node {
-        Node::Var(v) => {
-            let e = pool.var(targets[v.index()].variable);
-            Some(signed(pool, e, targets[v.index()].negated))
-        }
+        Node::Var(v) => Some(targets[v.index()].expression(pool)),
         Node::Der(v) => {
             let target = targets[v.index()];
             if !matches!(roles[target.variable.index()], Role::Continuous | Role::Input) {

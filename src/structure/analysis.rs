@@ -6,7 +6,7 @@ use super::matching::{Matching, maximum};
 use super::pantelides::Reduction;
 use super::parameters::Known;
 use super::solve_block::BlockSolver;
-use super::sorting::{System, SystemRow};
+use super::sorting::{Columns, System, SystemRow};
 use super::{
     ActionKind, Alias, Assign, Block, Dae, Selection, StateChoice, Unknown, alias, assertions, cancelling,
     closed_groups, delays, discrete, dummy_derivatives, duplicates, events, initial, messages, parameters, regularity,
@@ -95,10 +95,7 @@ fn run(
     let model = initial::Model { running: at_start, states: &states.states, demoted: &states.demoted };
     let start = initial::assemble(&mut draft, &model);
     diagnostics.extend(start.diagnostics);
-    let mut further = zeros::decisive(&mut draft, &mut known, &running);
-    further.extend(zeros::decisive(&mut draft, &mut known, &start.system));
-    further.sort_unstable();
-    further.dedup();
+    let further = zeros::decisive(&mut draft, &mut known, [&running, &start.system]);
     blocks.sort_initial(&mut draft, &mut known, &start.system);
     duplicates::share(&mut draft.exprs, &mut blocks.continuous);
     let rest = Rest { order, aliases, states: states.states, selections: chosen.selections };
@@ -210,10 +207,7 @@ fn replace_linked_derivatives(draft: &mut Draft) {
         return;
     }
     let map = draft.rewritten(|pool, node| match node {
-        Node::Der(v) => links[v.index()].map(|w| {
-            let e = pool.var(w.variable);
-            if w.negated { pool.neg(e) } else { e }
-        }),
+        Node::Der(v) => links[v.index()].map(|w| w.expression(pool)),
         _ => None,
     });
     draft.map_expressions(&map);
@@ -222,30 +216,12 @@ fn replace_linked_derivatives(draft: &mut Draft) {
 /// All equations between events, matched; discrete ones behind the continuous ones.
 fn running_system(draft: &Draft, reduction: &Reduction, states: &States) -> Result<System, Diagnostic> {
     let mut system = System::default();
-    let (mut of_var, mut of_der) = (vec![NONE; draft.variables.len()], vec![NONE; draft.variables.len()]);
-    for (c, column) in reduction.columns.iter().enumerate() {
-        if states.is_state[c] {
-            continue;
-        }
-        match column.unknown {
-            Unknown::Var(v) => of_var[v.index()] = system.columns.len() as u32,
-            Unknown::Der(v) => of_der[v.index()] = system.columns.len() as u32,
-        }
-        system.columns.push(column.unknown);
-    }
+    let solved = reduction.columns.iter().zip(&states.is_state).filter(|(_, is_state)| !**is_state);
+    system.columns.extend(solved.map(|(column, _)| column.unknown));
     let continuous_columns = system.columns.len() as u32;
-    for v in draft.with_role(Role::Discrete) {
-        of_var[v.index()] = system.columns.len() as u32;
-        system.columns.push(Unknown::Var(v));
-    }
-    let column = |node: Node| {
-        let found = match node {
-            Node::Var(v) => of_var[v.index()],
-            Node::Der(v) => of_der[v.index()],
-            _ => NONE,
-        };
-        (found != NONE).then_some(found)
-    };
+    system.columns.extend(draft.with_role(Role::Discrete).into_iter().map(Unknown::Var));
+    let columns = Columns::new(&system.columns, draft.variables.len());
+    let column = |node: Node| columns.of_node(node);
     let mut scanner = Scanner::default();
     for continuous in [true, false] {
         for (i, (&equation, &kind)) in draft.equations.iter().zip(&draft.kinds).enumerate() {
@@ -257,7 +233,7 @@ fn running_system(draft: &Draft, reduction: &Reduction, states: &States) -> Resu
                 scanner.push(&draft.exprs, sides, column, |c| c < continuous_columns, &mut system.incidence);
             } else {
                 let lone = discrete::lone_unknowns(draft, &equation, kind);
-                let lone: Vec<u32> = lone.iter().map(|v| of_var[v.index()]).collect();
+                let lone: Vec<u32> = lone.iter().filter_map(|&v| columns.of(Unknown::Var(v))).collect();
                 scanner.push_discrete(&draft.exprs, sides, &lone, column, &mut system.incidence);
             }
             system.rows.push(SystemRow { equation, index: i as u32, discrete: !continuous });
@@ -315,8 +291,7 @@ fn linked_derivatives(draft: &mut Draft, states: &[VarId]) -> Vec<Block> {
     for &x in states {
         let Some(w) = draft.derivative[x.index()] else { continue };
         let lhs = draft.exprs.der(x);
-        let var = draft.exprs.var(w.variable);
-        let rhs = if w.negated { draft.exprs.neg(var) } else { var };
+        let rhs = w.expression(&mut draft.exprs);
         let origin = Origin { kind: OriginKind::Made, ..draft.variables[w.variable.index()].origin };
         draft.add_equation(Equation { lhs, rhs, origin }, RowKind::Definition);
         let equation = draft.equations.len() as u32 - 1;

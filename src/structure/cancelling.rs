@@ -69,12 +69,19 @@ impl Sums {
         zero.into_iter().for_each(|v| self.set_zero(v));
     }
 
-    /// Calls `found` with every equation from row `first` on that another one reduces to a single variable.
+    /// Calls `found` with every equation from row `first` on that another one reduces to a single variable; until none is
+    /// left, for each makes others shorter. Of two, the longer one is replaced where it may be.
     fn reduce(&mut self, first: usize, mut found: impl FnMut(usize, VarId)) {
-        while let Some((row, v)) = (first..self.rows.len()).find_map(|row| self.single_of(row).map(|v| (row, v))) {
-            found(self.rows[row].0, v);
-            self.set_zero(v);
-            self.rows[row].1.clear();
+        let mut reduced = true;
+        while std::mem::take(&mut reduced) {
+            for row in 0..self.rows.len() {
+                let Some((other, v)) = self.single_beside(row, first) else { continue };
+                let replaced = if other >= first { other } else { row };
+                found(self.rows[replaced].0, v);
+                self.set_zero(v);
+                self.rows[replaced].1.clear();
+                reduced = true;
+            }
         }
     }
 
@@ -85,19 +92,19 @@ impl Sums {
         }
     }
 
-    /// The single variable that another row leaves of this one.
-    fn single_of(&self, row: usize) -> Option<VarId> {
+    /// A row that holds all variables of this one and at most one more, and the single variable that both leave; one of them
+    /// from row `first` on.
+    fn single_beside(&self, row: usize, first: usize) -> Option<(usize, VarId)> {
         let sum = &self.rows[row].1;
-        let (first, second) = (sum.first()?.0, sum.get(1)?.0);
-        // another one holds all variables but one
-        let others = [first, second].into_iter().flat_map(|v| &self.users[&v]).copied();
-        others.filter(|&other| other != row).find_map(|other| single(sum, &self.rows[other].1))
+        let rarest = sum.iter().map(|(v, _)| &self.users[v]).min_by_key(|rows| rows.len())?;
+        let mut others = rarest.iter().copied().filter(|&other| other != row && row.max(other) >= first);
+        others.find_map(|other| single(sum, &self.rows[other].1).map(|v| (other, v)))
     }
 }
 
-/// The only variable of a multiple of `b` taken from `a`.
+/// The only variable of a multiple of `b`, as long or longer by one, taken from `a`.
 fn single(a: &Sum, b: &Sum) -> Option<VarId> {
-    if a.len().abs_diff(b.len()) > 1 || a.len() < 2 {
+    if a.len() < 2 || b.len() < a.len() || b.len() > a.len() + 1 {
         return None;
     }
     let factor = |sum: &Sum, v: VarId| sum.binary_search_by_key(&v, |t| t.0).map_or(0.0, |i| sum[i].1);

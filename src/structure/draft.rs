@@ -41,6 +41,14 @@ pub(super) struct Signed {
     pub negated: bool,
 }
 
+impl Signed {
+    /// The variable, or its negative.
+    pub fn expression(self, pool: &mut Exprs) -> ExprId {
+        let e = pool.var(self.variable);
+        if self.negated { pool.neg(e) } else { e }
+    }
+}
+
 /// The system in the making.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Draft {

@@ -7,7 +7,7 @@
 use super::draft::{Draft, Role, RowKind};
 use super::incidence::{Incidence, NONE, Scanner};
 use super::matching::{Augmenter, Matching};
-use super::sorting::{System, SystemRow};
+use super::sorting::{Columns, System, SystemRow};
 use super::{Unknown, delays, discrete, messages, parameters};
 use crate::diag::Diagnostic;
 use crate::expr::{ExprId, Exprs, Node, VarId};
@@ -57,8 +57,7 @@ pub(super) fn assemble(draft: &mut Draft, model: &Model) -> Start {
 
 struct Assembly {
     columns: Vec<Unknown>,
-    of_var: Vec<u32>,
-    of_der: Vec<u32>,
+    places: Columns,
     discrete_columns: Vec<bool>,
     rows: Vec<SystemRow>,
     /// How many of them are the model's own equations, which come first.
@@ -77,25 +76,17 @@ struct Assembly {
 
 impl Assembly {
     fn new(draft: &mut Draft, model: &Model) -> Self {
-        let count = draft.variables.len();
         let mut columns: Vec<Unknown> = model.running.columns.clone();
         columns.extend(model.states.iter().map(|&v| Unknown::Var(v)));
         columns.extend(draft.with_role(Role::FreeParameter).into_iter().map(Unknown::Var));
-        let (mut of_var, mut of_der) = (vec![NONE; count], vec![NONE; count]);
-        for (i, unknown) in columns.iter().enumerate() {
-            match unknown {
-                Unknown::Var(v) => of_var[v.index()] = i as u32,
-                Unknown::Der(v) => of_der[v.index()] = i as u32,
-            }
-        }
         let is_discrete = |u: &Unknown| matches!(u, Unknown::Var(v) if draft.role(*v) == Role::Discrete);
         let discrete_columns: Vec<bool> = columns.iter().map(is_discrete).collect();
         let matching = Matching::empty(0, columns.len());
         let (keeps, map) = at_start(draft, model.running);
+        let places = Columns::new(&columns, draft.variables.len());
         Assembly {
             columns,
-            of_var,
-            of_der,
+            places,
             discrete_columns,
             rows: Vec::new(),
             model_rows: 0,
@@ -118,15 +109,8 @@ impl Assembly {
 
     /// Appends a row without matching it.
     fn push(&mut self, draft: &Draft, equation: Equation, index: u32, lone: Option<Vec<u32>>) -> u32 {
-        let (of_var, of_der) = (&self.of_var, &self.of_der);
-        let column = |node: Node| {
-            let found = match node {
-                Node::Var(v) => of_var[v.index()],
-                Node::Der(v) => of_der[v.index()],
-                _ => NONE,
-            };
-            (found != NONE).then_some(found)
-        };
+        let places = &self.places;
+        let column = |node: Node| places.of_node(node);
         let sides = [equation.lhs, equation.rhs];
         let discrete = lone.is_some();
         match lone {
@@ -242,7 +226,7 @@ impl Assembly {
     fn lone_columns(&self, draft: &Draft, equation: &Equation) -> Option<Vec<u32>> {
         let lone = [equation.lhs, equation.rhs].map(|e| discrete::lone_discrete(draft, e));
         let left_is_continuous = lone[0].is_none() && discrete::has_continuous(draft, equation.lhs);
-        let found: Vec<u32> = lone.iter().flatten().map(|v| self.of_var[v.index()]).collect();
+        let found: Vec<u32> = lone.iter().flatten().filter_map(|&v| self.places.of(Unknown::Var(v))).collect();
         (!found.is_empty() && !left_is_continuous).then_some(found)
     }
 
@@ -288,7 +272,7 @@ impl Assembly {
             let (lhs, rhs) = (draft.exprs.var(v), draft.exprs.pre(v));
             let equation = Equation { lhs, rhs, origin };
             draft.add_equation(equation, RowKind::Definition);
-            let lone = Some(vec![self.of_var[v.index()]]);
+            let lone = Some(self.places.of(Unknown::Var(v)).into_iter().collect());
             let row = self.push(draft, equation, draft.equations.len() as u32 - 1, lone);
             if !self.augment(row) && draft.variables[v.index()].fixed {
                 self.report(draft, row);

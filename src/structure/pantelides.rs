@@ -315,10 +315,7 @@ fn leaf_derivative(pool: &mut Exprs, roles: &[Role], links: &[Option<Signed>], l
         },
     };
     let derivative = match (roles[v.index()], links[v.index()]) {
-        (Role::Continuous, Some(w)) => {
-            let e = pool.var(w.variable);
-            if w.negated { pool.neg(e) } else { e }
-        }
+        (Role::Continuous, Some(w)) => w.expression(pool),
         (Role::Continuous | Role::Input, _) => pool.der(v),
         _ => Exprs::ZERO,
     };

@@ -5,6 +5,7 @@ use super::incidence::{Incidence, NONE};
 use super::matching::Matching;
 use super::solve_block::{BlockSolver, Member};
 use super::{Assign, Block, Mixed, Unknown};
+use crate::expr::Node;
 use crate::flat::Equation;
 
 /// Equations with their unknowns, to be matched and sorted.
@@ -14,6 +15,45 @@ pub(super) struct System {
     pub rows: Vec<SystemRow>,
     pub incidence: Incidence,
     pub matching: Matching,
+}
+
+/// Where unknowns stand among the columns of a system.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Columns {
+    of_var: Vec<u32>,
+    of_der: Vec<u32>,
+}
+
+impl Columns {
+    /// The places of these unknowns, in a model of so many variables.
+    pub fn new(unknowns: &[Unknown], variables: usize) -> Self {
+        let mut made = Columns { of_var: vec![NONE; variables], of_der: vec![NONE; variables] };
+        for (column, unknown) in (0..).zip(unknowns) {
+            match unknown {
+                Unknown::Var(v) => made.of_var[v.index()] = column,
+                Unknown::Der(v) => made.of_der[v.index()] = column,
+            }
+        }
+        made
+    }
+
+    /// The column of an unknown, if it has one.
+    pub fn of(&self, unknown: Unknown) -> Option<u32> {
+        let (places, v) = match unknown {
+            Unknown::Var(v) => (&self.of_var, v),
+            Unknown::Der(v) => (&self.of_der, v),
+        };
+        places.get(v.index()).copied().filter(|&c| c != NONE)
+    }
+
+    /// The column of the unknown that a node is.
+    pub fn of_node(&self, node: Node) -> Option<u32> {
+        match node {
+            Node::Var(v) => self.of(Unknown::Var(v)),
+            Node::Der(v) => self.of(Unknown::Der(v)),
+            _ => None,
+        }
+    }
 }
 
 /// An equation of a [`System`].

@@ -3,11 +3,11 @@
 
 use super::draft::{Draft, Role, RowKind};
 use super::incidence::{NONE, Scanner};
-use super::sorting::{System, SystemRow};
+use super::sorting::{Columns, System, SystemRow};
 use super::{Unknown, messages};
 use crate::diag::Diagnostic;
 use crate::expr::differentiate::{Leaf, TimeDerivative};
-use crate::expr::{ExprId, Exprs, Node, VarId};
+use crate::expr::{ExprId, Exprs, VarId};
 use crate::flat::{Equation, Origin, OriginKind, Type};
 use rustc_hash::FxHashMap;
 
@@ -16,24 +16,23 @@ use rustc_hash::FxHashMap;
 /// # Errors
 /// What cannot be differentiated (E304).
 pub(super) fn add(draft: &mut Draft, running: &System, states: &[VarId]) -> Result<Option<System>, Diagnostic> {
-    let mut derivatives = Derivatives::new(running);
-    for v in asked_for(draft, states) {
-        derivatives.of(draft, Unknown::Var(v));
-    }
-    if derivatives.made.is_empty() {
+    let asked = asked_for(draft, states);
+    if asked.is_empty() {
         return Ok(None);
+    }
+    let mut derivatives = Derivatives::new(running, draft.variables.len());
+    for &v in &asked {
+        derivatives.of(draft, Unknown::Var(v));
     }
     while let Some(unknown) = derivatives.open.pop() {
         derivatives.determine(draft, unknown)?;
     }
-    let made = &derivatives.made;
-    let replaced: Vec<(ExprId, ExprId)> = made
-        .iter()
-        .filter_map(|(unknown, d)| match unknown {
-            Unknown::Var(v) => Some((draft.exprs.der(*v), draft.exprs.var(*d))),
-            Unknown::Der(_) => None,
-        })
-        .collect();
+    let mut replaced: Vec<(ExprId, ExprId)> = Vec::new();
+    for v in asked {
+        if let Some(&d) = derivatives.made.get(&Unknown::Var(v)) {
+            replaced.push((draft.exprs.der(v), draft.exprs.var(d)));
+        }
+    }
     for equation in &mut draft.initial_equations {
         equation.lhs = draft.exprs.substitute(equation.lhs, &replaced);
         equation.rhs = draft.exprs.substitute(equation.rhs, &replaced);
@@ -50,7 +49,7 @@ fn asked_for(draft: &Draft, states: &[VarId]) -> Vec<VarId> {
 
 struct Derivatives<'a> {
     running: &'a System,
-    column: FxHashMap<Unknown, u32>,
+    columns: Columns,
     /// The derivatives of unknowns, as variables.
     made: FxHashMap<Unknown, VarId>,
     /// Unknowns whose derivatives are not determined yet.
@@ -61,10 +60,10 @@ struct Derivatives<'a> {
 }
 
 impl<'a> Derivatives<'a> {
-    fn new(running: &'a System) -> Self {
+    fn new(running: &'a System, variables: usize) -> Self {
         Derivatives {
             running,
-            column: running.columns.iter().zip(0..).map(|(unknown, i)| (*unknown, i)).collect(),
+            columns: Columns::new(&running.columns, variables),
             made: FxHashMap::default(),
             open: Vec::new(),
             time_derivative: TimeDerivative::default(),
@@ -74,7 +73,7 @@ impl<'a> Derivatives<'a> {
 
     /// The derivative of an unknown of the running system.
     fn of(&mut self, draft: &mut Draft, unknown: Unknown) {
-        if !self.column.contains_key(&unknown) || self.made.contains_key(&unknown) {
+        if self.columns.of(unknown).is_none() || self.made.contains_key(&unknown) {
             return;
         }
         let (v, name) = match unknown {
@@ -89,7 +88,8 @@ impl<'a> Derivatives<'a> {
 
     /// Differentiates the equation that determines an unknown.
     fn determine(&mut self, draft: &mut Draft, unknown: Unknown) -> Result<(), Diagnostic> {
-        let row = self.running.matching.row_of[self.column[&unknown] as usize];
+        let column = self.columns.of(unknown).expect("only unknowns of the running system are asked for");
+        let row = self.running.matching.row_of[column as usize];
         let equation = self.running.rows[row as usize].equation;
         let used = draft.exprs.dependencies(&[equation.lhs, equation.rhs]);
         for v in used.vars {
@@ -111,7 +111,7 @@ impl<'a> Derivatives<'a> {
     }
 
     fn differentiated(&mut self, draft: &mut Draft, e: ExprId) -> ExprId {
-        let (made, column, links) = (&self.made, &self.column, &draft.derivative);
+        let (made, columns, links) = (&self.made, &self.columns, &draft.derivative);
         let mut leaf = |pool: &mut Exprs, leaf: Leaf| {
             let unknown = match leaf {
                 Leaf::Var(v) => Unknown::Var(v),
@@ -119,14 +119,8 @@ impl<'a> Derivatives<'a> {
             };
             Some(match (made.get(&unknown), leaf) {
                 (Some(d), _) => pool.var(*d),
-                (None, Leaf::Var(v)) if column.contains_key(&Unknown::Der(v)) => pool.der(v),
-                (None, Leaf::Var(v)) => match links[v.index()] {
-                    Some(w) => {
-                        let e = pool.var(w.variable);
-                        if w.negated { pool.neg(e) } else { e }
-                    }
-                    None => Exprs::ZERO,
-                },
+                (None, Leaf::Var(v)) if columns.of(Unknown::Der(v)).is_some() => pool.der(v),
+                (None, Leaf::Var(v)) => links[v.index()].map_or(Exprs::ZERO, |w| w.expression(pool)),
                 (None, Leaf::Der(_)) => Exprs::ZERO,
             })
         };
@@ -136,30 +130,22 @@ impl<'a> Derivatives<'a> {
     /// The running system with the rows made.
     fn extended(self, draft: &Draft) -> System {
         let mut system = self.running.clone();
-        let mut column = self.column;
-        for (_, v) in &self.rows {
-            column.insert(Unknown::Var(*v), system.columns.len() as u32);
-            system.columns.push(Unknown::Var(*v));
-            system.matching.row_of.push(NONE);
-        }
+        system.columns.extend(self.rows.iter().map(|(_, v)| Unknown::Var(*v)));
+        system.matching.row_of.resize(system.columns.len(), NONE);
+        let columns = Columns::new(&system.columns, draft.variables.len());
         let discrete = |c: u32| match system.columns[c as usize] {
             Unknown::Var(v) => draft.role(v) == Role::Discrete,
             Unknown::Der(_) => false,
         };
-        let of_node = |node: Node| match node {
-            Node::Var(v) => column.get(&Unknown::Var(v)).copied(),
-            Node::Der(v) => column.get(&Unknown::Der(v)).copied(),
-            _ => None,
-        };
         let mut scanner = Scanner::default();
         for (row, _) in &self.rows {
             let sides = [row.equation.lhs, row.equation.rhs];
-            scanner.push(&draft.exprs, sides, of_node, |c| !discrete(c), &mut system.incidence);
+            scanner.push(&draft.exprs, sides, |node| columns.of_node(node), |c| !discrete(c), &mut system.incidence);
         }
-        for (row, v) in self.rows {
+        for (column, (row, _)) in (self.running.columns.len() as u32..).zip(self.rows) {
             system.rows.push(row);
             system.matching.column_of.push(NONE);
-            system.matching.join(system.rows.len() as u32 - 1, column[&Unknown::Var(v)]);
+            system.matching.join(system.rows.len() as u32 - 1, column);
         }
         system
     }

@@ -4,14 +4,14 @@
 //! equations can be matched without such products, the parameter may have another value in the next run; where they
 //! cannot, it is fixed with the structure, and so is whatever it is computed from.
 
-use super::Unknown;
 use super::draft::{Draft, Role};
 use super::dulmage_mendelsohn::decompose;
-use super::incidence::{Incidence, NONE, Scanner};
+use super::incidence::{Incidence, Scanner};
 use super::matching::maximum;
 use super::parameters::{self, Known};
-use super::sorting::{System, SystemRow};
+use super::sorting::{Columns, System, SystemRow};
 use crate::expr::{Binary, ExprId, Exprs, Node, Unary, VarId};
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Takes out all products whose factors are 0 by the values of these parameters.
 pub(super) fn take_out(draft: &mut Draft, known: &mut Known, decisive: &[VarId]) {
@@ -19,32 +19,43 @@ pub(super) fn take_out(draft: &mut Draft, known: &mut Known, decisive: &[VarId])
         return;
     }
     let zeros = Zeros::find(draft, known);
-    let map = zeros.taken_out(draft, known, |used| used.iter().all(|v| decisive.contains(v)));
+    let mut by_these = |factor: ExprId| zeros.parameters(draft, known, factor).iter().all(|v| decisive.contains(v));
+    let taken: Vec<ExprId> = zeros.products.iter().filter(|(_, f)| by_these(*f)).map(|(e, _)| *e).collect();
+    let map = without_products(draft, &taken);
     draft.map_expressions(&map);
     parameters::fix(draft, decisive);
 }
 
-/// The parameters with value 0 without whose products the system cannot be matched.
-pub(super) fn decisive(draft: &mut Draft, known: &mut Known, system: &System) -> Vec<VarId> {
+/// The parameters with value 0 without whose products one of the systems cannot be matched.
+pub(super) fn decisive(draft: &mut Draft, known: &mut Known, systems: [&System; 2]) -> Vec<VarId> {
     let zeros = Zeros::find(draft, known);
     if zeros.products.is_empty() {
         return Vec::new();
     }
-    let map = zeros.taken_out(draft, known, |_| true);
-    let incidence = without(draft, system, &map);
-    let matching = maximum(&incidence, system.columns.len());
+    let products: Vec<ExprId> = zeros.products.iter().map(|p| p.0).collect();
+    let map = without_products(draft, &products);
     let mut found = Vec::new();
-    for row in decompose(&incidence, &matching).over.rows {
-        let equation = &system.rows[row as usize].equation;
-        for e in draft.exprs.reachable(&[equation.lhs, equation.rhs], |_| true) {
-            if let Some(factor) = zeros.factor(e) {
-                found.extend(zeros.parameters(draft, known, factor));
+    for system in systems {
+        let incidence = without(draft, system, &map);
+        let matching = maximum(&incidence, system.columns.len());
+        for row in decompose(&incidence, &matching).over.rows {
+            let equation = &system.rows[row as usize].equation;
+            for e in draft.exprs.reachable(&[equation.lhs, equation.rhs], |_| true) {
+                if let Some(factor) = zeros.factor(e) {
+                    found.extend(zeros.parameters(draft, known, factor));
+                }
             }
         }
     }
     found.sort_unstable();
     found.dedup();
     found
+}
+
+/// The image of every expression with 0 in the place of these products.
+fn without_products(draft: &mut Draft, products: &[ExprId]) -> Vec<ExprId> {
+    let taken: FxHashSet<Node> = products.iter().map(|e| draft.exprs.node(*e)).collect();
+    draft.rewritten(|_, node| taken.contains(&node).then_some(Exprs::ZERO))
 }
 
 /// What is 0 by the values of parameters, and the products that such factors take out.
@@ -59,23 +70,14 @@ struct Zeros {
 
 impl Zeros {
     fn find(draft: &Draft, known: &mut Known) -> Self {
-        let count = draft.variables.len();
-        let mut found = Zeros { zero: Vec::new(), definition: vec![None; count], products: Vec::new() };
-        let defined: Vec<(VarId, ExprId)> =
-            draft.equations.iter().filter_map(|e| defined(draft, e.lhs).map(|v| (v, e.rhs))).collect();
-        loop {
-            found.spread(draft, known);
-            let mut grown = false;
-            for &(v, value) in &defined {
-                if found.zero[value.index()] && found.definition[v.index()].is_none() {
-                    found.definition[v.index()] = Some(value);
-                    grown = true;
-                }
-            }
-            if !grown {
-                break;
-            }
+        let (count, pool) = (draft.variables.len(), &draft.exprs);
+        let mut found = Zeros { zero: vec![false; pool.len()], definition: vec![None; count], products: Vec::new() };
+        let mut open: Vec<ExprId> = Vec::new();
+        for e in (0..pool.len() as u32).map(ExprId) {
+            found.zero[e.index()] = found.is_zero(draft, known, e);
+            open.extend(found.zero[e.index()].then_some(e));
         }
+        found.spread(draft, known, open);
         for e in (0..draft.exprs.len() as u32).map(ExprId) {
             let Node::Binary(Binary::Mul, a, b) = draft.exprs.node(e) else { continue };
             for (factor, other) in [(a, b), (b, a)] {
@@ -88,21 +90,42 @@ impl Zeros {
         found
     }
 
-    /// From what expressions are made of to the expressions.
-    fn spread(&mut self, draft: &Draft, known: &mut Known) {
-        self.zero.clear();
-        for e in (0..draft.exprs.len() as u32).map(ExprId) {
-            let zero = match known.value(&draft.exprs, e) {
-                Some(value) => value == 0.0,
-                None => self.is_zero(draft, known, draft.exprs.node(e)),
-            };
-            self.zero.push(zero);
+    /// From what is 0 to the variables that equal it, and on to what is made of them.
+    fn spread(&mut self, draft: &Draft, known: &mut Known, mut open: Vec<ExprId>) {
+        let mut defined: FxHashMap<ExprId, Vec<VarId>> = FxHashMap::default();
+        for equation in &draft.equations {
+            if let Some(v) = defined_by(draft, equation.lhs) {
+                defined.entry(equation.rhs).or_default().push(v);
+            }
+        }
+        if !defined.keys().any(|value| self.zero[value.index()]) {
+            return;
+        }
+        let users = Users::new(draft);
+        while let Some(e) = open.pop() {
+            for v in defined.remove(&e).unwrap_or_default() {
+                self.definition[v.index()].get_or_insert(e);
+                if let Some(leaf) = users.leaf[v.index()]
+                    && !std::mem::replace(&mut self.zero[leaf.index()], true)
+                {
+                    open.push(leaf);
+                }
+            }
+            for user in users.of(e) {
+                if !self.zero[user.index()] && self.is_zero(draft, known, user) {
+                    self.zero[user.index()] = true;
+                    open.push(user);
+                }
+            }
         }
     }
 
-    fn is_zero(&self, draft: &Draft, known: &mut Known, node: Node) -> bool {
+    fn is_zero(&self, draft: &Draft, known: &mut Known, e: ExprId) -> bool {
+        if let Some(value) = known.value(&draft.exprs, e) {
+            return value == 0.0;
+        }
         let zero = |a: ExprId| self.zero[a.index()];
-        match node {
+        match draft.exprs.node(e) {
             Node::Var(v) => self.definition[v.index()].is_some(),
             Node::Unary(op, a) => KEEP_ZERO.contains(&op) && zero(a),
             Node::Binary(Binary::Mul, a, b) => zero(a) || zero(b),
@@ -118,7 +141,7 @@ impl Zeros {
 
     /// The parameters that make an expression 0.
     fn parameters(&self, draft: &Draft, known: &mut Known, e: ExprId) -> Vec<VarId> {
-        let (mut open, mut seen, mut found) = (vec![e], rustc_hash::FxHashSet::default(), Vec::new());
+        let (mut open, mut seen, mut found) = (vec![e], FxHashSet::default(), Vec::new());
         while let Some(e) = open.pop() {
             if !seen.insert(e) {
                 continue;
@@ -142,16 +165,44 @@ impl Zeros {
     fn factor(&self, product: ExprId) -> Option<ExprId> {
         self.products.binary_search_by_key(&product, |p| p.0).ok().map(|i| self.products[i].1)
     }
+}
 
-    /// The image of every expression without the products that are 0 by parameters that `which` accepts.
-    fn taken_out(&self, draft: &mut Draft, known: &mut Known, which: impl Fn(&[VarId]) -> bool) -> Vec<ExprId> {
-        let taken: rustc_hash::FxHashSet<Node> = self
-            .products
-            .iter()
-            .filter(|(_, factor)| which(&self.parameters(draft, known, *factor)))
-            .map(|(product, _)| draft.exprs.node(*product))
-            .collect();
-        draft.rewritten(|_, node| taken.contains(&node).then_some(Exprs::ZERO))
+/// The expressions that each expression stands in.
+struct Users {
+    starts: Vec<u32>,
+    users: Vec<ExprId>,
+    /// The node of each variable, if there is one.
+    leaf: Vec<Option<ExprId>>,
+}
+
+impl Users {
+    fn new(draft: &Draft) -> Self {
+        let pool = &draft.exprs;
+        let all = || (0..pool.len() as u32).map(ExprId);
+        let mut starts = vec![0_u32; pool.len() + 1];
+        let mut leaf = vec![None; draft.variables.len()];
+        for e in all() {
+            pool.operands(e).as_slice().iter().for_each(|a| starts[a.index() + 1] += 1);
+            if let Node::Var(v) = pool.node(e)
+                && let Some(place) = leaf.get_mut(v.index())
+            {
+                *place = Some(e);
+            }
+        }
+        (0..pool.len()).for_each(|i| starts[i + 1] += starts[i]);
+        let mut next = starts.clone();
+        let mut users = vec![Exprs::ZERO; starts[pool.len()] as usize];
+        for e in all() {
+            for a in pool.operands(e).as_slice() {
+                users[next[a.index()] as usize] = e;
+                next[a.index()] += 1;
+            }
+        }
+        Users { starts, users, leaf }
+    }
+
+    fn of(&self, e: ExprId) -> impl Iterator<Item = ExprId> {
+        self.users[self.starts[e.index()] as usize..self.starts[e.index() + 1] as usize].iter().copied()
     }
 }
 
@@ -160,7 +211,7 @@ const KEEP_ZERO: [Unary; 9] =
     [Unary::Neg, Unary::Abs, Unary::Sign, Unary::Sqrt, Unary::Sin, Unary::Tan, Unary::Atan, Unary::Sinh, Unary::Tanh];
 
 /// The continuous variable that an equation with this left side defines.
-fn defined(draft: &Draft, lhs: ExprId) -> Option<VarId> {
+fn defined_by(draft: &Draft, lhs: ExprId) -> Option<VarId> {
     match draft.exprs.node(lhs) {
         Node::Var(v) if draft.role(v) == Role::Continuous => Some(v),
         _ => None,
@@ -171,18 +222,7 @@ fn defined(draft: &Draft, lhs: ExprId) -> Option<VarId> {
 /// be solved for before, if that still occurs.
 fn without(draft: &Draft, system: &System, map: &[ExprId]) -> Incidence {
     let image = |e: ExprId| map.get(e.index()).copied().unwrap_or(e);
-    let (mut of_var, mut of_der) = (vec![NONE; draft.variables.len()], vec![NONE; draft.variables.len()]);
-    for (i, unknown) in system.columns.iter().enumerate() {
-        match unknown {
-            Unknown::Var(v) => of_var[v.index()] = i as u32,
-            Unknown::Der(v) => of_der[v.index()] = i as u32,
-        }
-    }
-    let column = |node: Node| match node {
-        Node::Var(v) => Some(of_var[v.index()]).filter(|&c| c != NONE),
-        Node::Der(v) => Some(of_der[v.index()]).filter(|&c| c != NONE),
-        _ => None,
-    };
+    let columns = Columns::new(&system.columns, draft.variables.len());
     let (mut left, mut made) = (Incidence::default(), Incidence::default());
     let mut scanner = Scanner::default();
     for (row, SystemRow { equation, discrete, .. }) in system.rows.iter().enumerate() {
@@ -193,7 +233,7 @@ fn without(draft: &Draft, system: &System, map: &[ExprId]) -> Incidence {
             made.push(before, &[]);
             continue;
         }
-        scanner.push(&draft.exprs, sides, column, |_| true, &mut left);
+        scanner.push(&draft.exprs, sides, |node| columns.of_node(node), |_| true, &mut left);
         let still = left.solvable(left.rows() as u32 - 1);
         let kept: Vec<u32> = before.iter().filter(|c| still.contains(c)).copied().collect();
         made.push(&kept, &[]);

@@ -158,7 +158,7 @@ pub fn modelica(model: &StateSpace, name: &str) -> String {
     };
     let (n, m, p) = (model.states.len(), model.inputs.len(), model.outputs.len());
     for (i, s) in model.states.iter().enumerate() {
-        let _ = writeln!(out, "  // x[{}]: {} in {}", i + 1, s.name, or_one(&s.unit));
+        let _ = writeln!(out, "  // x[{}]: {}", i + 1, s.words());
     }
     for (letter, size, list) in [("x", n, &model.states), ("u", m, &model.inputs), ("y", p, &model.outputs)] {
         if size > 0 {
@@ -176,11 +176,10 @@ pub fn modelica(model: &StateSpace, name: &str) -> String {
     let _ = writeln!(out, "  parameter Real rate_0[{n}] = {{{}}};", rates.join(", "));
     let _ = writeln!(out, "  Real x[{n}](start = x_0, each fixed = true);");
     for (i, q) in model.inputs.iter().enumerate() {
-        let _ =
-            writeln!(out, "  input Real u_{}(start = {}) \"{} in {}\";", i + 1, text(q.value), q.name, or_one(&q.unit));
+        let _ = writeln!(out, "  input Real u_{}(start = {}) \"{}\";", i + 1, text(q.value), q.words());
     }
     for (i, q) in model.outputs.iter().enumerate() {
-        let _ = writeln!(out, "  output Real y_{} \"{} in {}\";", i + 1, q.name, or_one(&q.unit));
+        let _ = writeln!(out, "  output Real y_{} \"{}\";", i + 1, q.words());
     }
     let inputs = (1..=m).map(|i| format!("u_{i} - u_0[{i}]")).collect::<Vec<_>>().join(", ");
     let forced = |letter: &str| if m > 0 { format!(" + {letter}*{{{inputs}}}") } else { String::new() };
@@ -191,8 +190,4 @@ pub fn modelica(model: &StateSpace, name: &str) -> String {
     }
     let _ = writeln!(out, "end {name};");
     out
-}
-
-fn or_one(unit: &str) -> &str {
-    if unit.is_empty() { "1" } else { unit }
 }

@@ -10,14 +10,13 @@ pub use export::{csv, mat, modelica, words};
 pub use frequency::{bode, plane, response};
 pub use modal::{Pole, poles, zeros};
 pub use schedule::{Schedule, schedule};
-pub use scheduled::{mat as scheduled_mat, modelica as scheduled_modelica};
 
 use super::local::{Local, LocalError, Plan};
 use super::{Lifted, lift};
 use crate::Model;
 use crate::diag::{Code, Diagnostic, nearest};
 use crate::expr::VarId;
-use crate::flat::{FlatModel, Type, Variability};
+use crate::flat::{FlatModel, Type, Variability, Variable};
 use crate::solve::State;
 use nalgebra::DMatrix;
 use std::sync::Arc;
@@ -33,6 +32,19 @@ pub struct Quantity {
     pub value: f64,
     /// Its usual size, positive.
     pub nominal: f64,
+}
+
+impl Quantity {
+    fn of(variable: &Variable, value: f64, nominal: f64) -> Self {
+        let unit = variable.unit.as_deref().unwrap_or("").to_owned();
+        Quantity { name: variable.name.clone(), unit, value, nominal }
+    }
+
+    /// Name and unit, as comments and descriptions show them.
+    fn words(&self) -> String {
+        let unit = if self.unit.is_empty() { "1" } else { &self.unit };
+        format!("{} in {unit}", self.name)
+    }
 }
 
 /// A linear model around an operating point: the quantities are deviations from their values there.
@@ -219,11 +231,7 @@ pub fn linearize(model: &Model, chosen: &Chosen, state: &State) -> Result<StateS
     let local = chosen.at(state)?;
     let system = &chosen.plan.system;
     let variables = &system.dae.variables;
-    let quantity = |v: VarId, value: f64, nominal: f64| {
-        let variable = &variables[v.index()];
-        let unit = variable.unit.as_deref().unwrap_or("").to_owned();
-        Quantity { name: variable.name.clone(), unit, value, nominal }
-    };
+    let quantity = |v: VarId, value: f64, nominal: f64| Quantity::of(&variables[v.index()], value, nominal);
     let sizes = sizes(model);
     let size = |v: VarId| sizes.get(v.index()).copied().unwrap_or(1.0);
     let columns: Vec<usize> = chosen.columns.iter().map(|c| c.0).collect();

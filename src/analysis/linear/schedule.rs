@@ -26,7 +26,9 @@ pub struct Schedule {
     pub states: Vec<Quantity>,
     /// The inputs; behind them stands the constant one.
     pub inputs: Vec<Quantity>,
-    /// The points of the grid.
+    /// The values of each scheduling quantity, ascending.
+    pub grid: Vec<Vec<f64>>,
+    /// All combinations of them, the last quantity fastest.
     pub points: Vec<Point>,
     /// Per state the largest difference between A x + B u and the rate, over the largest term of the row, at random
     /// states and inputs: at most about 1e-12 where the form is exact.
@@ -131,15 +133,11 @@ pub fn schedule(
     }
     let (error, tried) = check(&mut field, &legs, &w0, ranges);
     let variables = &plan.system.dae.variables;
-    let quantity = |(v, value): (VarId, &f64)| {
-        let variable = &variables[v.index()];
-        let unit = variable.unit.as_deref().unwrap_or("").to_owned();
-        Quantity { name: variable.name.clone(), unit, value: *value, nominal: 1.0 }
-    };
+    let quantity = |(v, value): (VarId, &f64)| Quantity::of(&variables[v.index()], *value, 1.0);
     let mut states: Vec<Quantity> = chosen.quantities().zip(&w0).map(quantity).collect();
     let inputs = states.split_off(field.states);
     let class = plan.system.dae.class.clone();
-    Ok(Schedule { class, rho, legs, states, inputs, points, error, tried })
+    Ok(Schedule { class, rho, legs, states, inputs, grid, points, error, tried })
 }
 
 fn no_value(why: &str) -> Diagnostic {
@@ -277,16 +275,6 @@ fn halton(k: usize, j: usize) -> f64 {
 }
 
 impl Schedule {
-    /// The variable of the Modelica model that stands for a column of (A, B): states, inputs, the constant one.
-    pub(super) fn symbol(&self, column: usize) -> String {
-        let n = self.states.len();
-        match column.checked_sub(n) {
-            None => format!("x_{}", column + 1),
-            Some(j) if j < self.inputs.len() => format!("u_{}", j + 1),
-            Some(_) => "1".to_owned(),
-        }
-    }
-
     /// Whether the form is exact at all states tried.
     pub fn is_exact(&self) -> bool {
         self.tried > 0 && self.error.iter().all(|e| *e <= 1e-12)

@@ -187,7 +187,7 @@ fn the_written_form_simulates() {
     let text = format!(
         "{}\n{}\nmodel Beside\n  M bench(f = 30, u = 1);\n  Form form(u_1 = 30, u_2 = 1, x_1(start = 20), x_2(start = 5));\nend Beside;",
         PUMP.replace("parameter Real f = 30;", "input Real f;"),
-        scheduled_modelica(&form, "Form")
+        form.modelica("Form")
     );
     let world = MemoryWorld::single("m.mo", &text);
     let request = Request { source: "m.mo".into(), model: Some("Beside".into()), ..Request::default() };
@@ -196,7 +196,7 @@ fn the_written_form_simulates() {
     let last = |name: &str| *run.trajectory.column(name).expect("a column").last().expect("rows");
     let (w, p) = (last("bench.w"), last("bench.p"));
     assert!((last("form.x_1") - w).abs() < 1e-3 * w && (last("form.x_2") - p).abs() < 2e-2 * p, "{w} {p}");
-    assert!(scheduled_mat(&form).len() > 20 * 8 * (4 + 6));
+    assert!(form.mat().len() > 20 * 8 * (4 + 6));
 }
 
 /// The largest error of a shipped model's form over the terms of its rows, from states within a fifth (at least `least`)
