@@ -1,7 +1,6 @@
 within Hydraulic;
 model Accumulator "Bladder accumulator, gas with a thermal time constant"
-  Interfaces.HydraulicPort port "Port";
-  outer Oil.Fluid oil "Oil of the circuit";
+  extends Bases.Storage;
   parameter SI.Volume V_0(min = 1e-6, max = 1, nominal = 1e-3, displayUnit = "l") = 1e-3 "Volume of the gas at the precharge";
   parameter SI.Pressure p_pre(min = 1e4, max = 1e8, nominal = 1e6) = 3e5 "Precharge, absolute, at T_wall";
   parameter SI.Pressure p_start(nominal = 1e6) = 5e5 "Pressure at the start";
@@ -17,15 +16,11 @@ model Accumulator "Bladder accumulator, gas with a thermal time constant"
   SI.Pressure p(start = p_start, nominal = 1e6, stateSelect = StateSelect.prefer) "Pressure of the oil";
   SI.Temperature T(start = T_start, fixed = true, nominal = 300, stateSelect = StateSelect.prefer) "Temperature of the gas";
   SI.Volume V_gas(nominal = 1e-3) "Volume of the gas";
-  SI.Volume V_oil(nominal = 1e-3) "Volume of the oil";
-  SI.Mass mass(nominal = 1) "Mass of the oil";
 protected
   parameter Real w_full(unit = "1") = min(w_stop, V_full/2) "Rounding of the full stop, over V_0";
   Real share(unit = "1") "Part of the change of V_free that the gas follows: 0 at both stops";
   SI.Volume V_free(nominal = 1e-3) "Volume that the gas would take at the pressure of the oil";
   SI.VolumeFlowRate V_gas_dot(nominal = 1e-4) "Rate of V_gas";
-  SI.Density rho(nominal = 1000) "Density of the oil";
-  SI.BulkModulus beta(nominal = 1e9) "Tangent bulk modulus of the oil";
   SI.Pressure p_s(nominal = 1e6) "Pressure, kept positive";
 equation
   assert(V_0 > 0 and p_pre > 0, "V_0 and the precharge p_pre must be positive");
@@ -40,9 +35,7 @@ equation
   V_gas_dot = share*V_free*(der(T)/T - der(p)/p_s);
   der(T) = (T_wall - T)/tau - R*T/(c_v*V_gas)*V_gas_dot;
   V_oil = V_0*(1 + V_min) - V_gas;
-  (rho, beta) = oil.density(p);
-  port.q = V_oil/beta*der(p) - V_gas_dot;
-  mass = rho*V_oil;
+  V_oil/air.beta*der(p) - V_gas_dot = inflow;
   annotation(Documentation(info = "<html>
 <p>Ideal gas, <code>p V_gas = m R T</code>, and its balance of energy with Newton's cooling, <code>dT/dt = (T_wall - T)/tau - R T/(c_v V_gas) dV_gas/dt</code>: fast strokes are adiabatic (exponent 1.40), slow ones isothermal, and the pressure relaxes
 after a fast stroke. Below the precharge the bladder rests on its valve and only the oil in the neck (<code>V_min V_0</code>) is compressed; the passage is rounded within <code>w_stop V_0</code> of it on either side; beyond, the law of the gas holds exactly. Full, the gas keeps <code>V_full V_0</code>, and only the oil is compressed further.</p>

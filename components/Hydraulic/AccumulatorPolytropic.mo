@@ -1,7 +1,6 @@
 within Hydraulic;
 model AccumulatorPolytropic "Bladder accumulator, polytropic gas"
-  Interfaces.HydraulicPort port "Port";
-  outer Oil.Fluid oil "Oil of the circuit";
+  extends Bases.Storage;
   parameter SI.Volume V_0(min = 1e-6, max = 1, nominal = 1e-3, displayUnit = "l") = 1e-3 "Volume of the gas at the precharge";
   parameter SI.Pressure p_pre(min = 1e4, max = 1e8, nominal = 1e6) = 3e5 "Precharge, absolute";
   parameter SI.Pressure p_start(nominal = 1e6) = 5e5 "Pressure at the start";
@@ -12,14 +11,10 @@ model AccumulatorPolytropic "Bladder accumulator, polytropic gas"
   parameter Real V_full(unit = "1", min = 0.001, max = 0.5) = 0.02 "Gas left when full, over V_0";
   SI.Pressure p(start = p_start, nominal = 1e6, stateSelect = StateSelect.prefer) "Pressure of the oil";
   SI.Volume V_gas(nominal = 1e-3) "Volume of the gas";
-  SI.Volume V_oil(nominal = 1e-3) "Volume of the oil";
-  SI.Mass mass(nominal = 1) "Mass of the oil";
 protected
   parameter Real w_full(unit = "1") = min(w_stop, V_full/2) "Rounding of the full stop, over V_0";
   Real share(unit = "1") "Part of the change of v that the gas follows: 0 at both stops";
   Real v(unit = "1") "Volume that the gas would take at the pressure of the oil, over V_0";
-  SI.Density rho(nominal = 1000) "Density of the oil";
-  SI.BulkModulus beta(nominal = 1e9) "Tangent bulk modulus of the oil";
   SI.Pressure p_s(nominal = 1e6) "Pressure, kept positive";
 equation
   assert(V_0 > 0 and p_pre > 0, "V_0 and the precharge p_pre must be positive");
@@ -32,9 +27,7 @@ equation
   V_gas = V_0*(1 - Smooth.ramp(1 - v + w_stop, 2*w_stop) + Smooth.ramp(V_full - v + w_full, 2*w_full));
   share = min(max((1 - v + w_stop)/(2*w_stop), 0), 1) - min(max((V_full - v + w_full)/(2*w_full), 0), 1);
   V_oil = V_0*(1 + V_min) - V_gas;
-  (rho, beta) = oil.density(p);
-  port.q = (V_oil/beta + V_0*share*v/(n*p_s))*der(p);
-  mass = rho*V_oil;
+  (V_oil/air.beta + V_0*share*v/(n*p_s))*der(p) = inflow;
   annotation(Documentation(info = "<html>
 <p><code>p V_gas^n = p_pre V_0^n</code>, with the empty stop, the full stop and the compression of the oil as in <code>Accumulator</code>. The exponent must be chosen for the speed of the process; where both fast strokes and holding occur,
 <code>Accumulator</code> finds it by itself. Source: A. Pourmovahed and D. R. Otis, J. Dyn. Syst. Meas. Control 112 (1990) 116, for the time constant that decides between slow and fast.</p></html>"));

@@ -1,7 +1,6 @@
 within Hydraulic;
 model AccumulatorRealGas "Bladder accumulator, real gas (Redlich and Kwong) with a thermal time constant"
-  Interfaces.HydraulicPort port "Port";
-  outer Oil.Fluid oil "Oil of the circuit";
+  extends Bases.Storage;
   parameter SI.Volume V_0(min = 1e-6, max = 1, nominal = 1e-3, displayUnit = "l") = 1e-3 "Volume of the gas at the precharge";
   parameter SI.Pressure p_pre(min = 1e4, max = 1e8, nominal = 1e6) = 1e7 "Precharge, absolute, at T_wall";
   parameter Real fill(unit = "1", min = 0.05, max = 1) = 0.8 "Volume of the gas at the start over V_0, unless p_start is given";
@@ -20,9 +19,7 @@ model AccumulatorRealGas "Bladder accumulator, real gas (Redlich and Kwong) with
   SI.Pressure p_gas(nominal = 1e7) "Pressure of the gas";
   SI.Temperature T(start = T_wall, fixed = true, nominal = 300, stateSelect = StateSelect.prefer) "Temperature of the gas";
   SI.Volume V_gas(start = if p_start > 0 then V_0*min(p_pre/max(p_start, 1), 1) else fill*V_0, nominal = 1e-3, stateSelect = StateSelect.prefer) "Volume of the gas";
-  SI.Volume V_oil(nominal = 1e-3) "Volume of the oil";
   SI.Mass m_gas(nominal = 0.1) "Mass of the gas";
-  SI.Mass mass(nominal = 1) "Mass of the oil";
   Real Z(unit = "1") "Compressibility of the gas: p v/(R T)";
 protected
   parameter Real a(unit = "Pa.m6/kg2") = 0.42748*R^2*T_c^2/p_c "Attraction at the critical temperature";
@@ -32,8 +29,6 @@ protected
   Real p_T(unit = "Pa/K", nominal = 1e4) "Derivative of the gas pressure by temperature";
   Real p_v(unit = "Pa.kg/m3", nominal = 1e9) "Derivative of the gas pressure by specific volume";
   Real p_dot(unit = "Pa/s", nominal = 1e6) "Rate of the oil pressure";
-  SI.Density rho(nominal = 1000) "Density of the oil";
-  SI.BulkModulus beta(nominal = 1e9) "Tangent bulk modulus of the oil";
 initial equation
   if p_start > 0 then
     p_gas = p_start;
@@ -61,9 +56,7 @@ equation
   p = p_gas + 2*(p_max*Smooth.ramp(V_full - V_gas/V_0, w_stop) - p_pre*Smooth.ramp(V_gas/V_0 - 1, w_stop))/w_stop;
   p = port.p;
   V_oil = V_0*(1 + V_min) - V_gas;
-  (rho, beta) = oil.density(p);
-  port.q = V_oil/beta*p_dot - der(V_gas);
-  mass = rho*V_oil;
+  V_oil/air.beta*p_dot - der(V_gas) = inflow;
   annotation(Documentation(info = "<html>
 <p><code>p = R T/(v - b) - a sqrt(T_c/T)/(v (v + b))</code>; balance of energy with Newton's cooling, <code>dT/dt = (T_wall - T)/tau - T/(m c_v) (dp/dT)_v dV/dt</code>. The mass of the gas follows from the precharge. Above some 10 MPa nitrogen takes more volume than an ideal gas: at 30 MPa and 20 degC <code>Z</code> is 1.1 to 1.2.
 When empty, the bladder rests on its valve within <code>w_stop V_0</code>; when full, at <code>V_full V_0</code>, it meets a stop that takes <code>p_max</code> within <code>w_stop V_0</code>. Gases of high precharge are beyond the law before that.</p>

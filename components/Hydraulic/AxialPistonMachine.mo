@@ -7,7 +7,8 @@ model AxialPistonMachine "Axial piston machine with the gaps of slippers, piston
     starvation = false,
     m_out_a = if useCasePort then (rho_a + rho_case)/2*G_case*(port_a.p - p_case) - m_drag else 0,
     m_out_b = if useCasePort then (rho_b + rho_case)/2*G_case*(port_b.p - p_case) + m_drag else 0,
-    casePower = if useCasePort then rho_case*Q_case*2*(p_case - port_b.p)/(rho_case + rho_b) else 0);
+    H_case = if oil.thermal and useCasePort then oil.c_p*rho_case*(max(-Q_case, 0)*(inStream(port_case.dT_outflow) - port_case.dT_outflow) - Q_case*oil.throttling(p_case)) else 0,
+    casePower = if useCasePort then (if oil.thermal then growth else 1)*rho_case*Q_case*2*(p_case - port_b.p)/(rho_case + rho_b) else 0);
   parameter Integer z(min = 3, max = 15) = 9 "Number of pistons";
   parameter SI.Diameter d(min = 1e-3, max = 0.2, nominal = 1e-2) = 0.02 "Diameter of the pistons";
   parameter SI.Radius R(min = 1e-3, max = 1, nominal = 1e-2) = 0.038 "Pitch radius";
@@ -41,7 +42,7 @@ model AxialPistonMachine "Axial piston machine with the gaps of slippers, piston
   parameter SI.Length l_o(min = 1e-4, max = 0.1, nominal = 1e-3) = 5e-3 "Its length";
   parameter Real drag(unit = "1", min = 0, max = 1) = 0 "Share of the oil in half the bore gaps that the pistons drag along: 0 none, 1 all of it (Couette)";
   parameter Boolean useCasePort = false "true: slippers, pistons and the outer land leak to the case" annotation(Evaluate = true);
-  Interfaces.HydraulicPort port_case(p = p_case, q = -Q_case) if useCasePort "Case";
+  Interfaces.HydraulicPort port_case(p = p_case, q = -Q_case, dT_outflow = if oil.thermal then T_case - oil.T_0 else 0) if useCasePort "Case";
   SI.Pressure p_case(nominal = 1e5) "Pressure in the case";
   SI.VolumeFlowRate Q_case(nominal = 1e-6) "Leakage to the case";
   SI.VolumeFlowRate Q_slipper(nominal = 1e-6) "Leakage of the slippers";
@@ -86,7 +87,7 @@ equation
     Q_plate = alpha_k*h_v^3/(12*mu)*(1/log(r_v2/r_v1) + 1/log(r_v4/r_v3))*dp;
     Q_leak = Q_slipper + Q_piston + Q_plate - m_drag/rho_high;
   end if;
-  rho_case*Q_case = m_out_a + m_out_b;
+  rho_case*Q_case = (m_out_a + m_out_b)/(if oil.thermal then growth else 1);
   Q_slipper = z/2*pi*h_s^3/(6*mu*log(r_s2/r_s1))*feed*dp_out;
   Q_piston = z/2*pi*d*h_p^3*(1 + 1.5*eps^2)/(12*mu*L)*dp_out;
   T_slipper = z*mu*pi*(r_s2^2 - r_s1^2)*R^2/h_s*w;

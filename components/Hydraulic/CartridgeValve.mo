@@ -1,8 +1,8 @@
 within Hydraulic;
 model CartridgeValve "Two-way cartridge valve (logic element): a poppet between A and B, held shut by the pressure at X"
-  Interfaces.HydraulicPort port_a "Port A, below the seat";
-  Interfaces.HydraulicPort port_b "Port B, around the poppet";
-  Interfaces.HydraulicPort port_x "Pilot; takes the oil that the poppet displaces";
+  Interfaces.HydraulicPort port_a(dT_outflow = if oil.thermal then inStream(port_b.dT_outflow) + oil.throttling(port_b.p) - oil.throttling(port_a.p) else 0) "Port A, below the seat";
+  Interfaces.HydraulicPort port_b(dT_outflow = if oil.thermal then inStream(port_a.dT_outflow) + oil.throttling(port_a.p) - oil.throttling(port_b.p) else 0) "Port B, around the poppet";
+  Interfaces.HydraulicPort port_x(dT_outflow = if oil.thermal then inStream(port_x.dT_outflow) else 0) "Pilot; takes the oil that the poppet displaces";
   outer Oil.Fluid oil "Oil of the circuit";
   parameter SI.Diameter d(min = 1e-3, max = 0.3, nominal = 1e-2) = 16e-3 "Diameter of the seat";
   parameter Real ratio(unit = "1", min = 1, max = 3) = 1.5 "Area at X over area at A; 1: B does not act on the poppet";
@@ -32,19 +32,32 @@ protected
   SI.Density rho_b(nominal = 1000) "Density at B";
   SI.Density rho_x(nominal = 1000) "Density at X";
   SI.Density rho(nominal = 1000) "Mean density";
+  SI.Temperature T_in(nominal = 300) "Temperature of the oil that comes in";
+  SI.DynamicViscosity mu_in(nominal = 0.03) "Its viscosity at low pressure";
+  Real growth(unit = "1") "Its volume over that at T_0";
 equation
   assert(p_open > p_crack, "p_open must lie above p_crack");
   dp = port_a.p - port_b.p;
   rho_a = oil.density(port_a.p);
   rho_b = oil.density(port_b.p);
   rho_x = oil.density(port_x.p);
-  rho = (rho_a + rho_b)/2;
+  if oil.thermal then
+    T_in = noEvent(if dp >= 0 then oil.T_0 + inStream(port_a.dT_outflow) else oil.T_0 + inStream(port_b.dT_outflow));
+    mu_in = oil.viscosity(T_in);
+    growth = 1 + oil.gamma*(T_in - oil.T_0);
+    rho = (rho_a + rho_b)/2/growth;
+  else
+    T_in = oil.T;
+    mu_in = oil.mu;
+    growth = 1;
+    rho = (rho_a + rho_b)/2;
+  end if;
   A = pi*d*sin(alpha)*x_max*Smooth.ramp(min(x/x_max, 1), 0.01);
-  q = Functions.orificeFlow(dp, A_leak + A, C_d, rho, oil.mu, Re_cr);
+  q = Functions.orificeFlow(dp, A_leak + A, C_d, rho, mu_in, Re_cr);
   F = A_A*(p_crack + (p_open - p_crack)*x/x_max) + 2*C_d*cos(alpha)*A*Smooth.mag(dp, 1e4) + k_s*(max(x - x_max, 0) + min(x, 0));
   A_A*port_a.p + A_B*port_b.p = A_X*p_spring + F;
   v = der(x);
-  A_X*v = Functions.orificeFlow(p_spring - port_x.p, pi*d_x^2/4, C_d, rho_x, oil.mu, Re_cr);
+  A_X*v = Functions.orificeFlow(p_spring - port_x.p, pi*d_x^2/4, C_d, rho_x, mu_in, Re_cr);
   rho_a*port_a.q = rho*q + rho_x*A_A*v;
   rho_b*port_b.q = -rho*q + rho_x*A_B*v;
   port_x.q = -A_X*v;

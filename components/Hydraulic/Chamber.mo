@@ -1,8 +1,7 @@
 within Hydraulic;
 model Chamber "Chamber of a cylinder: oil behind a moving piston"
-  Interfaces.HydraulicPort port "Port";
+  extends Bases.Storage;
   Interfaces.TranslationalFlange flange "Piston; moving it in the positive direction enlarges the chamber where side is 1";
-  outer Oil.Fluid oil "Oil of the circuit";
   parameter SI.Area A(min = 1e-8, max = 10, nominal = 1e-3, displayUnit = "cm2") = 1e-3 "Area of the piston";
   parameter Integer side(min = -1, max = 1) = 1 "1: enlarges with positive motion, -1: shrinks";
   parameter SI.Volume V_0(min = 1e-9, max = 10, nominal = 1e-4, displayUnit = "ml") = 1e-4 "Volume at s = s_0, with all that is joined rigidly";
@@ -10,11 +9,8 @@ model Chamber "Chamber of a cylinder: oil behind a moving piston"
   parameter SI.Volume V_min(min = 1e-12, nominal = 1e-6) = 1e-6 "Least volume";
   parameter SI.Pressure p_ambient(nominal = 1e5) = 101325 "Pressure on the other side of the piston, absolute";
   parameter SI.Pressure p_start(nominal = 1e6) = 101325 "Pressure at the start";
-  replaceable model Air = EntrainedAir.Frozen constrainedby EntrainedAir.Law "What becomes of the air in the oil";
   SI.Pressure p(start = p_start, nominal = 1e6, stateSelect = StateSelect.prefer) "Pressure";
   SI.Volume V(nominal = 1e-4) "Volume";
-  SI.Mass mass(nominal = 0.1) "Mass of the oil";
-  Air air(p = p, V = max(V, V_min), supply = noEvent(max(oil.density(p)*port.q, 0))*(oil.x_u - air.x)) "Air in the oil";
 protected
   SI.Velocity v(nominal = 0.1) "Velocity of the piston";
 equation
@@ -26,8 +22,8 @@ equation
   p = port.p;
   v = der(flange.s);
   V = V_0 + side*A*(flange.s - s_0);
-  max(V, V_min)/air.beta*der(p) = air.port_density*port.q - side*A*v + air.swell;
+  V_oil = max(V, V_min);
+  V_oil/air.beta*der(p) = inflow - side*A*v;
   flange.f = -side*A*(p - p_ambient);
-  mass = air.rho*max(V, V_min);
   annotation(Documentation(info = "<html><p><code>V/beta dp/dt = q - A v</code>, force <code>A (p - p_ambient)</code>. Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, section 6.1. Valid while the volume stays above <code>V_min</code>; the oil has one pressure throughout, so no waves. The air in the oil is frozen; <code>redeclare model Air = EntrainedAir.Dissolving</code> lets it dissolve and come out of solution with time.</p></html>"));
 end Chamber;

@@ -12,7 +12,7 @@ equation
   assert(p_open > p_crack, "p_open must lie above p_crack");
   assert(A_max > 0 and A_leak > 0, "The cross sections A_max and A_leak must be positive");
   x = Smooth.step((dp - p_crack)/(p_open - p_crack));
-  q = Functions.orificeFlow(dp, A_leak + x*A_max, C_d, rho, oil.mu, Re_cr);
+  q = Functions.orificeFlow(dp, A_leak + x*A_max, C_d, rho, mu_in, Re_cr);
   annotation(Documentation(info = "<html>
 <p>The cross section grows smoothly from <code>A_leak</code> to <code>A_max</code> between <code>p_crack</code> and <code>p_open</code>. No event, no mass of the poppet: use it
 where the valve is faster than the circuit, <code>CheckValveDynamic</code> where it may flutter. Source: form of the check valve in MathWorks' Simscape documentation; the flow is that of <code>Orifice</code>.</p></html>"));

@@ -13,6 +13,6 @@ equation
   assert(p_open > p_crack, "p_open must lie above p_crack");
   assert(tau > 0, "The time constant tau must be positive");
   tau*der(x) = Smooth.step((dp - p_crack)/(p_open - p_crack)) - x;
-  q = Functions.orificeFlow(dp, A_leak + max(x, 0)*A_max, C_d, rho, oil.mu, Re_cr);
+  q = Functions.orificeFlow(dp, A_leak + max(x, 0)*A_max, C_d, rho, mu_in, Re_cr);
   annotation(Documentation(info = "<html><p>As <code>CheckValve</code>, the opening behind a lag: it still lets oil back for some milliseconds after the flow has turned. Naive forms: <code>CheckValve</code>, <code>CheckValveLinear</code>. Valid for motions slower than some <code>1/tau</code>: the mass of the poppet and its bouncing are left out.</p></html>"));
 end CheckValveDynamic;

@@ -1,15 +1,27 @@
 within Hydraulic;
-model Cooler "Cooler: laminar resistance, and heat passed from the oil to the surroundings"
-  extends Bases.TwoPort;
-  parameter SI.Pressure dp_nom(min = 1, nominal = 1e4) = 5e4 "Pressure drop at q_nom";
-  parameter SI.VolumeFlowRate q_nom(min = 1e-8, nominal = 1e-3) = 1e-3 "Flow of dp_nom";
-  parameter SI.DynamicViscosity mu_nom(min = 1e-4, max = 10, nominal = 0.03) = 0.04 "Viscosity of the nominal point";
-  parameter SI.ThermalConductance kA(min = 0, max = 1e6, nominal = 100) = 300 "Heat transfer to the surroundings";
-  parameter SI.Temperature T_ambient(min = 220, max = 420) = 293.15 "Temperature of the surroundings";
-  Interfaces.HeatPort oilHeat "Thermal mass of the oil";
+model Cooler "Cooler: laminar resistance, and heat passed from the oil to air"
+  extends Bases.HeatExchanger;
+  parameter SI.Temperature T_ambient(min = 220, max = 420) = 293.15 "Temperature of the air";
+  parameter Boolean useInput = false "true: a fan whose speed is u" annotation(Evaluate = true);
+  parameter Real n_u(unit = "1", min = 0, max = 1) = 0.7 "kA grows with this power of the fan's speed";
+  Interfaces.RealInput u(unit = "1") if useInput "Speed of the fan over the one of kA";
+  Interfaces.HeatPort oilHeat if not oil.thermal "Thermal mass of the oil, where it has one temperature";
+protected
+  Interfaces.RealInput u_used(unit = "1") "Speed of the fan";
+  SI.ThermalConductance kA_used(nominal = 100) "Heat transfer at that speed";
 equation
-  assert(dp_nom > 0 and q_nom > 0 and kA >= 0, "The nominal point must be positive, kA not negative");
-  q = q_nom/dp_nom*mu_nom/oil.mu*dp;
-  oilHeat.Q_flow = kA*(oilHeat.T - T_ambient);
-  annotation(Documentation(info = "<html><p>Laminar pressure drop, <code>q = q_nom dp/dp_nom</code> at the nominal viscosity; heat <code>kA (T_oil - T_ambient)</code> leaves the oil through <code>oilHeat</code>. The temperature of the oil is one for the circuit. Valid while the flow of the coolant does not change; kA is a constant. Source: Newton's law of cooling.</p></html>"));
+  connect(u, u_used);
+  if not useInput then
+    u_used = 1;
+  end if;
+  kA_used = if useInput then kA*max(u_used, 1e-6)^n_u else kA;
+  T_coolant = T_ambient;
+  effectiveness = if oil.thermal then 1 - exp(-kA_used/C_oil) else 0;
+  if not oil.thermal then
+    oilHeat.Q_flow = kA_used*(oilHeat.T - T_ambient);
+    Q_flow = oilHeat.Q_flow;
+  end if;
+  annotation(Documentation(info = "<html>
+<p><b>Oil that carries heat</b> is cooled on its way: <code>T_out = T_air + (T_in - T_air) exp(-kA/(m c_p))</code>, air being plentiful. Where the oil has one temperature for the whole circuit, <code>kA (T_oil - T_air)</code> leaves what is joined to <code>oilHeat</code>, whatever the flow.</p>
+<p>With <code>useInput</code> kA follows the speed of a fan, <code>kA u^n_u</code>. Source: Newton's law of cooling; the power 0.6 to 0.8 of the speed is that of turbulent air, VDI Heat Atlas, section G.</p></html>"));
 end Cooler;

@@ -18,7 +18,7 @@ protected
 equation
   assert(p_set > 0 and q_nom > 0 and override > 0 and tau > 0, "p_set, q_nom, override and tau must be positive");
   tau*der(x) = Smooth.clip((-dp + pilotRatio*max(port_x.p - port_a.p, 0) - p_set)/(override*p_set), 0.1) - x;
-  q = Functions.orificeFlow(dp, A_leak + max(x, 0)*A_max + A_check*Smooth.step((dp - p_crack)/p_crack), C_d, rho, oil.mu, Re_cr);
+  q = Functions.orificeFlow(dp, A_leak + max(x, 0)*A_max + A_check*Smooth.step((dp - p_crack)/p_crack), C_d, rho, mu_in, Re_cr);
   port_x.q = 0;
   annotation(Documentation(info = "<html><p>Holds a load: from b to a it opens with <code>p_b - p_a + pilotRatio (p_x - p_a)</code> above <code>p_set</code>, behind a lag; from a to b a check valve lets oil in. A high pilot ratio saves energy and invites oscillation. The pilot takes no oil; the lag is assumed. Source: H. Murrenhoff, Grundlagen der Fluidtechnik 1: Hydraulik, 2012.</p></html>"));
 end CounterbalanceValve;

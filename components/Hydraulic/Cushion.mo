@@ -15,7 +15,7 @@ equation
   assert(A_open > A_end and A_end > 0, "A_open must exceed A_end, which must be positive");
   assert(side == 1 or side == -1, "side must be 1 or -1");
   x = Smooth.step(side*(flange.s - s_end)/length);
-  q = Hydraulic.Functions.orificeFlow(dp, A_end + (A_open - A_end)*x + A_check*Smooth.step(-dp/1e5), C_d, rho, oil.mu);
+  q = Hydraulic.Functions.orificeFlow(dp, A_end + (A_open - A_end)*x + A_check*Smooth.step(-dp/1e5), C_d, rho, mu_in);
   flange.f = 0;
   annotation(Documentation(info = "<html><p>The cross section shrinks smoothly from <code>A_open</code> to <code>A_end</code> over the last part of the stroke; a check valve lets oil in for the way out. Put it between port and chamber of a cylinder, its flange at the rod. Valid for throttles of constant shape; the force of the cushioned pressure acts in the chamber. Source: H. Murrenhoff, Grundlagen der Fluidtechnik 1: Hydraulik, 2012, end cushioning.</p></html>"));
 end Cushion;

@@ -8,6 +8,6 @@ model Filter "Filter: laminar resistance from a nominal point, with clogging"
 equation
   assert(clogging < 1, "A filter blocked entirely lets nothing pass: clogging must be below 1");
   assert(dp_nom > 0 and q_nom > 0, "The nominal point must be positive");
-  q = q_nom/dp_nom*mu_nom/oil.mu*(1 - clogging)*dp;
+  q = q_nom/dp_nom*mu_nom/mu_in*(1 - clogging)*dp;
   annotation(Documentation(info = "<html><p>Laminar, <code>q = q_nom dp/dp_nom</code> at the nominal viscosity, less the share that is blocked. Valid for clean oil of any viscosity up to the opening of a bypass, which has to be added (<code>CheckValve</code>). Source: Darcy's law; pressure drop over flow as ISO 3968 measures it.</p></html>"));
 end Filter;

@@ -1,7 +1,7 @@
 within Hydraulic;
 model FlowSensor "Volume flow through a line"
-  Interfaces.HydraulicPort port_a "Port a";
-  Interfaces.HydraulicPort port_b "Port b";
+  Interfaces.HydraulicPort port_a(dT_outflow = inStream(port_b.dT_outflow)) "Port a";
+  Interfaces.HydraulicPort port_b(dT_outflow = inStream(port_a.dT_outflow)) "Port b";
   Interfaces.RealOutput q(unit = "m3/s", nominal = 1e-4) "Volume flow from a to b, at the pressure there";
 equation
   port_a.p = port_b.p;

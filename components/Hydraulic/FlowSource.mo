@@ -2,7 +2,8 @@ within Hydraulic;
 model FlowSource "Volume flow given by a parameter or a signal"
   parameter Boolean useInput = false "true: the flow comes through q_in" annotation(Evaluate = true);
   parameter SI.VolumeFlowRate q(nominal = 1e-4) = 1e-4 "Volume flow out of the port, without signal";
-  Interfaces.HydraulicPort port "Port";
+  parameter SI.TemperatureDifference dT(min = -100, max = 150) = 0 "Temperature of its oil above T_0, where oil carries heat";
+  Interfaces.HydraulicPort port(dT_outflow = dT) "Port";
   Interfaces.RealInput q_in(unit = "m3/s") if useInput "Volume flow out of the port, at its pressure";
 protected
   Interfaces.RealInput q_used(unit = "m3/s");

@@ -18,7 +18,7 @@ equation
   assert(A_leak > 0, "The cross section A_leak must be positive");
   closed = not pre(closed) and dp > dp_close or pre(closed) and dp > dp_reset;
   tau*der(x) = (if closed then 0 else 1) - x;
-  q = Functions.orificeFlow(dp, A_leak + max(x, 0)*A_max, C_d, rho, oil.mu, Re_cr);
+  q = Functions.orificeFlow(dp, A_leak + max(x, 0)*A_max, C_d, rho, mu_in, Re_cr);
   annotation(Documentation(info = "<html><p>The plate is held open by a spring and pushed shut by the drop that the flow makes: the valve closes when <code>dp > dp_close</code>, which the open valve has at <code>q_close</code>, and opens again below <code>dp_reset</code>: when oil is fed back from b, or the pressures come level through <code>A_leak</code>. Both are events; the motion of the plate is a lag. Mount it with a at the consumer and b at the hose.</p>
 <p>Valid for sharp-edged valves, whose setting does not change with viscosity. The drop sets off the valve: a sudden acceleration of the load does it too, as on the machine. Passive, flow both ways. Source: what such a valve has to do on excavators is in ISO 8643 (lowering control devices); the values are assumed.</p></html>"));
 end HydraulicFuse;

@@ -1,7 +1,7 @@
 within Hydraulic;
 model Line "Pipe or hose of n cells: inertia of the oil, laminar and turbulent friction, compliance of oil and wall"
-  Interfaces.HydraulicPort port_a "Port a";
-  Interfaces.HydraulicPort port_b "Port b";
+  Interfaces.HydraulicPort port_a(dT_outflow = if oil.thermal then T_oil[1] - oil.T_0 + (if volume_a then 0 else oil.throttling(p[1]) - oil.throttling(port_a.p)) else 0) "Port a";
+  Interfaces.HydraulicPort port_b(dT_outflow = if oil.thermal then T_oil[N] - oil.T_0 + (if volume_b then 0 else oil.throttling(p[N]) - oil.throttling(port_b.p)) else 0) "Port b";
   outer Oil.Fluid oil "Oil of the circuit";
   parameter SI.Length L(min = 1e-3, max = 1e4, nominal = 1) = 1 "Length";
   parameter SI.Diameter d(min = 1e-4, max = 1, nominal = 1e-2) = 1e-2 "Inner diameter";
@@ -14,9 +14,14 @@ model Line "Pipe or hose of n cells: inertia of the oil, laminar and turbulent f
   parameter SI.Pressure p_start(nominal = 1e6) = 101325 "Pressure at the start, at port a";
   parameter SI.Pressure p_b_start(nominal = 1e6) = p_start "Pressure at the start, at port b";
   parameter SI.MassFlowRate m_flow_start(nominal = 0.1) = 0 "Mass flow at the start";
+  parameter SI.Temperature T_oil_start(min = 220, max = 420) = oil.T_0 "Temperature of the oil at the start, where it carries heat";
+  parameter Boolean useHeatPort = false "true: oil that carries heat exchanges it with what is joined to heatPort" annotation(Evaluate = true);
+  parameter SI.ThermalConductance kA(min = 0, nominal = 10) = 10*Modelica.Constants.pi*d*L "Heat transfer to heatPort over the whole length, 10 W/(m2.K) to still air";
+  Interfaces.HeatPort heatPort(Q_flow = sum(Q_flow)) if useHeatPort "Heat that the oil takes in through the wall";
   replaceable model Air = EntrainedAir.Frozen constrainedby EntrainedAir.Law "What becomes of the air in the oil";
   SI.Pressure p[N](start = {p_start + (p_b_start - p_start)*x[i] for i in 1:N}, each nominal = 1e6) "Pressures of the cells";
   SI.MassFlowRate m_flow[M](each start = m_flow_start, each nominal = 0.1) "Mass flows between the cells, from a to b";
+  SI.Temperature T_oil[N](each start = T_oil_start, each fixed = oil.thermal, each nominal = 300) "Temperatures of the cells";
   SI.Mass mass(nominal = 1) "Mass of the oil";
   Air air[N](p = p, V = V_p, supply = supply) "Air in the cells";
   Friction friction[M](L = share*L, each d = d) "Friction between the cells";
@@ -35,6 +40,10 @@ protected
   SI.MassFlowRate m_right[N](each nominal = 0.1) "Mass flows out of the cells to the side of b";
   SI.MassFlowRate supply[N](each nominal = 0.1) "What flows into the cells, by the share of its air above the one there";
   SI.Volume V_p[N](each nominal = 1e-4) "Volumes of the cells under pressure";
+  Real growth[N](each unit = "1") "Volumes of the oil over those at T_0";
+  SI.HeatFlowRate Q_flow[N](each nominal = 10) "Heat that the cells take in through the wall";
+  SI.Temperature T_low[N](each nominal = 300) "Temperatures that the oil of the cells has when throttled to the reference pressure";
+  SI.Temperature T_m[M](each nominal = 300) "Temperatures between the cells: of the cell from which the oil comes";
   SI.Density rho_m[M](each nominal = 1000) "Densities between the cells: that of the cell before, at the first that of the cell after";
   SI.MassFlowRate m_a(nominal = 0.1) "Mass flow into port a";
   SI.MassFlowRate m_b(nominal = 0.1) "Mass flow out of port b";
@@ -59,18 +68,33 @@ equation
     m_right[i] = if i - a + 1 > M then m_b else m_flow[min(i - a + 1, M)];
     supply[i] = noEvent(max(m_left[i], 0))*((if i > 1 then air[max(i - 1, 1)].x else oil.x_u) - air[i].x)
       + noEvent(max(-m_right[i], 0))*((if i < N then air[min(i + 1, N)].x else oil.x_u) - air[i].x);
-    air[i].rho*(V_p[i]/air[i].beta + V[i]/beta_wall)*der(p[i]) = m_left[i] - m_right[i] + air[i].rho*air[i].swell;
+    if oil.thermal then
+      growth[i] = 1 + oil.gamma*(T_oil[i] - oil.T_0);
+      T_low[i] = T_oil[i] + oil.throttling(p[i]);
+      Q_flow[i] = if useHeatPort then kA/N*(heatPort.T - T_oil[i]) else 0;
+      air[i].rho*V_p[i]/growth[i]*oil.c_p*der(T_oil[i]) = oil.c_p*max(m_left[i], 0)*((if i > 1 then T_low[max(i - 1, 1)] else oil.T_0 + inStream(port_a.dT_outflow) + oil.throttling(port_a.p)) - T_low[i])
+        + oil.c_p*max(-m_right[i], 0)*((if i < N then T_low[min(i + 1, N)] else oil.T_0 + inStream(port_b.dT_outflow) + oil.throttling(port_b.p)) - T_low[i]) + Q_flow[i] + oil.gamma*T_oil[i]/growth[i]*V_p[i]*der(p[i]);
+      air[i].rho*(V_p[i]/air[i].beta + V[i]/beta_wall)*der(p[i]) = growth[i]*(m_left[i] - m_right[i]) + air[i].rho*(air[i].swell + V_p[i]*oil.gamma/growth[i]*der(T_oil[i]));
+    else
+      growth[i] = 1;
+      T_low[i] = oil.T;
+      Q_flow[i] = 0;
+      T_oil[i] = oil.T;
+      air[i].rho*(V_p[i]/air[i].beta + V[i]/beta_wall)*der(p[i]) = m_left[i] - m_right[i] + air[i].rho*air[i].swell;
+    end if;
   end for;
   for i in 1:M loop
-    rho_m[i] = air[max(i - 1 + a, 1)].rho;
+    rho_m[i] = air[max(i - 1 + a, 1)].rho/growth[max(i - 1 + a, 1)];
+    T_m[i] = if not oil.thermal then oil.T else noEvent(if m_flow[i] >= 0 then (if i - 1 + a < 1 then oil.T_0 + inStream(port_a.dT_outflow) else T_oil[max(i - 1 + a, 1)])
+      else (if i + a > N then oil.T_0 + inStream(port_b.dT_outflow) else T_oil[min(i + a, N)]));
     friction[i].m_flow = m_flow[i];
     friction[i].rho = rho_m[i];
-    friction[i].mu = oil.mu;
+    friction[i].mu = if oil.thermal then oil.viscosity(T_m[i]) else oil.mu;
     share[i]*L/A*(1 + friction[i].added)*der(m_flow[i]) =
       (if i - 1 + a < 1 then port_a.p else p[max(i - 1 + a, 1)]) - (if i + a > N then port_b.p else p[min(i + a, N)])
       - friction[i].dp - share[i]*rho_m[i]*g*dh;
   end for;
-  mass = air.rho*V_p;
+  mass = sum(air[i].rho*V_p[i]/growth[i] for i in 1:N);
   annotation(Documentation(info = "<html>
 <p>Each cell stores mass, <code>d(rho V)/dt = m_i - m_(i+1)</code>; between cells the oil is accelerated, <code>L/A dm/dt = p_i - p_(i+1) - dp_f - rho g dh</code>. As it stands, half a cell's length lies at both ends, which carry a flow as state: join them to sources, volumes, or components with resistance.
 Where a valve closes at an end, or a line ends blind, let a volume lie there: <code>volume_a</code>, <code>volume_b</code>; the pressure of that port is then a state.</p>

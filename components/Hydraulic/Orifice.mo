@@ -6,7 +6,7 @@ model Orifice "Sharp-edged orifice of constant cross section"
   parameter Real Re_cr(unit = "1", min = 1, max = 5000) = 150 "Reynolds number of the laminar transition";
 equation
   assert(A > 0, "The cross section A must be positive");
-  q = Functions.orificeFlow(dp, A, C_d, rho, oil.mu, Re_cr);
+  q = Functions.orificeFlow(dp, A, C_d, rho, mu_in, Re_cr);
   annotation(Documentation(info = "<html>
 <p><code>q = C_d A sqrt(2 dp/rho)</code>, laminar below the Reynolds number <code>Re_cr</code>: see <code>Hydraulic.Functions.orificeFlow</code>. The same flow in both directions,
 passive everywhere. For long bores and gaps use <code>LaminarGap</code>.</p></html>"));

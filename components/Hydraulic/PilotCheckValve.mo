@@ -17,7 +17,7 @@ equation
   assert(k_p >= 1 and tau > 0, "k_p must be at least 1, tau positive");
   p_control = dp + k_p*max(port_x.p - port_a.p, 0);
   tau*der(x) = Smooth.step((p_control - p_crack)/(p_open - p_crack)) - x;
-  q = Functions.orificeFlow(dp, A_leak + max(x, 0)*A_max, C_d, rho, oil.mu, Re_cr);
+  q = Functions.orificeFlow(dp, A_leak + max(x, 0)*A_max, C_d, rho, mu_in, Re_cr);
   port_x.q = 0;
   annotation(Documentation(info = "<html><p>Opens where <code>(p_a - p_b) + k_p (p_x - p_a)</code> passes <code>p_crack</code>; the pilot chamber drains to a. The pilot takes no oil, mass of poppet and pilot piston are left out: valid for changes slower than some <code>1/tau</code>. Source: pilot-operated check valve in MathWorks' Simscape documentation; the ratio 3.5 is the default of Hopsan.</p></html>"));
 end PilotCheckValve;

@@ -1,8 +1,8 @@
 within Hydraulic;
 model PistonMachine "Axial piston machine, chamber by chamber: port timing, compression, bore leakage, ripple"
-  Interfaces.HydraulicPort port_a "Port A: a pump that turns positively delivers here; oil that is fed in here turns a motor negatively";
-  Interfaces.HydraulicPort port_b "Port B: a pump that turns positively draws here; oil that is fed in here turns a motor positively";
-  Interfaces.HydraulicPort port_case "Case";
+  Interfaces.HydraulicPort port_a(dT_outflow = if oil.thermal then T_oil - oil.T_0 else 0) "Port A: a pump that turns positively delivers here; oil that is fed in here turns a motor negatively";
+  Interfaces.HydraulicPort port_b(dT_outflow = if oil.thermal then T_oil - oil.T_0 else 0) "Port B: a pump that turns positively draws here; oil that is fed in here turns a motor positively";
+  Interfaces.HydraulicPort port_case(dT_outflow = if oil.thermal then T_oil - oil.T_0 else 0) "Case";
   Interfaces.RotationalFlange flange "Shaft";
   outer Oil.Fluid oil "Oil of the circuit";
   parameter Integer z(min = 1, max = 15) = 7 "Number of pistons";
@@ -31,8 +31,10 @@ model PistonMachine "Axial piston machine, chamber by chamber: port timing, comp
   parameter SI.AngularVelocity w_s(min = 1e-3, max = 100, nominal = 1) = 1 "Width of the sign of speed in the dry friction";
   parameter Boolean useInput = false "true: the displacement follows u, -1 to 1" annotation(Evaluate = true);
   Interfaces.RealInput u if useInput "Displacement over the greatest one";
-  parameter Boolean useHeatPort = false "true: losses heat what is joined to heatPort" annotation(Evaluate = true);
-  Interfaces.HeatPort heatPort(Q_flow = -lossPower) if useHeatPort "Case: heat of the losses";
+  parameter SI.Volume V_oil(nominal = 1e-4, displayUnit = "ml") = 2*z*(V_d + H*Modelica.Constants.pi*d^2/4) "Oil in the machine that has its temperature, where oil carries heat";
+  parameter SI.Temperature T_oil_start(min = 220, max = 420) = oil.T_0 "Temperature of that oil at the start";
+  parameter Boolean useHeatPort = false "true: losses heat what is joined to heatPort; where oil carries heat, the oil exchanges it there" annotation(Evaluate = true);
+  Interfaces.HeatPort heatPort(Q_flow = Q_heat) if useHeatPort "Case: heat of the losses";
   SI.AngularVelocity w(nominal = 100) "Speed of the shaft";
   SI.Pressure dp(nominal = 1e6) "Pressure of A above B";
   SI.VolumeFlowRate Q_A(nominal = 1e-4) "Volume flow out of port A";
@@ -45,6 +47,7 @@ model PistonMachine "Axial piston machine, chamber by chamber: port timing, comp
   SI.Torque T_loss "Friction torque";
   SI.Mass mass(nominal = 1e-3) "Mass of the oil in the chambers";
   SI.Power lossPower(nominal = 10) "Power lost in ports, bores and by friction";
+  SI.Temperature T_oil(start = T_oil_start, fixed = oil.thermal, nominal = 300) "Temperature of the oil in the machine";
 protected
   constant Real pi = Modelica.Constants.pi;
   parameter SI.Area A_p = pi*d^2/4 "Area of a piston";
@@ -60,7 +63,10 @@ protected
   SI.Pressure dp_b[z](each nominal = 1e6) "Pressure drops from port B";
   SI.Density rho[z](each nominal = 1000) "Densities of the chambers";
   SI.BulkModulus beta[z](each nominal = 1e9) "Moduli of the chambers";
-  SI.Density rho_a(nominal = 1000) "Density at A";
+  SI.HeatFlowRate Q_heat(nominal = 10) "Heat that comes in through heatPort";
+  Real growth(unit = "1") "Volume of the oil over that at T_0";
+  SI.DynamicViscosity mu_oil(nominal = 0.03) "Viscosity of the oil at low pressure";
+  SI.Density rho_a(nominal = 1000) "Density at A, at T_0";
   SI.Density rho_b(nominal = 1000) "Density at B";
   SI.Density rho_c(nominal = 1000) "Density in the case";
 equation
@@ -72,6 +78,23 @@ equation
   end if;
   w = der(flange.phi);
   dp = port_a.p - port_b.p;
+  if oil.thermal then
+    growth = 1 + oil.gamma*(T_oil - oil.T_0);
+    mu_oil = oil.viscosity(T_oil);
+    oil.rho_0*V_oil*oil.c_p*der(T_oil) = rho_a*oil.c_p*(max(port_a.q, 0)*(inStream(port_a.dT_outflow) - port_a.dT_outflow) + port_a.q*oil.throttling(port_a.p))
+      + rho_b*oil.c_p*(max(port_b.q, 0)*(inStream(port_b.dT_outflow) - port_b.dT_outflow) + port_b.q*oil.throttling(port_b.p))
+      + rho_c*oil.c_p*(max(port_case.q, 0)*(inStream(port_case.dT_outflow) - port_case.dT_outflow) + port_case.q*oil.throttling(port_case.p)) + T_sh*w + Q_heat;
+    if useHeatPort then
+      heatPort.T = T_oil;
+    else
+      Q_heat = 0;
+    end if;
+  else
+    growth = 1;
+    mu_oil = oil.mu;
+    T_oil = oil.T;
+    Q_heat = if useHeatPort then -lossPower else 0;
+  end if;
   rho_a = oil.density(port_a.p);
   rho_b = oil.density(port_b.p);
   rho_c = oil.density(port_case.p);
@@ -93,17 +116,17 @@ equation
     dp_b[i] = if oneWay then Smooth.ramp(port_b.p - p[i], t) else port_b.p - p[i];
     q_a[i] = C_d*A_a[i]*sqrt(4/(rho[i] + rho_a))*Smooth.root(dp_a[i], t);
     q_b[i] = C_d*A_b[i]*sqrt(4/(rho[i] + rho_b))*Smooth.root(dp_b[i], t);
-    q_l[i] = pi*d*h^3*(1 + 1.5*eps^2)/(12*oil.thickening(oil.mu, (p[i] + port_case.p)/2 - oil.p_0)*L)*(p[i] - port_case.p) - A_drag*v[i];
+    q_l[i] = pi*d*h^3*(1 + 1.5*eps^2)/(12*oil.thickening(mu_oil, (p[i] + port_case.p)/2 - oil.p_0)*L)*(p[i] - port_case.p) - A_drag*v[i];
     rho[i]*V[i]/beta[i]*der(p[i]) = rho[i]*A_p*v[i] - (rho[i] + rho_c)/2*q_l[i] - (rho[i] + rho_a)/2*q_a[i] + (rho[i] + rho_b)/2*q_b[i];
   end for;
-  rho_a*Q_A = sum((rho[i] + rho_a)/2*q_a[i] for i in 1:z);
+  rho_a*Q_A = sum((rho[i] + rho_a)/2*q_a[i] for i in 1:z)/(if oil.thermal then growth else 1);
   port_a.q = -Q_A;
-  rho_b*port_b.q = sum((rho[i] + rho_b)/2*q_b[i] for i in 1:z);
-  rho_c*port_case.q = -sum((rho[i] + rho_c)/2*q_l[i] for i in 1:z);
+  rho_b*port_b.q = sum((rho[i] + rho_b)/2*q_b[i] for i in 1:z)/(if oil.thermal then growth else 1);
+  rho_c*port_case.q = -sum((rho[i] + rho_c)/2*q_l[i] for i in 1:z)/(if oil.thermal then growth else 1);
   T_loss = (T_c + k_p*z*A_p*H/(2*pi)*Smooth.mag(dp, 1e4))*Smooth.sgn(w, w_s) + b*w;
   T_sh = sum((p[i] - port_case.p)*(A_p + A_drag)*(H/2)*u_used*sin(phi[i]) for i in 1:z) + T_loss;
   flange.tau = T_sh;
-  mass = sum(rho[i]*V[i] for i in 1:z);
+  mass = sum(rho[i]*V[i] for i in 1:z)/(if oil.thermal then growth else 1);
   lossPower = sum(q_a[i]*(p[i] - port_a.p) + q_b[i]*(port_b.p - p[i]) + (q_l[i] + A_drag*v[i])*(p[i] - port_case.p) for i in 1:z) + T_loss*w;
   annotation(Documentation(info = "<html>
 <p>Piston i at <code>phi_i = theta + 2 pi i/z</code>, chamber <code>V_d + A_p H/2 (1 + cos phi_i)</code>; <code>V_i/beta dp_i/dt = A_p v_i - q_leak - q_A + q_B</code> in masses. The ports open over the angle <code>opening</code> from the dead centres on, with flow in both directions,
@@ -111,5 +134,5 @@ so that compression, backflow at opening and the ripple of flow and torque come 
 <p><b>Silencing grooves</b> (<code>A_groove</code>) let a chamber meet its port <code>groove</code> before the edge of the kidney comes: at the ends where the ports begin to open in positive rotation, each opening from 0 over the angle. Let the ports close as much before (<code>early</code>), else the groove of one port meets the other one still open.</p>
 <p><b>One-way ports</b> (<code>oneWay</code>) are the switch <code>p_i >= p_A</code> of the paper: no oil comes back, and the piston compresses by itself, as in a pump with check valves. The flow lacks what is compressed all the same, but what is lost at a port plate when oil rushes back is not. It pumps whichever way it turns where A is the high side, and cannot be a motor.</p>
 <p>With <code>drag</code> a piston drags half of the oil in its gap along, and the pressure drop along the gap pulls at the piston: together the piston is as large as the middle of the gap, which neither loses nor gives energy. The shear of the film itself is in <code>b</code>.</p>
-<p>The input <code>u</code> scales the stroke about its middle (variable displacement, over centre when negative); what the pistons move while the plate itself swings is left out. Very stiff: nanoseconds at open ports. Inertia of the oil in the ports and squeeze of the films are left out too: valid up to some thousand revolutions per minute. Source: Zhang et al., Processes 2021, 9, 814, equations of section 4.2.2, with a port that lets oil back (<code>oneWay = false</code>) and with drag in the bore. Grooves: J. Ivantysyn and M. Ivantysynova, Hydrostatic Pumps and Motors, 2001.</p></html>"));
+<p>The input <code>u</code> scales the stroke about its middle (variable displacement, over centre when negative); what the pistons move while the plate itself swings is left out. Very stiff: nanoseconds at open ports. Where oil carries heat, the machine has one temperature, and the oil in its chambers (a millilitre) does not give way as it warms. Inertia of the oil in the ports and squeeze of the films are left out too: valid up to some thousand revolutions per minute. Source: Zhang et al., Processes 2021, 9, 814, equations of section 4.2.2, with a port that lets oil back (<code>oneWay = false</code>) and with drag in the bore. Grooves: J. Ivantysyn and M. Ivantysynova, Hydrostatic Pumps and Motors, 2001.</p></html>"));
 end PistonMachine;

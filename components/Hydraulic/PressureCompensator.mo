@@ -16,7 +16,7 @@ protected
 equation
   assert(dp_set > 0 and q_nom > 0 and droop > 0 and tau > 0, "dp_set, q_nom, droop and tau must be positive");
   tau*der(x) = Smooth.clip((dp_set - (port_b.p - port_y.p))/(droop*dp_set), 0.1) - x;
-  q = Functions.orificeFlow(dp, A_leak + max(x, 0)*A_max, C_d, rho, oil.mu, Re_cr);
+  q = Functions.orificeFlow(dp, A_leak + max(x, 0)*A_max, C_d, rho, mu_in, Re_cr);
   port_y.q = 0;
   annotation(Documentation(info = "<html><p>The spool closes as <code>p_b - p_y</code> nears <code>dp_set</code>: put before a metering orifice with the pilot behind it, the drop over the orifice stays between <code>(1 - droop) dp_set</code> and <code>dp_set</code> whatever supply and load do. The fall of the spring force over the stroke and the flow force together are the <code>droop</code>.</p>
 <p>Valid for frequencies below some 30 Hz. Source: W. Backe and H. Murrenhoff, Grundlagen der Oelhydraulik, 1994.</p></html>"));

@@ -16,6 +16,6 @@ protected
 equation
   assert(p_set > 0 and q_nom > 0 and droop > 0 and tau > 0, "p_set, q_nom, droop and tau must be positive");
   tau*der(x) = Smooth.clip((p_set - (port_b.p - p_ref))/(droop*p_set), 0.1) - x;
-  q = Functions.orificeFlow(dp, A_leak + max(x, 0)*A_max, C_d, rho, oil.mu, Re_cr);
+  q = Functions.orificeFlow(dp, A_leak + max(x, 0)*A_max, C_d, rho, mu_in, Re_cr);
   annotation(Documentation(info = "<html><p>Open until the pressure at b comes near <code>p_set</code>, closed at it: a lag, without the return path of three-way valves. Oil pushed back into b raises the pressure there (<code>PressureReducerRelieving</code> lets it out). Source: H. Murrenhoff, Grundlagen der Fluidtechnik 1: Hydraulik, 2012.</p></html>"));
 end PressureReducer;

@@ -2,7 +2,8 @@ within Hydraulic;
 model PressureSource "Pressure given by a parameter or a signal"
   parameter Boolean useInput = false "true: the pressure comes through p_in" annotation(Evaluate = true);
   parameter SI.Pressure p(nominal = 1e6) = 1e6 "Pressure without signal";
-  Interfaces.HydraulicPort port "Port";
+  parameter SI.TemperatureDifference dT(min = -100, max = 150) = 0 "Temperature of its oil above T_0, where oil carries heat";
+  Interfaces.HydraulicPort port(dT_outflow = dT) "Port";
   Interfaces.RealInput p_in(unit = "Pa") if useInput "Pressure";
 protected
   Interfaces.RealInput p_used(unit = "Pa");

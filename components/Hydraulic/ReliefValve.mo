@@ -14,7 +14,7 @@ equation
   assert(p_set > 0, "The setting p_set must be positive");
   assert(q_nom > 0 and override > 0, "q_nom and override must be positive");
   x = Smooth.clip((dp - p_set)/(override*p_set), 0.1);
-  q = Functions.orificeFlow(dp, A_leak + x*A_max, C_d, rho, oil.mu, Re_cr);
+  q = Functions.orificeFlow(dp, A_leak + x*A_max, C_d, rho, mu_in, Re_cr);
   annotation(Documentation(info = "<html>
 <p>The opening grows in proportion to the pressure above <code>p_set</code>, the corners rounded over a tenth of the range, and is full at
 <code>p_set (1 + override)</code> (5 to 10 % is usual), where it passes <code>q_nom</code>. Closed in the other direction. Use <code>ReliefValveDynamic</code> where the delay of

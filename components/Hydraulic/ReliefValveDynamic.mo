@@ -15,6 +15,6 @@ equation
   assert(p_set > 0, "The setting p_set must be positive");
   assert(tau > 0, "The time constant tau must be positive");
   tau*der(x) = Smooth.clip((dp - p_set)/(override*p_set), 0.1) - x;
-  q = Functions.orificeFlow(dp, A_leak + max(x, 0)*A_max, C_d, rho, oil.mu, Re_cr);
+  q = Functions.orificeFlow(dp, A_leak + max(x, 0)*A_max, C_d, rho, mu_in, Re_cr);
   annotation(Documentation(info = "<html><p>As <code>ReliefValve</code>, the opening behind a lag <code>tau</code>: pressure peaks pass before it opens. With poppet mass and flow force: <code>ReliefValvePoppet</code>. Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, section 5.7. Valid for changes slower than some <code>1/tau</code>.</p></html>"));
 end ReliefValveDynamic;

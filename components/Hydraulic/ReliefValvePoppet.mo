@@ -28,6 +28,6 @@ equation
   F_stop = max(-x, 0)*(1e3*k - 1e3*c*min(v, 0)/x_max) - max(x - x_max, 0)*(1e3*k + 1e3*c*max(v, 0)/x_max);
   der(x) = v;
   m*der(v) = A_s*(dp - p_set) - k*x - c*v - F_flow + F_stop;
-  q = Functions.orificeFlow(dp, max(pi*d*sin(alpha)*lift, 1e-16), C_d, rho, oil.mu, Re_cr);
+  q = Functions.orificeFlow(dp, max(pi*d*sin(alpha)*lift, 1e-16), C_d, rho, mu_in, Re_cr);
   annotation(Documentation(info = "<html><p><code>m x'' = A_s (dp - p_set) - k x - c x' - 2 C_d C_v pi d sin a cos a x dp</code>, cross section <code>pi d sin(a) x</code>. Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, chapters 5 and 9. Valid for steady flow forces; those of accelerated oil and the recovery of pressure behind the seat are left out. Backwards it is shut.</p></html>"));
 end ReliefValvePoppet;

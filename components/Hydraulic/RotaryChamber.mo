@@ -1,8 +1,7 @@
 within Hydraulic;
 model RotaryChamber "Chamber of a rotary actuator: oil behind a turning vane"
-  Interfaces.HydraulicPort port "Port";
+  extends Bases.Storage;
   Interfaces.RotationalFlange flange "Shaft; turning it in the positive direction enlarges the chamber where side is 1";
-  outer Oil.Fluid oil "Oil of the circuit";
   parameter Real D(unit = "m3/rad", min = 1e-9, max = 1, nominal = 1e-4) = 1e-4 "Volume displaced per radian";
   parameter Integer side(min = -1, max = 1) = 1 "1: enlarges with positive rotation, -1: shrinks";
   parameter SI.Volume V_0(min = 1e-9, max = 10, nominal = 1e-4, displayUnit = "ml") = 1e-4 "Volume at phi = phi_0, with all that is joined rigidly";
@@ -10,11 +9,8 @@ model RotaryChamber "Chamber of a rotary actuator: oil behind a turning vane"
   parameter SI.Volume V_min(min = 1e-12, max = 1, nominal = 1e-6) = 1e-6 "Least volume";
   parameter SI.Pressure p_ambient(min = 0, max = 1e7, nominal = 1e5) = 101325 "Pressure from which the torque counts, absolute";
   parameter SI.Pressure p_start(min = 1e3, max = 1e8, nominal = 1e6) = 101325 "Pressure at the start";
-  replaceable model Air = EntrainedAir.Frozen constrainedby EntrainedAir.Law "What becomes of the air in the oil";
   SI.Pressure p(start = p_start, nominal = 1e6, stateSelect = StateSelect.prefer) "Pressure";
   SI.Volume V(nominal = 1e-4) "Volume";
-  SI.Mass mass(nominal = 0.1) "Mass of the oil";
-  Air air(p = p, V = max(V, V_min), supply = noEvent(max(oil.density(p)*port.q, 0))*(oil.x_u - air.x)) "Air in the oil";
 protected
   SI.AngularVelocity w(nominal = 1) "Speed of the shaft";
 equation
@@ -25,8 +21,8 @@ equation
   p = port.p;
   w = der(flange.phi);
   V = V_0 + side*D*(flange.phi - phi_0);
-  max(V, V_min)/air.beta*der(p) = air.port_density*port.q - side*D*w + air.swell;
+  V_oil = max(V, V_min);
+  V_oil/air.beta*der(p) = inflow - side*D*w;
   flange.tau = -side*D*(p - p_ambient);
-  mass = air.rho*max(V, V_min);
   annotation(Documentation(info = "<html><p><code>V/beta dp/dt = q - D w</code>, torque <code>D (p - p_ambient)</code>: <code>Chamber</code> with angle and torque. Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, section 6.1, with the displacement per radian instead of the area. Valid while the volume stays above <code>V_min</code>; the oil has one pressure throughout, so no waves.</p></html>"));
 end RotaryChamber;

@@ -16,6 +16,6 @@ protected
 equation
   assert(p_set > 0 and q_nom > 0 and tau > 0, "p_set, q_nom and tau must be positive");
   tau*der(x) = Smooth.clip((port_a.p - p_ref - p_set)/(override*p_set), 0.1) - x;
-  q = Functions.orificeFlow(dp, A_leak + max(x, 0)*A_max, C_d, rho, oil.mu, Re_cr);
+  q = Functions.orificeFlow(dp, A_leak + max(x, 0)*A_max, C_d, rho, mu_in, Re_cr);
   annotation(Documentation(info = "<html><p>The second consumer gets oil when the first has reached its pressure. Unlike <code>ReliefValve</code> it looks at the pressure at a alone, and its nominal drop is small. Back from b to a it lets oil only while it is open: add a <code>CheckValve</code>. With a pilot from elsewhere: <code>UnloadingValve</code>. Source: H. Murrenhoff, Grundlagen der Fluidtechnik 1: Hydraulik, 2012.</p></html>"));
 end SequenceValve;

@@ -10,6 +10,6 @@ model SpoolEdge "Metering edge of a spool"
   parameter Real Re_cr(unit = "1", min = 1, max = 5000) = 150 "Reynolds number of the laminar transition";
 equation
   assert(A_max > 0, "The cross section A_max must be positive");
-  q = Functions.orificeFlow(dp, A_max*(leak + Smooth.ramp(x - overlap, rounding)/(1 - overlap)), C_d, rho, oil.mu, Re_cr);
+  q = Functions.orificeFlow(dp, A_max*(leak + Smooth.ramp(x - overlap, rounding)/(1 - overlap)), C_d, rho, mu_in, Re_cr);
   annotation(Documentation(info = "<html><p><code>A = A_max (leak + ramp(x - overlap)/(1 - overlap))</code>, flow as in <code>Orifice</code>. Overlap positive: closed over that travel; negative: open in the middle. Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, section 5.1.</p></html>"));
 end SpoolEdge;

@@ -21,7 +21,7 @@ equation
   p_x = port_x.p - p_ref;
   unloading = not pre(unloading) and p_x > p_set or pre(unloading) and p_x >= (1 - hysteresis)*p_set;
   tau*der(x) = (if unloading then 1 else 0) - x;
-  q = Functions.orificeFlow(dp, A_leak + max(x, 0)*A_max, C_d, rho, oil.mu, Re_cr);
+  q = Functions.orificeFlow(dp, A_leak + max(x, 0)*A_max, C_d, rho, mu_in, Re_cr);
   port_x.q = 0;
   annotation(Documentation(info = "<html><p>Charging an accumulator: pump, check valve, accumulator with the pilot behind the check valve; at <code>p_set</code> the pump is joined to the tank, at <code>(1 - hysteresis) p_set</code> it charges again. The snap of the pilot stage is an event, the main spool a lag. Source: H. Murrenhoff, Grundlagen der Fluidtechnik 1: Hydraulik, 2012.</p></html>"));
 end UnloadingValve;

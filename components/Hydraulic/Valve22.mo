@@ -10,6 +10,6 @@ model Valve22 "2/2 way valve, opened by a signal"
 equation
   assert(A_max > 0 and A_leak > 0, "The cross sections A_max and A_leak must be positive");
   connect(u, spool.u);
-  q = Functions.orificeFlow(dp, A_leak + A_max*min(max(spool.y, 0), 1), C_d, rho, oil.mu, Re_cr);
+  q = Functions.orificeFlow(dp, A_leak + A_max*min(max(spool.y, 0), 1), C_d, rho, mu_in, Re_cr);
   annotation(Documentation(info = "<html><p>The spool follows the command by its own law (<code>Spool</code>, replaceable), the cross section the spool; a leakage remains when closed. Flow forces are left out.</p></html>"));
 end Valve22;

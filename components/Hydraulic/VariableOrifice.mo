@@ -10,6 +10,6 @@ model VariableOrifice "Orifice whose cross section follows a signal"
 equation
   assert(A_max > 0 and A_leak > 0, "The cross sections A_max and A_leak must be positive");
   A = A_leak + A_max*min(max(u, 0), 1);
-  q = Functions.orificeFlow(dp, A, C_d, rho, oil.mu, Re_cr);
+  q = Functions.orificeFlow(dp, A, C_d, rho, mu_in, Re_cr);
   annotation(Documentation(info = "<html><p><code>A = A_leak + A_max u</code>, u limited to 0 to 1; flow as in <code>Orifice</code>: a throttle turned by hand, or the last stage of a valve whose opening is known.</p></html>"));
 end VariableOrifice;

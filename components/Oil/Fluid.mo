@@ -2,7 +2,7 @@ within Oil;
 model Fluid "Oil of the circuit: laws of density with bulk modulus and of viscosity"
   parameter SI.Density rho_0(min = 500, max = 2000) = 860 "Density of the air-free oil at p_0 and the temperature of the circuit";
   parameter SI.Pressure p_0(min = 1e4, max = 1e6) = 101325 "Reference pressure of rho_0 and alpha_0, also of the surroundings";
-  parameter SI.Temperature T_0(min = 220, max = 420) = 313.15 "Temperature of the oil, where it is constant";
+  parameter SI.Temperature T_0(min = 220, max = 420) = 313.15 "Temperature of the oil where it is constant, of rho_0, and of oil whose temperature nobody gives";
   parameter SI.BulkModulus beta_0(min = 1e7, max = 1e10, nominal = 1e9) = 1.5e9 "Tangent bulk modulus of the air-free oil at p_0";
   parameter Real m(unit = "1", min = 0.1, max = 30) = 10 "Growth of the bulk modulus with pressure";
   parameter SI.VolumeFraction alpha_0(min = 0, max = 0.3) = 0.01 "Share of free air in the volume at p_0, before any of it dissolves";
@@ -11,6 +11,9 @@ model Fluid "Oil of the circuit: laws of density with bulk modulus and of viscos
   parameter SI.DynamicViscosity mu_ref(min = 1e-4, max = 10, nominal = 0.03) = 0.0396 "Dynamic viscosity at T_mu and low pressure";
   parameter SI.Temperature T_mu(min = 220, max = 420) = 313.15 "Temperature of mu_ref";
   parameter SI.LinearTemperatureCoefficient lambda(min = 0, max = 0.2) = 0.035 "Viscosity falls by exp(-lambda) per kelvin";
+  parameter Boolean thermal = false "true: the oil has a temperature of its own at every place and carries heat; false: that of the circuit" annotation(Evaluate = true);
+  parameter SI.SpecificHeatCapacity c_p(min = 500, max = 10000) = 1900 "Heat capacity, for thermal";
+  parameter SI.CubicExpansionCoefficient gamma(min = 0, max = 5e-3) = 7e-4 "Growth of the volume per kelvin over that at T_0, for thermal";
   parameter SI.Pressure p_max(min = 1e6, max = 1e10, nominal = 1e8) = 1e8 "Pressure above which a warning is given: no machine stands it";
   parameter Boolean useTemperatureInput = false "true: the temperature comes through T_in" annotation(Evaluate = true);
   replaceable function density = Oil.Compression.entrainedAir(beta_0 = beta_0, m = m, alpha_0 = alpha_0, n_g = n_g)
@@ -19,6 +22,7 @@ model Fluid "Oil of the circuit: laws of density with bulk modulus and of viscos
     constrainedby Oil.Viscosity.Law "Dynamic viscosity at low pressure over temperature";
   replaceable function thickening = Oil.Thickening.none
     constrainedby Oil.Thickening.Law "Dynamic viscosity at a pressure from that at low pressure";
+  function throttling = Oil.Heat.throttling(redeclare function law = density, c_p = c_p, gamma = gamma, T_0 = T_0) "Gain of temperature from a pressure down to p_0";
   Interfaces.RealInput T_in(unit = "K") if useTemperatureInput "Temperature of the oil";
   SI.Temperature T "Temperature of the oil in the circuit";
   SI.DynamicViscosity mu(nominal = 0.03) "Dynamic viscosity at that temperature and low pressure";
@@ -28,6 +32,7 @@ equation
   assert(rho_0 > 0, "The density of the oil must be positive");
   assert(beta_0 > 0, "The bulk modulus of the oil must be positive");
   assert(alpha_0 >= 0 and alpha_0 < 1, "The share of air in the oil must lie from 0 to below 1");
+  assert(not (thermal and useTemperatureInput), "Oil that carries heat has no temperature of the circuit: set thermal or useTemperatureInput, not both");
   connect(T_in, T_used);
   if not useTemperatureInput then
     T_used = T_0;

@@ -14,6 +14,6 @@ equation
   assert(p_set > 0, "The pressure p_set must be positive");
   A_want = max(q, q_min)/(C_d*sqrt(2*p_set/rho));
   tau*der(A) = if time < startTime then 0 else A_want - A;
-  q = Hydraulic.Functions.orificeFlow(dp, A, C_d, rho, oil.mu);
+  q = Hydraulic.Functions.orificeFlow(dp, A, C_d, rho, mu_in);
   annotation(Documentation(info = "<html><p>On the bench the load is set by turning a throttle; here its cross section follows the one that passes the present flow at the pressure wanted.</p></html>"));
 end Throttle;

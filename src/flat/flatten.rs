@@ -196,9 +196,13 @@ fn depth(instance: &Instance<'_, '_>, mut scope: ScopeId) -> u32 {
     depth
 }
 
-/// Bindings of parameters stay with the variable; bindings of other variables are equations.
+/// Bindings of parameters stay with the variable; bindings of other variables are equations. That of a stream is what leaves
+/// through the port of a component that says nothing else: it gives way to parts that are joined to the port.
 fn binding(instance: &mut Instance<'_, '_>, i: u32, v: &mut Variable, flat: &mut FlatModel) {
     let parameter = v.variability <= Variability::Parameter;
+    if instance.streams.outside.contains(&i) {
+        return;
+    }
     let Some(b) = instance.variables[i as usize].binding.clone() else {
         if parameter && v.fixed {
             missing_value(instance, i, v);
@@ -239,6 +243,9 @@ fn binding(instance: &mut Instance<'_, '_>, i: u32, v: &mut Variable, flat: &mut
         // an input starts, and unless it is driven stays, at its default
         v.start = if v.input { Some(e) } else { v.start };
         return;
+    }
+    if instance.variables[i as usize].stream {
+        instance.leaves_with(i, e);
     }
     let id = instance.variables[i as usize].id;
     let lhs = instance.exprs.var(id);

@@ -2,32 +2,75 @@
 //! connection set send out, each weighed by its flow.
 
 use super::{Equation, FlatModel, Origin, OriginKind};
-use crate::expr::{Binary, ExprId, Exprs, Rel};
-use crate::instance::{Instance, LEAST_FLOW, StreamMember};
+use crate::expr::{Binary, ExprId, Exprs, Node, Rel};
+use crate::instance::{Instance, Junction, LEAST_FLOW, StreamMember};
 use crate::network::Network;
 
 use super::numbers::Numbers;
+use petgraph::unionfind::UnionFind;
+
+/// Weight in the mixture of what flows into a component that mixes, where nothing flows. Multiplied by the inflow the mixture
+/// must give what is brought in to the last digit, or energy would not be conserved.
+const LEAST_SHARE: f64 = 1e-20;
 
 /// Tells the instance which stream variables are joined, so that `inStream` has a meaning in its equations.
 pub(super) fn prepare(instance: &mut Instance<'_, '_>, network: &Network) {
     for set in &network.streams {
         let number = instance.streams.sets.len();
         for member in &set.members {
-            if !member.outside {
+            if member.outside {
+                instance.streams.outside.insert(member.variable);
+            } else {
                 instance.streams.inside.insert(member.variable, number);
             }
         }
         instance.streams.sets.push(set.members.clone());
     }
+    junctions(instance);
 }
 
-/// What leaves through the ports of a component itself is the mixture of what its parts send there.
+/// Finds the nodes with a component that mixes: a node reaches through the ports of components that have parts inside. Of
+/// several that mix the one declared first is the junction, and the others hang on it.
+fn junctions(instance: &mut Instance<'_, '_>) {
+    let streams = &instance.streams;
+    let mut nodes = UnionFind::new(streams.sets.len());
+    for (i, set) in streams.sets.iter().enumerate() {
+        for around in set.iter().filter(|m| m.outside).filter_map(|m| streams.inside.get(&m.variable)) {
+            nodes.union(i, *around);
+        }
+    }
+    let mut leaves: Vec<Vec<StreamMember>> = vec![Vec::new(); streams.sets.len()];
+    for (i, set) in streams.sets.iter().enumerate() {
+        let parts = set.iter().filter(|m| !m.outside && !streams.outside.contains(&m.variable));
+        leaves[nodes.find(i)].extend(parts);
+    }
+    let mut found = vec![None; leaves.len()];
+    let mut all = Vec::new();
+    for (i, mut others) in leaves.into_iter().enumerate() {
+        let mixing = others.iter().map(|m| m.variable).filter(|&v| instance.variables[v as usize].mixes);
+        let Some(mixer) = mixing.min() else { continue };
+        others.retain(|m| m.variable != mixer);
+        found[i] = Some(all.len());
+        all.push(Junction { mixer, others });
+    }
+    instance.streams.at = (0..found.len()).map(|i| found[nodes.find(i)]).collect();
+    instance.streams.junctions = all;
+}
+
+/// What leaves through the ports of a component itself is the mixture of what its parts send there. Parts come before what
+/// holds them, so that numbers are passed on.
 pub(super) fn equations(instance: &mut Instance<'_, '_>, network: &Network, numbers: &Numbers, flat: &mut FlatModel) {
-    for set in &network.streams {
+    let mut sets: Vec<_> = network.streams.iter().enumerate().collect();
+    sets.sort_by_key(|(_, set)| std::cmp::Reverse(numbers.of(set.scope)));
+    for (number, set) in sets {
         for member in set.members.iter().filter(|m| m.outside) {
             let others: Vec<StreamMember> = set.members.iter().filter(|m| *m != member).copied().collect();
             let lhs = instance.exprs.var(instance.variables[member.variable as usize].id);
-            let rhs = instance.stream_mixture(&others);
+            let rhs = match instance.streams.at[number] {
+                Some(at) => instance.leaving(instance.streams.junctions[at].mixer),
+                None => instance.stream_mixture(&others, LEAST_FLOW),
+            };
+            instance.leaves_with(member.variable, rhs);
             let origin = Origin { span: set.span, instance: numbers.of(set.scope), kind: OriginKind::ConnectPotential };
             flat.equations.push(Equation { lhs, rhs, origin });
         }
@@ -39,25 +82,70 @@ impl Instance<'_, '_> {
     pub fn in_stream(&mut self, variable: u32) -> ExprId {
         let own = self.exprs.var(self.variables[variable as usize].id);
         let Some(&set) = self.streams.inside.get(&variable) else { return own };
+        if let Some(at) = self.streams.at[set] {
+            let junction = self.streams.junctions[at].clone();
+            return match variable == junction.mixer {
+                true if junction.others.is_empty() => own,
+                true => self.stream_mixture(&junction.others, LEAST_SHARE),
+                false => self.leaving(junction.mixer),
+            };
+        }
         let members = &self.streams.sets[set];
         let others: Vec<StreamMember> =
             members.iter().filter(|m| m.outside || m.variable != variable).copied().collect();
-        if others.is_empty() { own } else { self.stream_mixture(&others) }
+        if others.is_empty() { own } else { self.stream_mixture(&others, LEAST_FLOW) }
     }
 
-    fn stream_mixture(&mut self, members: &[StreamMember]) -> ExprId {
+    /// Notes what leaves through a port, if it is a number.
+    pub fn leaves_with(&mut self, variable: u32, value: ExprId) {
+        if matches!(self.exprs.node(value), Node::Num(_)) {
+            self.streams.constant.insert(variable, value);
+        }
+    }
+
+    /// What leaves through the port of a stream.
+    fn leaving(&mut self, variable: u32) -> ExprId {
+        match self.streams.constant.get(&variable) {
+            Some(&number) => number,
+            None => self.exprs.var(self.variables[variable as usize].id),
+        }
+    }
+
+    /// `Connections.inflow(v)`: how much comes in through the port of `v`. Through a component that mixes passes all that
+    /// others send to its node, though more than its own flow.
+    pub fn inflow(&mut self, variable: u32, flow: u32) -> ExprId {
+        let at = self.streams.inside.get(&variable).and_then(|&set| self.streams.at[set]);
+        let junction = at.map(|at| self.streams.junctions[at].clone()).filter(|j| j.mixer == variable);
+        let Some(junction) = junction else {
+            let flow = self.exprs.var(self.variables[flow as usize].id);
+            return self.exprs.binary(Binary::Max, flow, Exprs::ZERO);
+        };
+        let mut all = Exprs::ZERO;
+        for m in &junction.others {
+            let flow = self.exprs.var(self.variables[m.flow as usize].id);
+            let towards = self.exprs.neg(flow);
+            let part = self.exprs.binary(Binary::Max, towards, Exprs::ZERO);
+            all = self.exprs.add(all, part);
+        }
+        all
+    }
+
+    /// The mean of what members send, each with its flow, but the least one, as its weight.
+    fn stream_mixture(&mut self, members: &[StreamMember], least: f64) -> ExprId {
+        let least = self.exprs.num(least);
         let mut parts = Vec::with_capacity(members.len());
         for m in members {
             let value = match m.outside {
                 true => self.in_stream(m.variable),
-                false => self.exprs.var(self.variables[m.variable as usize].id),
+                false => self.leaving(m.variable),
             };
             let flow = self.exprs.var(self.variables[m.flow as usize].id);
             let towards = if m.outside { flow } else { self.exprs.neg(flow) };
-            let least = self.exprs.num(LEAST_FLOW);
             parts.push((value, self.exprs.binary(Binary::Max, towards, least)));
         }
-        if let [(value, _)] = parts[..] {
+        if let Some((value, rest)) = parts.split_first().map(|(&(value, _), rest)| (value, rest))
+            && rest.iter().all(|(other, _)| *other == value)
+        {
             return value;
         }
         let (mut carried, mut all) = (Exprs::ZERO, Exprs::ZERO);

@@ -183,7 +183,8 @@ impl Reader {
         let variables = own_variables(instance, scope);
         let real = |i: &u32| {
             let v = &instance.variables[*i as usize];
-            v.ty == Type::Real && v.causality.is_none() && v.variability == Variability::Continuous
+            let counts = v.ty == Type::Real && v.variability == Variability::Continuous;
+            counts && v.causality.is_none() && !v.stream
         };
         let (flows, potentials): (Vec<u32>, Vec<u32>) =
             variables.into_iter().filter(real).partition(|i| instance.variables[*i as usize].flow);

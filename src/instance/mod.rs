@@ -140,6 +140,8 @@ pub struct Inherited {
     pub hidden: bool,
     /// Inside an element annotated `HideResult`.
     pub unwanted: bool,
+    /// Inside a port annotated `__bramah_mixes`.
+    pub mixes: bool,
     /// Below a component that is not at the top level.
     pub nested: bool,
 }
@@ -168,10 +170,14 @@ pub struct VarData<'a> {
     pub hidden: bool,
     /// annotated `HideResult`
     pub unwanted: bool,
+    /// in a port annotated `__bramah_mixes`: what flows through the connection passes through its component
+    pub mixes: bool,
     /// Final, so not to be set from outside.
     pub final_: bool,
     /// Its value was needed to build the model.
     pub structural: bool,
+    /// A parameter annotated `Evaluate`: conditions of expressions take its value when the model is built.
+    pub evaluate: bool,
     /// `= value`
     pub binding: Option<Binding<'a>>,
     /// start, fixed, min, max, nominal, unit, ... as written, outermost first.
@@ -210,6 +216,23 @@ pub struct Streams {
     pub sets: Vec<Vec<StreamMember>>,
     /// The set in which a variable is a part's port.
     pub inside: FxHashMap<u32, usize>,
+    /// Streams of ports that are joined to parts inside: these say what leaves there, whatever the port's class gives.
+    pub outside: FxHashSet<u32>,
+    /// Streams that always leave with the same number.
+    pub constant: FxHashMap<u32, ExprId>,
+    /// For each set the one of `junctions` at whose node it lies.
+    pub at: Vec<Option<usize>>,
+    /// Nodes with a component through which passes what flows there.
+    pub junctions: Vec<Junction>,
+}
+
+/// A node of which one component takes in all that comes, and gives all that leaves.
+#[derive(Clone, Debug)]
+pub struct Junction {
+    /// The stream of that component.
+    pub mixer: u32,
+    /// The ports of all other components at the node.
+    pub others: Vec<StreamMember>,
 }
 
 /// An enumeration type.

@@ -1,4 +1,4 @@
-//! E015 at 3: "`Hydraulic.Volume.Air` cannot take the place of `Hydraulic.EntrainedAir.Law`"
+//! E015 at 3: "`Hydraulic.Bases.Storage.Air` cannot take the place of `Hydraulic.EntrainedAir.Law`"
 model M
   Hydraulic.Volume volume(redeclare model Air = Hydraulic.Orifice);
   Hydraulic.FlowSource source;

@@ -1,7 +1,7 @@
 within Hydraulic.Bases;
 partial model Machine "Displacement machine in four quadrants: delivery and torque; leakage and friction are given by who extends it"
-  Interfaces.HydraulicPort port_a "Port A: a pump that turns positively delivers here; oil that is fed in here turns a motor negatively";
-  Interfaces.HydraulicPort port_b "Port B: a pump that turns positively draws here; oil that is fed in here turns a motor positively";
+  Interfaces.HydraulicPort port_a(dT_outflow = if oil.thermal then T_case - oil.T_0 else 0) "Port A: a pump that turns positively delivers here; oil that is fed in here turns a motor negatively";
+  Interfaces.HydraulicPort port_b(dT_outflow = if oil.thermal then T_case - oil.T_0 else 0) "Port B: a pump that turns positively draws here; oil that is fed in here turns a motor positively";
   Interfaces.RotationalFlange flange "Shaft";
   outer Oil.Fluid oil "Oil of the circuit";
   parameter SI.Volume V(min = 1e-9, max = 1e-2, nominal = 1e-5, displayUnit = "ml") = 1e-5 "Displacement per revolution";
@@ -16,11 +16,14 @@ partial model Machine "Displacement machine in four quadrants: delivery and torq
   parameter SI.Pressure p_film0(nominal = 1e5) = oil.p_0 "Pressure above which the mean pressure of the gaps thickens the oil";
   parameter SI.AngularVelocity w_max(min = 1e-3, max = 1e5, nominal = 100) = 900 "Speed above which a warning is given: 8600 rev/min";
   parameter Boolean useInput = false "true: the displacement follows u, -1 to 1" annotation(Evaluate = true);
+  parameter SI.Volume V_oil(nominal = 1e-4, displayUnit = "ml") = 4*V "Oil in the machine that has its temperature, where oil carries heat"
+    annotation(Dialog(group = "Heat"));
+  parameter SI.Temperature T_oil_start(min = 220, max = 420) = oil.T_0 "Temperature of that oil at the start";
   parameter Boolean useHeatPort = false "true: losses heat what is joined to heatPort, and the oil in the gaps has the temperature there" annotation(Evaluate = true);
   Interfaces.RealInput u(unit = "1") if useInput "Displacement over V";
-  Interfaces.HeatPort heatPort(T = T_case, Q_flow = -lossPower) if useHeatPort "Case: heat of the losses";
+  Interfaces.HeatPort heatPort(T = T_case, Q_flow = Q_heat) if useHeatPort "Case: heat of the losses";
   SI.AngularVelocity w(nominal = 100) "Speed of the shaft";
-  SI.Temperature T_case(nominal = 300) "Temperature of the case and of the oil in the gaps";
+  SI.Temperature T_case(start = T_oil_start, fixed = oil.thermal, nominal = 300) "Temperature of the case, of the oil in the gaps, and of what leaves where oil carries heat";
   SI.Pressure dp(nominal = 1e6) "Pressure of A above B";
   SI.VolumeFlowRate Q_A(nominal = 1e-4) "Volume flow out of port A";
   SI.VolumeFlowRate Q_leak(nominal = 1e-7) "Internal leakage from A to B, at the density of the high side";
@@ -38,8 +41,11 @@ protected
   SI.DynamicViscosity mu_case(nominal = 0.03) "Viscosity at the temperature of the case and low pressure";
   SI.DynamicViscosity mu(nominal = 0.03) "Viscosity in the gaps";
   Real thin(unit = "1") "Leakage over that at mu_G";
-  SI.Density rho_a(nominal = 1000) "Density at A";
-  SI.Density rho_b(nominal = 1000) "Density at B";
+  SI.HeatFlowRate Q_heat(nominal = 10) "Heat that comes in through heatPort";
+  SI.HeatFlowRate H_case(nominal = 10) = 0 "Heat that comes in with the oil from a case, above that of oil at T_case and p_0";
+  Real growth(unit = "1") "Volume of the oil over that at T_0";
+  SI.Density rho_a(nominal = 1000) "Density at A, at T_0";
+  SI.Density rho_b(nominal = 1000) "Density at B, at T_0";
   SI.Density rho_high(nominal = 1000) "Density at the high side";
   SI.Density rho_mean(nominal = 1000) "Mean density of the two sides";
   SI.Density drho(nominal = 10) "Density at A less that at B";
@@ -64,7 +70,19 @@ equation
   rho_b = oil.density(port_b.p);
   side = (1 + Smooth.sgn(dp, 2e4))/2;
   rho_high = side*rho_a + (1 - side)*rho_b;
-  if useHeatPort then
+  if oil.thermal then
+    growth = 1 + oil.gamma*(T_case - oil.T_0);
+    oil.rho_0*V_oil*oil.c_p*der(T_case) = oil.c_p*(rho_a*(max(port_a.q, 0)*(inStream(port_a.dT_outflow) - port_a.dT_outflow) + port_a.q*oil.throttling(port_a.p))
+      + rho_b*(max(port_b.q, 0)*(inStream(port_b.dT_outflow) - port_b.dT_outflow) + port_b.q*oil.throttling(port_b.p))) + H_case + T_sh*w + Q_heat;
+  else
+    growth = 1;
+  end if;
+  if not useHeatPort then
+    Q_heat = 0;
+  elseif not oil.thermal then
+    Q_heat = -lossPower;
+  end if;
+  if oil.thermal or useHeatPort then
     mu_case = oil.viscosity(T_case);
   else
     T_case = oil.T;
@@ -89,12 +107,12 @@ equation
   else
     m_ideal = fill*V*n*u_used*rho_high;
   end if;
-  rho_a*Q_A = m_ideal - rho_high*Q_leak - m_out_a;
+  rho_a*Q_A = (m_ideal - rho_high*Q_leak - m_out_a)/(if oil.thermal then growth else 1);
   port_a.q = -Q_A;
-  rho_a*port_a.q + rho_b*port_b.q = m_out_a + m_out_b;
+  rho_a*port_a.q + rho_b*port_b.q = (m_out_a + m_out_b)/(if oil.thermal then growth else 1);
   T_sh = fill*u_used*D*dp + T_loss;
   flange.tau = T_sh;
-  lossPower = T_sh*w - dp*Q_A*rho_a/((rho_a + rho_b)/2) - casePower;
+  lossPower = T_sh*w - dp*Q_A*(if oil.thermal then growth else 1)*rho_a/((rho_a + rho_b)/2) - casePower;
   annotation(Documentation(info = "<html>
 <p>Positive speed pushes oil from B to A. With <code>dp = p_A - p_B</code>, dp and speed of equal sign are pumping, of opposite sign motoring; a motor is the same machine.</p>
 <p><b>Delivery.</b> A chamber closes at the inlet with the density there and its dead volume returns what it holds at the outlet, so that a revolution carries the mass
@@ -103,6 +121,8 @@ equation
 <p><b>Variable displacement</b>: u scales the displacement; half the swept volume and the dead volume together, which compression sees, do not change with it.</p>
 <p><b>Starvation</b>: delivery falls smoothly between <code>p_cav + p_fill</code> and <code>p_cav</code> of inlet pressure, and the torque with it.</p>
 <p><b>Heat</b>: with <code>useHeatPort</code> the losses go to what is joined to <code>heatPort</code>, and leakage and friction follow the temperature there: join it to the oil (<code>Thermal.OilMass</code>), or to a heat capacity for a case of its own with a conductor to the oil. Without, the gaps have the temperature of the circuit.</p>
+<p><b>Oil that carries heat</b> (<code>Oil.Fluid(thermal = true)</code>): the machine holds <code>V_oil</code> of one temperature, <code>rho V_oil c_p dT/dt = sum of m (h - h_m) at the ports + T_sh w + Q</code>, h_m being the enthalpy of its oil at the reference pressure<code></code>, and what leaves has it. So losses warm the oil that leaves, and compression does by <code>gamma T dp/(rho c_p)</code>, some 0.13 K per MPa. <code>heatPort</code> then
+joins this oil to a housing (a conductor with a heat capacity): losses are not sent there twice.</p>
 <p><b>Power lost</b>: <code>T_sh w - m_flow dp/rho_mean</code>. Brought from one side to the other without loss, oil takes <code>m_flow (h_A - h_B)</code>, h being the integral of dp/rho and <code>dp/rho_mean</code> its trapezoidal form: what valves count as lost and volumes store, so that the powers of a circuit add up. Compression costs <code>V n (1/2 + V_d/V) dp^2/beta</code>, just what opening the chambers to the ports dissipates. Without <code>compression</code> the shaft does not pay for compressing the oil, and <code>V n dp^2/(2 beta)</code> is missing in the loss.</p>
 <p>Sources: J. Ivantysyn and M. Ivantysynova, Hydrostatic Pumps and Motors, 2001; compression: D. McCandlish and R. E. Dorey, Proc. IMechE B 198 (1984) 165.</p></html>"));
 end Machine;

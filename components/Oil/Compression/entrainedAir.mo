@@ -20,6 +20,8 @@ algorithm
   v_g := max(alpha_0*x_u, 1e-6)*(p_0/p_s)^(1/n_g);
   rho := rho_0/(v_l + v_g);
   beta := (v_l + v_g)/((v_l/(beta_0*x) + v_g/(n_g*p_s))*floor_slope);
+  w := (1 - alpha_0)*beta_0/rho_0*(if abs(m - 1) > 1e-6 then (x^(1 - 1/m) - 1)/(m - 1) else log(x))
+    + max(alpha_0*x_u, 1e-6)*p_0/rho_0*(if abs(n_g - 1) > 1e-6 then ((p_s/p_0)^(1 - 1/n_g) - 1)/(1 - 1/n_g) else log(p_s/p_0));
   annotation(Inline = true, Documentation(info = "<html>
 <p>Volume of oil and of bubbles added, <code>v = (1 - alpha_0) (1 + m (p - p_0)/beta_0)^(-1/m) + alpha_0 x_u (p_0/p)^(1/n_g)</code>, the bulk modulus
 being its exact logarithmic derivative. The mass of the air is neglected. 1 % of frozen air gives 0.012, 0.196, 0.992, 1.407 and

@@ -296,7 +296,7 @@ impl<'a> Instance<'a, '_> {
             (a, b) => a.or(b),
         };
         // `HideResult = false` shows what is protected, too (MLS 18.3)
-        let said = hides_result(declared);
+        let said = annotated(declared, "HideResult");
         Inherited {
             variability: stricter,
             causality: component.prefix.causality.or(declared.prefix.causality).or(outer.causality),
@@ -304,6 +304,7 @@ impl<'a> Instance<'a, '_> {
             stream: outer.stream || component.prefix.stream || declared.prefix.stream,
             hidden: said.unwrap_or(outer.hidden || protected),
             unwanted: said.unwrap_or(outer.unwanted),
+            mixes: outer.mixes || annotated(declared, "__bramah_mixes") == Some(true),
             nested: outer.nested,
         }
     }
@@ -583,8 +584,10 @@ impl<'a> Instance<'a, '_> {
             stream: plan.prefix.stream,
             hidden: plan.prefix.hidden,
             unwanted: plan.prefix.unwanted,
+            mixes: plan.prefix.mixes,
             final_: part.final_,
             structural: false,
+            evaluate: annotated(plan.declared, "Evaluate") == Some(true),
             binding,
             attributes,
             state_select: StateSelect::Default,
@@ -703,13 +706,13 @@ fn start_of<'a>(args: &[Arg<'a>]) -> Option<Binding<'a>> {
     })
 }
 
-/// What the annotation `HideResult` says.
-fn hides_result(c: &ast::Component) -> Option<bool> {
+/// What an annotation of a component that is true or false says (MLS 18.3).
+fn annotated(c: &ast::Component, name: &str) -> Option<bool> {
     let arguments = c.annotation.iter().flat_map(|m| &m.arguments);
     arguments.into_iter().find_map(|a| match &a.kind {
-        ast::ArgumentKind::Modify { path, modification: Some(m), .. } if path.parts[0].name == "HideResult" => {
+        ast::ArgumentKind::Modify { path, modification: Some(m), .. } if path.parts[0].name == name => {
             match m.value.as_ref().map(|v| &v.kind) {
-                Some(ast::ExprKind::Boolean(hide)) => Some(*hide),
+                Some(ast::ExprKind::Boolean(said)) => Some(*said),
                 _ => None,
             }
         }

@@ -48,8 +48,12 @@ impl<'a> Instance<'a, '_> {
     ) -> Option<Option<Val>> {
         if let [package, query] = function.parts.as_slice() {
             let name = query.name.name.as_str();
-            let asked = package.name.name == "Connections" && matches!(name, "isRoot" | "rooted");
-            return asked.then(|| self.connection_query(name, args, view, span));
+            return match name {
+                _ if package.name.name != "Connections" => None,
+                "isRoot" | "rooted" => Some(self.connection_query(name, args, view, span)),
+                "inflow" => Some(self.stream(name, args, view, span)),
+                _ => None,
+            };
         }
         if function.parts.len() != 1 {
             return None;
@@ -267,7 +271,7 @@ impl<'a> Instance<'a, '_> {
         }
     }
 
-    /// `inStream(h)`, `actualStream(h)`.
+    /// `inStream(h)`, `actualStream(h)`, `Connections.inflow(h)`.
     fn stream(&mut self, name: &str, args: &'a [Expr], view: View, span: Span) -> Option<Val> {
         let value = self.one(name, args, view, span)?;
         if self.eval.mode.constant {
@@ -285,7 +289,11 @@ impl<'a> Instance<'a, '_> {
             let (Some(i), Some(flow)) = (found, flow) else {
                 return self.fail(Code::BadCall, &format!("`{name}` needs a stream variable of a connector"), span);
             };
-            results.push(if name == "inStream" { self.in_stream(i) } else { self.actual_stream(i, flow) });
+            results.push(match name {
+                "inStream" => self.in_stream(i),
+                "inflow" => self.inflow(i, flow),
+                _ => self.actual_stream(i, flow),
+            });
         }
         let mut results = results.into_iter();
         Some(value.map(&mut |e, _| results.next().unwrap_or(e)))

@@ -1,7 +1,7 @@
 //! Expressions of the language to values: symbolic in the flat model, by number where a value must be known.
 
 use crate::diag::{Code, Diagnostic, Span};
-use crate::expr::Exprs;
+use crate::expr::{ExprId, Exprs};
 use crate::instance::evaluation::state::Mode;
 use crate::instance::modifiers::{Access, Binding};
 use crate::instance::value::{Val, size_text, stack};
@@ -241,6 +241,12 @@ impl<'a> Instance<'a, '_> {
         if let Some(known) = self.exprs.as_num(test) {
             return if known == 0.0 { self.if_expression(rest, otherwise, view, span) } else { self.eval(value, view) };
         }
+        if self.is_evaluated(test) {
+            return match self.constant_boolean(condition, view)? {
+                true => self.eval(value, view),
+                false => self.if_expression(rest, otherwise, view, span),
+            };
+        }
         let mark = (self.diagnostics.len(), self.eval.calls.len());
         let not = self.exprs.not(test);
         let a = self.guarded(test, |s| s.eval(value, view));
@@ -280,6 +286,13 @@ impl<'a> Instance<'a, '_> {
             return self.fail(Code::NotConstant, "this text must be known before the run", span);
         }
         self.sizes_differ(&a, &b, span)
+    }
+
+    /// Whether a condition hangs on nothing but parameters annotated `Evaluate` (MLS 18.3).
+    fn is_evaluated(&self, test: ExprId) -> bool {
+        let variables = self.exprs.variables(test);
+        let own = !self.eval.mode.procedure && self.eval.frame == 0;
+        own && !variables.is_empty() && variables.iter().all(|v| self.variable(*v).evaluate)
     }
 
     /// Whether one of two values has derivatives that the other one has not.

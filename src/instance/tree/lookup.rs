@@ -477,7 +477,15 @@ impl<'a> Instance<'a, '_> {
             sources.into_iter().filter_map(arg).collect()
         };
         let defaults = defaults.into_iter().cloned().collect();
-        for arg in [as_args(own), defaults, as_args(inherited)].iter().flatten() {
+        // those of a base class where it was found come before what the base says itself
+        let mut inherited: Vec<(u32, Arg<'a>)> =
+            inherited.into_iter().filter_map(|s: &Source<'a>| Some((s.base, as_args(vec![s]).pop()?))).collect();
+        for (base, arg) in template.base_args.iter().filter(|(_, a)| a.target() == element.name).rev() {
+            let at = inherited.iter().position(|(b, _)| b >= base).unwrap_or(inherited.len());
+            inherited.insert(at, (*base, arg.clone()));
+        }
+        let inherited = inherited.into_iter().map(|(_, arg)| arg).collect();
+        for arg in [as_args(own), defaults, inherited].iter().flatten() {
             self.check_final(arg.final_, outer, arg.span, element.name);
             reached.take(arg);
             outer = outer.or(Some(arg.span));

@@ -2,6 +2,7 @@
 
 use crate::diag::{Code, Diagnostic, Span};
 use crate::instance::lookup::{Builtin, Found};
+use crate::instance::modifiers::Arg;
 use crate::instance::{ClassRef, Instance, View};
 use crate::resolve::ClassId;
 use crate::syntax::ast::{self, ArgumentKind, ClassBody, ElementKind};
@@ -24,6 +25,9 @@ pub struct Template<'a> {
     pub builtin: Option<Builtin>,
     /// Attribute modifications along the chain of types, outermost first.
     pub builtin_args: Vec<Source<'a>>,
+    /// What is modified of a base class where it was found, with the index of that base: a class element carries the
+    /// modifiers of its `constrainedby` and of the component or package that holds it.
+    pub base_args: Vec<(u32, Arg<'a>)>,
     /// Array dimensions of a type such as `type Triple = Real[3]`, outermost last.
     pub dims: Vec<(&'a [ast::Subscript], u32)>,
     /// Prefixes of a short class (`connector In = input Real`).
@@ -65,6 +69,7 @@ impl Template<'_> {
             by_name: FxHashMap::default(),
             builtin: None,
             builtin_args: Vec::new(),
+            base_args: Vec::new(),
             dims: Vec::new(),
             prefix: ast::TypePrefix::default(),
             kind,
@@ -419,6 +424,7 @@ impl<'a> Instance<'a, '_> {
     ) {
         let before = t.builtin_args.len();
         let inner = self.gather(t, found.class, found.parent, chain);
+        t.base_args.extend(found.args.iter().map(|arg| (inner, arg.clone())));
         let names = t.bases[inner as usize].names.clone();
         // Outer attribute modifications come before those of the type chain.
         let outer = arguments.iter().map(|a| Source { what: What::Argument(a), base });

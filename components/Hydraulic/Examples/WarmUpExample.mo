@@ -1,0 +1,38 @@
+within Hydraulic.Examples;
+model WarmUpExample "A cold power unit warms up until its thermostat turns the fan of the cooler on"
+  inner Oil.ISOVG46 oil(thermal = true) "Oil that has a temperature everywhere";
+  Mechanical.Rotational.ConstantSpeed motor(w_fixed = 150);
+  Pump pump(V = 1e-5, useHeatPort = true, T_oil_start = 288.15);
+  Volume pressure(V = 1e-4, T_oil_start = 288.15);
+  ReliefValve valve(p_set = 100e5);
+  Volume line(V = 1e-4, T_oil_start = 288.15);
+  Cooler cooler(kA = 150, T_ambient = 288.15, useInput = true);
+  BaffledReservoir tank(A = 0.1, h_start = 0.3, T_oil_start = 288.15, useHeatPort = true, kA = 15);
+  TemperatureSensor sensor "Temperature that the thermostat sees";
+  Signal.Hysteresis thermostat(uLow = 321.15, uHigh = 325.15);
+  Signal.BooleanToReal fan(realFalse = 0.05);
+  Signal.FirstOrder spinUp(T = 2);
+  Thermal.ThermalConductor mount(G = 30) "From the oil of the pump to its housing";
+  Thermal.HeatCapacitor housing(C = 4e3, T_start = 288.15);
+  Thermal.ThermalConductor air(G = 3);
+  Thermal.FixedTemperature room(T = 288.15);
+equation
+  connect(motor.flange, pump.flange);
+  connect(tank.port_b, pump.port_b);
+  connect(pump.port_a, pressure.port);
+  connect(pressure.port, valve.port_a);
+  connect(valve.port_b, line.port);
+  connect(line.port, cooler.port_a);
+  connect(cooler.port_b, tank.port_a);
+  connect(sensor.port, tank.port_b);
+  connect(sensor.T, thermostat.u);
+  connect(thermostat.y, fan.u);
+  connect(fan.y, spinUp.u);
+  connect(spinUp.y, cooler.u);
+  connect(pump.heatPort, mount.port_a);
+  connect(mount.port_b, housing.port);
+  connect(housing.port, air.port_a);
+  connect(air.port_b, room.port);
+  connect(tank.heatPort, room.port);
+  annotation(experiment(StartTime = 0, StopTime = 3600, Interval = 5, Tolerance = 1e-6));
+end WarmUpExample;
