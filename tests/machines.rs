@@ -94,7 +94,7 @@ fn gaps_from_flow_alone_are_said_to_be_inseparable() {
     let words =
         asked(&["eta_v"], &gaps, |problem, found, _| (found.separation.rank, separation_words(problem, found)), false);
     assert_eq!(words.0, 1, "{}", words.1);
-    assert!(words.1.contains("cannot tell apart `pump.h_p`, `pump.h_s`, `pump.h_v`"), "{}", words.1);
+    assert!(words.1.contains("cannot tell apart `pump.h_s`, `pump.h_p`, `pump.h_v`"), "{}", words.1);
     assert!(words.1.contains("would help: pump.Q_p"), "{}", words.1);
 }
 

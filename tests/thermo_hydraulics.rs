@@ -28,7 +28,9 @@ fn work(p: f64) -> f64 {
 #[test]
 fn a_throttle_warms_the_oil() {
     let mut throttle = circuit(
-        &format!("{OIL} Hydraulic.PressureSource a; Hydraulic.PressureSource b; Hydraulic.Orifice way; Hydraulic.TemperatureSensor left; Hydraulic.TemperatureSensor right;"),
+        &format!(
+            "{OIL} Hydraulic.PressureSource a; Hydraulic.PressureSource b; Hydraulic.Orifice way; Hydraulic.TemperatureSensor left; Hydraulic.TemperatureSensor right;"
+        ),
         "connect(a.port, way.port_a); connect(way.port_b, b.port); connect(left.port, a.port); connect(right.port, b.port);",
     );
     throttle.stop_time(1e-3);
@@ -47,7 +49,9 @@ fn a_throttle_warms_the_oil() {
 #[test]
 fn a_throttle_gives_its_loss_to_its_heat_port() {
     let throttle = circuit(
-        &format!("{OIL} Hydraulic.PressureSource a(p = 2e7); Hydraulic.Tank b; Hydraulic.Orifice way(useHeatPort = true); Hydraulic.TemperatureSensor right; Thermal.FixedTemperature sink;"),
+        &format!(
+            "{OIL} Hydraulic.PressureSource a(p = 2e7); Hydraulic.Tank b; Hydraulic.Orifice way(useHeatPort = true); Hydraulic.TemperatureSensor right; Thermal.FixedTemperature sink;"
+        ),
         "connect(a.port, way.port_a); connect(way.port_b, b.port); connect(right.port, b.port); connect(way.heatPort, sink.port);",
     );
     let t = run(&throttle);
@@ -60,7 +64,9 @@ fn a_throttle_gives_its_loss_to_its_heat_port() {
 #[test]
 fn a_closed_volume_that_is_heated_comes_under_pressure() {
     let heated = circuit(
-        &format!("{OIL} Hydraulic.Volume volume(V = 1e-3, p_start = 1e6, useHeatPort = true); Hydraulic.Plug plug; Thermal.HeatSource heat(Q_flow = 500);"),
+        &format!(
+            "{OIL} Hydraulic.Volume volume(V = 1e-3, p_start = 1e6, useHeatPort = true); Hydraulic.Plug plug; Thermal.HeatSource heat(Q_flow = 500);"
+        ),
         "connect(volume.port, plug.port); connect(heat.port, volume.heatPort); annotation(experiment(StopTime = 30, Tolerance = 1e-9));",
     );
     let t = run(&heated);
@@ -180,7 +186,12 @@ fn energy_and_mass_are_conserved_through_reversal() {
         assert!(off < 1e-6 * most, "{off} J of {most} J are missing");
         let mass: Vec<f64> =
             column(&t, "side_1.mass").iter().zip(column(&t, "side_2.mass")).map(|(a, b)| a + b).collect();
-        assert!(mass.iter().all(|m| (m - mass[0]).abs() < 1e-7 * mass[0]), "{} to {} kg", mass[0], mass[mass.len() - 1]);
+        assert!(
+            mass.iter().all(|m| (m - mass[0]).abs() < 1e-7 * mass[0]),
+            "{} to {} kg",
+            mass[0],
+            mass[mass.len() - 1]
+        );
     }
 }
 
@@ -251,12 +262,17 @@ fn a_pipe_loses_heat_on_its_way() {
 fn coolers_take_what_their_size_allows() {
     let cooler = |class: &str| {
         run(&circuit(
-            &format!("{OIL} Hydraulic.FlowSource source(q = 5e-4, dT = 20); Hydraulic.{class}; Hydraulic.Tank tank; Hydraulic.TemperatureSensor sensor;"),
+            &format!(
+                "{OIL} Hydraulic.FlowSource source(q = 5e-4, dT = 20); Hydraulic.{class}; Hydraulic.Tank tank; Hydraulic.TemperatureSensor sensor;"
+            ),
             "connect(source.port, cooler.port_a); connect(cooler.port_b, tank.port); connect(sensor.port, tank.port);",
         ))
     };
     let flow = RHO * 5e-4 * C_P;
-    let t = cooler(&format!("WaterCooler cooler(kA = {flow}, T_water = 288.15, c_water = 4000, m_water = {})", flow / 2000.0));
+    let t = cooler(&format!(
+        "WaterCooler cooler(kA = {flow}, T_water = 288.15, c_water = 4000, m_water = {})",
+        flow / 2000.0
+    ));
     near(last(&t, "cooler.effectiveness"), 0.565, 2e-3);
     near(last(&t, "cooler.T_return") - 288.15, last(&t, "cooler.Q_flow") / (2.0 * flow), 1e-9);
     let t = cooler(&format!("Cooler cooler(kA = {flow}, T_ambient = 288.15)"));
@@ -293,7 +309,9 @@ fn baffles_delay_what_returns() {
 fn oil_of_one_temperature_has_no_heat_in_it() {
     for class in ["ServoPump.System", "ClosedCircuit.Bench", "Hydraulic.Examples.CylinderExample"] {
         let request = Request { source: class.into(), ..Request::default() };
-        let model = bramah::compile(&MemoryWorld::default(), &request, &bramah::lower::Options::default()).value.unwrap_or_else(|| panic!("{class} compiles"));
+        let model = bramah::compile(&MemoryWorld::default(), &request, &bramah::lower::Options::default())
+            .value
+            .unwrap_or_else(|| panic!("{class} compiles"));
         let states: Vec<&str> = model.dae.states.iter().map(|v| model.dae.variables[v.index()].name.as_str()).collect();
         assert!(states.iter().all(|s| !s.contains(".T_oil") && !s.contains(".T_case")), "{class}: {states:?}");
     }

@@ -17,7 +17,7 @@ equation
   assert(A > 0, "The area A must be positive");
   assert(side == 1 or side == -1, "side must be 1 or -1");
   assert(V > 0, "The piston has passed the end of the chamber: the volume is negative");
-  assert(p > 0, "The oil cavitates: more is drawn than flows in, and the pressure lies at the floor of the oil's law. Is a check valve or a charge pump missing?", AssertionLevel.warning);
+  assert(p > oil.p_void, "The oil cavitates: more is drawn than flows in, and voids open in the oil. Is a check valve or a charge pump missing?", AssertionLevel.warning);
   assert(p < oil.p_max, "The pressure exceeds p_max of the oil: more flows in than can leave. Is a relief valve missing, set too high, or joined the wrong way round?", AssertionLevel.warning);
   p = port.p;
   v = der(flange.s);

@@ -17,7 +17,7 @@ equation
   assert(D > 0, "The volume per radian D must be positive");
   assert(side == 1 or side == -1, "side must be 1 or -1");
   assert(V > 0, "The vane has passed the end of the chamber: the volume is negative");
-  assert(p > 0, "The oil cavitates: more is drawn than flows in, and the pressure lies at the floor of the oil's law. Is a check valve or a charge pump missing?", AssertionLevel.warning);
+  assert(p > oil.p_void, "The oil cavitates: more is drawn than flows in, and voids open in the oil. Is a check valve or a charge pump missing?", AssertionLevel.warning);
   p = port.p;
   w = der(flange.phi);
   V = V_0 + side*D*(flange.phi - phi_0);

@@ -8,7 +8,7 @@ model Volume "Oil in a rigid or compliant volume"
 equation
   assert(V > 0, "The volume V must be positive");
   assert(beta_wall > 0, "The modulus of the wall must be positive");
-  assert(p > 0, "The oil cavitates: more is drawn than flows in, and the pressure lies at the floor of the oil's law. Is a check valve or a charge pump missing?", AssertionLevel.warning);
+  assert(p > oil.p_void, "The oil cavitates: more is drawn than flows in, and voids open in the oil. Is a check valve or a charge pump missing?", AssertionLevel.warning);
   assert(p < oil.p_max, "The pressure exceeds p_max of the oil: more flows in than can leave. Is a relief valve missing, set too high, or joined the wrong way round?", AssertionLevel.warning);
   p = port.p;
   V_oil = V*(1 + (p - oil.p_0)/beta_wall);

@@ -15,6 +15,7 @@ model Fluid "Oil of the circuit: laws of density with bulk modulus and of viscos
   parameter SI.SpecificHeatCapacity c_p(min = 500, max = 10000) = 1900 "Heat capacity, for thermal";
   parameter SI.CubicExpansionCoefficient gamma(min = 0, max = 5e-3) = 7e-4 "Growth of the volume per kelvin over that at T_0, for thermal";
   parameter SI.Pressure p_max(min = 1e6, max = 1e10, nominal = 1e8) = 1e8 "Pressure above which a warning is given: no machine stands it";
+  parameter SI.Pressure p_void(min = 0, nominal = 1e4) = 1.4e4 "Pressure below which a warning is given: voids open in the oil";
   parameter Boolean useTemperatureInput = false "true: the temperature comes through T_in" annotation(Evaluate = true);
   replaceable function density = Oil.Compression.entrainedAir(beta_0 = beta_0, m = m, alpha_0 = alpha_0, n_g = n_g)
     constrainedby Oil.Compression.Law(rho_0 = rho_0, p_0 = p_0, x_u = x_u) "Density and tangent bulk modulus at a pressure";

@@ -152,7 +152,10 @@ pub fn separation_words(problem: &Problem<'_>, found: &Identification<'_>) -> St
         s.rank,
         rounded(s.condition, 3)
     );
-    for (blind, advice) in s.blind.iter().zip(&found.advice) {
+    for (i, (blind, advice)) in s.blind.iter().zip(&found.advice).enumerate() {
+        if s.blind[..i].iter().any(|b| b.group == blind.group) {
+            continue;
+        }
         let names: Vec<String> = blind.group.iter().map(|&j| format!("`{}`", problem.free[j].name)).collect();
         let line = match &names[..] {
             [one] => format!("the data say nothing about {one}"),

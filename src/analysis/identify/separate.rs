@@ -67,6 +67,7 @@ pub fn separate(information: &DMatrix<f64>) -> Separation {
             blind.push(Blind { group: group(&direction), direction, deviation });
         }
     }
+    merge_hidden(&mut blind);
     (0..p).filter(|j| !seen.contains(j)).for_each(|j| variance[j] = size[j].powi(-2));
     Separation {
         rank: p - blind.len(),
@@ -85,6 +86,24 @@ fn group(direction: &[f64]) -> Vec<usize> {
     let mut group: Vec<usize> = (0..direction.len()).filter(|&j| direction[j].abs() >= SHARE * most).collect();
     group.sort_by(|&a, &b| direction[b].abs().total_cmp(&direction[a].abs()));
     group
+}
+
+/// Several directions that the data do not see span a space of which any basis would do: those that share parameters name all
+/// of them, so that what is said does not hang on rounding.
+fn merge_hidden(blind: &mut [Blind]) {
+    let hidden = |b: &Blind| b.deviation.is_infinite();
+    loop {
+        let found = (0..blind.len()).flat_map(|a| (a + 1..blind.len()).map(move |b| (a, b))).find(|&(a, b)| {
+            let (a, b) = (&blind[a], &blind[b]);
+            hidden(a) && hidden(b) && a.group != b.group && a.group.iter().any(|j| b.group.contains(j))
+        });
+        let Some((a, b)) = found else { return };
+        let mut all: Vec<usize> = blind[a].group.iter().chain(&blind[b].group).copied().collect();
+        all.sort_unstable();
+        all.dedup();
+        let old = [blind[a].group.clone(), blind[b].group.clone()];
+        blind.iter_mut().filter(|x| hidden(x) && old.contains(&x.group)).for_each(|x| x.group.clone_from(&all));
+    }
 }
 
 /// Takes unknowns after the first `keep` out of the information: what remains when they are found too.
