@@ -8,6 +8,7 @@ mod rig;
 use std::process::Command;
 
 use bramah::Simulation;
+use bramah::analysis::linear::{Choice, Chosen, linearize, response};
 use bramah::results::Trajectory;
 use rig::{at, circuit, column, last, line, mean_from, near, run, shipped, shipped_with};
 
@@ -509,6 +510,75 @@ fn the_complete_bench_stays_near_the_reduced_circuit() {
         near(last(&t, "n_m"), n_m, 0.02);
         near(last(&t, "p"), p, 0.07);
     }
+}
+
+/// The gains of `SpeedControl` are those of its documentation: at each of its speeds the open loop of the linear model has the
+/// gain 1 and the phase -120 degrees at three times the ratio of its gains.
+#[test]
+fn the_speed_controller_has_its_phase_margin_everywhere() {
+    let table = [
+        (6.0, 85.4, 0.08014, 0.2444),
+        (9.333, 180.7, 0.07752, 0.2355),
+        (15.0, 339.8, 0.07594, 0.2306),
+        (21.0, 507.0, 0.07561, 0.2300),
+        (27.74, 694.3, 0.07581, 0.2312),
+        (33.33, 849.3, 0.07619, 0.2329),
+        (38.0, 978.6, 0.07659, 0.2347),
+    ];
+    let mut circuit = shipped("ClosedCircuit.Reduced");
+    for (i, (f, n, k_p, k_i)) in (1..).zip(table) {
+        let state = circuit.stop_time(1e-3).set("f", f).expect("a parameter").run().expect("it runs").state;
+        let model = circuit.model();
+        let choice = Choice { inputs: vec!["f".into()], outputs: vec!["n_m".into()] };
+        let chosen = Chosen::new(&model.flat, &choice, &[]).expect("an input and an output");
+        let linear = linearize(model, &chosen, &state).expect("finite");
+        let crossover = 3.0 * k_i / k_p;
+        let plant = response(&linear, crossover / std::f64::consts::TAU).expect("no pole there")[(0, 0)];
+        let open = plant * nalgebra::Complex::new(k_p, -k_i / crossover);
+        near(open.norm(), 1.0, 3e-3);
+        near(open.arg().to_degrees(), -120.0, 3e-3);
+        let control = shipped_with("ClosedCircuit.SpeedControl", &[]);
+        for (column, value) in [(1, n), (2, k_p), (3, k_i)] {
+            near(control.get(&format!("gains[{i},{column}]")).expect("a parameter"), value, 1e-12);
+        }
+    }
+}
+
+/// Closed on the nonlinear circuit it takes a step of the load and of the speed as the linear models say, at any speed; because
+/// the circuit from frequency to speed changes by a few per cent only, one pair of gains does as well.
+#[test]
+fn the_speed_controller_holds_the_nonlinear_circuit() {
+    for n in ["150", "694", "900"] {
+        for scheduled in ["true", "false"] {
+            let t = run(&shipped_with("ClosedCircuit.SpeedControl", &[("n_start", n), ("scheduled", scheduled)]));
+            let start: f64 = n.parse().expect("a number");
+            let speed = column(&t, "n_m");
+            near(speed[0], start, 1e-6);
+            near(last(&t, "n_m"), start, 1e-6);
+            let drop = start - speed.iter().copied().fold(f64::INFINITY, f64::min);
+            assert!((25.0..34.0).contains(&drop), "{drop} rev/min at {n}");
+            assert!((at(&t, "n_m", 21.3) - start).abs() < 0.05 * drop, "{} after 1.3 s", at(&t, "n_m", 21.3));
+        }
+    }
+}
+
+/// From cold to warm: what the shafts give to the oil is what the room takes and what oil and housings store, in watts.
+#[test]
+fn the_balance_of_heat_of_the_bench_closes() {
+    let mut simulation = shipped("ClosedCircuit.WarmUp");
+    simulation.settings().interval = 2.0;
+    simulation.settings().tolerance = 1e-8;
+    let t = run(simulation.stop_time(7200.0));
+    let (given, taken, stored) = (column(&t, "P_shafts"), column(&t, "P_room"), column(&t, "E"));
+    near(last(&t, "P_room"), last(&t, "P_shafts"), 1e-3);
+    // oil and housings warm for an hour: pressure and compliance hold little, and after the start nothing changes them
+    let from = t.times.partition_point(|time| *time < 60.0);
+    let area = |of: &[f64]| -> f64 {
+        (from + 1..t.len()).map(|i| (of[i] + of[i - 1]) / 2.0 * (t.times[i] - t.times[i - 1])).sum()
+    };
+    let gained = stored[t.len() - 1] - stored[from];
+    assert!(gained > 2e6, "{gained} J");
+    near(gained, area(given) - area(taken), 2e-4);
 }
 
 /// The operating point that `steady` finds is the one to which the run leads.
