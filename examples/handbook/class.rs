@@ -6,6 +6,7 @@ use super::run::{self, Runs};
 use super::shell::{Page, code, up};
 use super::tables;
 use super::{equations, icon};
+use bramah::plot::network::symbols::symbol;
 use bramah::plot::svg::escape;
 use bramah::resolve::{ClassId, Library};
 use bramah::syntax::ast::{Causality, Class, ClassBody, ClassKind, ExprKind, Variability};
@@ -143,13 +144,28 @@ impl<'a> Press<'_, 'a> {
         let (members, given) = library::members(self.library, id);
         let mut out = self.head(name, id);
         let words = self.words(id);
-        let picture = icon::draw(name.rsplit('.').next().unwrap_or(name), &self.ports(&members));
+        let lineage = self.lineage(id);
+        let symbol = symbol(std::iter::once(name).chain(lineage.iter().map(String::as_str)));
+        let picture = icon::draw(name.rsplit('.').next().unwrap_or(name), symbol, &self.ports(&members));
         let _ = write!(out, "<div class=\"top\"><div>{words}{}</div>{picture}</div>", self.kin(name, id));
         out.push_str(&self.declared(id, &members, &given));
         out.push_str(&self.laws(id));
         out.push_str(&self.example(name, id));
         out.push_str(&self.source(id));
         out
+    }
+
+    /// Full names of the classes that a class extends, those next to it first.
+    fn lineage(&mut self, id: ClassId) -> Vec<String> {
+        let mut found = Vec::new();
+        let mut next = vec![id];
+        while let Some(class) = next.pop() {
+            for base in library::bases(self.library, class) {
+                found.push(self.library.full_name(base));
+                next.push(base);
+            }
+        }
+        found
     }
 
     /// What the class extends and who extends it.

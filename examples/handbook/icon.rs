@@ -1,5 +1,6 @@
 //! The box of a component with its ports, its name below: squares for physical ports, triangles for signals.
 
+use bramah::plot::network::symbols::FIELD;
 use bramah::plot::svg::escape;
 use std::fmt::Write as _;
 
@@ -57,13 +58,13 @@ const ROW: f64 = 24.0;
 const WIDTH: f64 = 300.0;
 const EDGE: f64 = 92.0;
 
-/// Draws the box; empty without ports.
-pub fn draw(name: &str, ports: &[Port]) -> String {
+/// Draws the box with the symbol of its class, if there is one; empty without ports.
+pub fn draw(name: &str, symbol: Option<&str>, ports: &[Port]) -> String {
     if ports.is_empty() {
         return String::new();
     }
     let (right, left): (Vec<&Port>, Vec<&Port>) = ports.iter().partition(|p| stands_right(p, ports));
-    let rows = left.len().max(right.len()).max(2) as f64;
+    let rows = left.len().max(right.len()).max(if symbol.is_some() { 3 } else { 2 }) as f64;
     let height = rows * ROW + 20.0;
     let mut out = format!(
         "<svg class=\"box\" viewBox=\"0 0 {WIDTH} {h}\" width=\"{WIDTH}\" height=\"{h}\" role=\"img\">\
@@ -76,6 +77,10 @@ pub fn draw(name: &str, ports: &[Port]) -> String {
         m = height + 20.0,
         n = escape(name),
     );
+    if let Some(symbol) = symbol {
+        let (x, y) = ((WIDTH - FIELD) / 2.0, 4.0 + (height - FIELD) / 2.0);
+        let _ = write!(out, "<g transform=\"translate({x} {y})\" color=\"#1f3a4d\">{symbol}</g>");
+    }
     for (side, list) in [(false, &left), (true, &right)] {
         let step = height / list.len().max(1) as f64;
         for (i, port) in list.iter().enumerate() {

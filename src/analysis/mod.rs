@@ -8,6 +8,7 @@ pub mod lift;
 pub mod linear;
 pub mod local;
 pub mod noise;
+pub mod partition;
 pub mod sensitivity;
 pub mod steady;
 pub mod sweep;

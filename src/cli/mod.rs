@@ -22,6 +22,7 @@ mod linearize;
 mod messages;
 mod model;
 mod new;
+mod partition;
 mod plot;
 mod progress;
 mod recorder;
@@ -78,6 +79,7 @@ enum Command {
     Identify(identify::IdentifyArgs),
     Gap(gap::GapArgs),
     Steady(steady::SteadyArgs),
+    Partition(partition::PartitionArgs),
     Linearize(linearize::LinearizeArgs),
     Sensitivity(sensitivity::SensitivityArgs),
     Explain(explain::ExplainArgs),
@@ -158,6 +160,7 @@ fn dispatch(command: Command, messages: &mut Messages) -> Result<Ending, Failure
         Command::Identify(args) => identify::run(&args, messages),
         Command::Gap(args) => gap::run(&args, messages),
         Command::Steady(args) => steady::run(&args, messages),
+        Command::Partition(args) => partition::run(&args, messages),
         Command::Linearize(args) => linearize::run(&args, messages),
         Command::Sensitivity(args) => sensitivity::run(&args, messages),
         Command::Explain(args) => explain::run(&args),

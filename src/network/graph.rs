@@ -12,6 +12,8 @@ pub struct ComponentBox {
     pub name: String,
     /// Its class.
     pub class: String,
+    /// The classes that it extends, nearest first.
+    pub bases: Vec<String>,
     /// Names of its ports.
     pub ports: Vec<String>,
 }
@@ -56,13 +58,14 @@ fn split(name: &str) -> (&str, &str) {
 fn node_of(
     graph: &mut Graph,
     known: &mut BTreeMap<String, NodeIndex>,
-    classes: &BTreeMap<&str, String>,
+    classes: &BTreeMap<&str, Vec<String>>,
     component: &str,
     port: &str,
 ) -> NodeIndex {
     let index = *known.entry(component.to_string()).or_insert_with(|| {
-        let class = classes.get(component).cloned().unwrap_or_default();
-        graph.add_node(ComponentBox { name: component.into(), class, ports: Vec::new() })
+        let mut bases = classes.get(component).cloned().unwrap_or_default();
+        let class = if bases.is_empty() { String::new() } else { bases.remove(0) };
+        graph.add_node(ComponentBox { name: component.into(), class, bases, ports: Vec::new() })
     });
     let ports = &mut graph[index].ports;
     if !ports.iter().any(|p| p == port) {
@@ -71,10 +74,13 @@ fn node_of(
     index
 }
 
-/// The class of each component of the top level, by the component's name.
-fn component_classes<'i>(instance: &'i Instance<'_, '_>) -> BTreeMap<&'i str, String> {
+/// The class of each component of the top level and those that it extends, by the component's name.
+fn component_classes<'i>(instance: &'i Instance<'_, '_>) -> BTreeMap<&'i str, Vec<String>> {
     let top = instance.scopes.iter().filter(|s| s.component && !s.name.contains('.'));
-    top.map(|s| (s.name.as_str(), instance.library.full_name(s.template.class))).collect()
+    let names = |s: &crate::instance::Scope<'_>| {
+        s.template.bases.iter().map(|base| instance.library.full_name(base.class)).collect()
+    };
+    top.map(|s| (s.name.as_str(), names(s))).collect()
 }
 
 fn connector_class(instance: &Instance<'_, '_>, node: NodeId) -> String {

@@ -9,6 +9,7 @@ use std::collections::VecDeque;
 use petgraph::graph::{EdgeIndex, NodeIndex};
 use petgraph::visit::EdgeRef;
 
+use super::symbols::symbol;
 use crate::network::Graph;
 
 /// Columns in a row before the network turns.
@@ -22,6 +23,8 @@ const MARGIN: f64 = 20.0;
 /// Height of name and class in a box, and of a port.
 const HEAD: f64 = 38.0;
 const PORT: f64 = 16.0;
+/// Side of a symbol.
+pub(super) const SYMBOL: f64 = 40.0;
 
 /// The side of a box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,8 +48,18 @@ pub(super) struct Boxed {
     pub y: f64,
     pub width: f64,
     pub height: f64,
+    /// Drawn in the middle, between the ports.
+    pub symbol: Option<&'static str>,
     left: Vec<String>,
     right: Vec<String>,
+}
+
+impl Boxed {
+    /// The upper left corner of the symbol.
+    pub fn symbol_place(&self) -> (f64, f64) {
+        let room = self.height - HEAD - 4.0;
+        (self.x + (self.width - SYMBOL) / 2.0, self.y + HEAD + (room - SYMBOL) / 2.0)
+    }
 }
 
 /// All boxes, by the numbers of their nodes.
@@ -62,7 +75,11 @@ impl Layout {
         let neighbours = neighbours(graph);
         let mut layout = Layout { boxes: vec![Boxed::default(); graph.node_count()], ..Layout::default() };
         for node in graph.node_indices() {
-            layout.boxes[node.index()].width = box_width(&graph[node]);
+            let component = &graph[node];
+            let classes = std::iter::once(&component.class).chain(&component.bases).map(String::as_str);
+            let symbol = symbol(classes);
+            layout.boxes[node.index()] =
+                Boxed { width: box_width(component, symbol.is_some()), symbol, ..Boxed::default() };
         }
         let mut top = MARGIN;
         for part in parts(&neighbours) {
@@ -140,7 +157,8 @@ impl Layout {
                 }
             }
             let b = &mut self.boxes[node];
-            b.height = HEAD + PORT * b.left.len().max(b.right.len()).max(1) as f64 + 4.0;
+            let ports = PORT * b.left.len().max(b.right.len()).max(1) as f64;
+            b.height = HEAD + ports.max(if b.symbol.is_some() { SYMBOL } else { 0.0 }) + 4.0;
         }
     }
 
@@ -199,11 +217,12 @@ fn other_end(graph: &Graph, edge: EdgeIndex, node: NodeIndex, port: &str) -> Opt
     }
 }
 
-fn box_width(component: &crate::network::ComponentBox) -> f64 {
+fn box_width(component: &crate::network::ComponentBox, symbol: bool) -> f64 {
     let chars = |s: &str| s.chars().count() as f64;
     let class = component.class.rsplit('.').next().unwrap_or("");
     let port = component.ports.iter().map(|p| chars(p)).fold(0.0, f64::max);
-    (7.2 * chars(&component.name)).max(6.0 * chars(class)).max(2.0 * 5.6 * port + 12.0).max(70.0) + 18.0
+    let between = if symbol { SYMBOL + 8.0 } else { 12.0 };
+    (7.2 * chars(&component.name)).max(6.0 * chars(class)).max(2.0 * 5.6 * port + between).max(70.0) + 18.0
 }
 
 /// Each node's neighbours, without itself, in the order of their numbers.

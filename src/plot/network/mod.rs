@@ -3,6 +3,7 @@
 //! `layout` decides where boxes stand, this file draws them.
 
 mod layout;
+pub mod symbols;
 
 use std::fmt::Write as _;
 
@@ -147,6 +148,14 @@ fn draw_box(out: &mut String, layout: &Layout, node: usize, graph: &Graph, marks
         place.y + 31.0,
         escape(short(class))
     );
+    if let Some(symbol) = place.symbol {
+        let (x, y) = place.symbol_place();
+        let scale = layout::SYMBOL / symbols::FIELD;
+        let _ = writeln!(
+            out,
+            "<g transform=\"translate({x:.1} {y:.1}) scale({scale:.4})\" color=\"#1f3a4d\">{symbol}</g>"
+        );
+    }
     let places = component.ports.iter().flat_map(|port| layout.places(node, port).into_iter().map(move |p| (port, p)));
     for (port, p) in places {
         let (x, anchor) = if p.side == Side::Left { (p.x + 7.0, "start") } else { (p.x - 7.0, "end") };
@@ -177,7 +186,7 @@ mod tests {
         let mut graph = Graph::default();
         let nodes: Vec<_> = names
             .iter()
-            .map(|n| graph.add_node(ComponentBox { name: (*n).into(), class: format!("Lib.{n}"), ports: vec![] }))
+            .map(|n| graph.add_node(ComponentBox { name: (*n).into(), class: format!("Lib.{n}"), bases: vec![], ports: vec![] }))
             .collect();
         for &(a, from, b, to) in wires {
             for (node, port) in [(a, from), (b, to)] {
