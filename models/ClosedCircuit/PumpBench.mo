@@ -1,0 +1,25 @@
+within ClosedCircuit;
+model PumpBench "The pump alone between two pressures, at given speeds and pressures: for its clearances and weights of friction from a map of efficiencies"
+  Interfaces.RealInput N(unit = "rev/min", nominal = 1e3) "Speed";
+  Interfaces.RealInput p(unit = "Pa", nominal = 1e7) "Pressure of the high side above the low side";
+  parameter SI.Pressure p_low(nominal = 1e6) = 2e6 "Pressure of the low side";
+  inner Oil.ClosedCircuitOil oil "Oil";
+  Mechanical.Rotational.Speed drive "Shaft";
+  BenchMachine pump "Pump";
+  Hydraulic.PressureSource high(useInput = true) "High side";
+  Hydraulic.Tank low(p = p_low) "Low side";
+  Interfaces.RealOutput eta_v(unit = "1") "Volumetric efficiency";
+  Interfaces.RealOutput eta_m(unit = "1") "Hydromechanical efficiency";
+protected
+  SI.Power ideal(nominal = 1e4) "Power without losses";
+equation
+  drive.w_ref = Modelica.Units.Conversions.from_rpm(N);
+  high.p_in = p + p_low;
+  connect(drive.flange, pump.flange);
+  connect(pump.port_a, high.port);
+  connect(pump.port_b, low.port);
+  ideal = pump.V*pump.w/(2*Modelica.Constants.pi)*p;
+  eta_v*ideal = pump.Q_A*p;
+  eta_m*pump.T_sh*pump.w = ideal;
+  annotation(experiment(StartTime = 0, StopTime = 71, Interval = 1, Tolerance = 1e-6));
+end PumpBench;
