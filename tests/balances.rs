@@ -99,6 +99,8 @@ struct Circuit {
     default_oil: bool,
     /// It has neither tank nor source of oil.
     closed: bool,
+    /// Its oil carries heat, and so more than the work of its pressure: tests/thermo_hydraulics.rs keeps that account.
+    thermal: bool,
 }
 
 impl Circuit {
@@ -126,7 +128,10 @@ impl Circuit {
         let has_oil = !oil.is_empty() && flattened.flat.variables.iter().any(|v| v.name == "oil.T");
         let closed = oil.iter().all(|c| c.1);
         let class = class.to_owned();
-        has_oil.then(|| Circuit { class, oil, all, flat: flattened.flat, default_oil, closed })
+        let heat = |v: &bramah::flat::Variable| v.name.ends_with(".T_oil") || v.name.ends_with(".T_case");
+        let of_oil = |v: &bramah::flat::Variable| heat(v) && v.fixed && v.start.is_some();
+        let thermal = flattened.flat.variables.iter().any(of_oil);
+        has_oil.then(|| Circuit { class, oil, all, flat: flattened.flat, default_oil, closed, thermal })
     }
 
     /// The circuit with the integrals of what flows in; `energy`: rows of its components.
@@ -288,12 +293,15 @@ fn mass_and_energy_of_every_circuit_balance() {
     let mut found = Vec::new();
     let mut textbook = Vec::new();
     for circuit in circuits("models") {
-        let Some(t) = circuit.run(Some(&table)) else {
+        let Some(t) = circuit.run((!circuit.thermal).then_some(&table)) else {
             textbook.push(circuit.class);
             continue;
         };
         let (mass, at) = circuit.mass_defect(&t);
-        let (energy, place, whole) = circuit.energy_defect(&t, &table);
+        let (energy, place, whole) = match circuit.thermal {
+            true => (0.0, "not counted: its oil carries heat".to_owned(), 0.0),
+            false => circuit.energy_defect(&t, &table),
+        };
         eprintln!(
             "{}: mass {mass:.1e}, energy of a component {energy:.1e}, of the circuit {whole:.1e}, {place}",
             circuit.class
@@ -330,7 +338,7 @@ fn closed_circuits_keep_their_oil_over_100_s() {
         }
     }
     none(&found);
-    assert_eq!(tried, ["ServoPump.DeadZone", "ServoPump.System"]);
+    assert_eq!(tried, ["ClosedCircuit.WarmUp", "ServoPump.DeadZone", "ServoPump.System"]);
 }
 
 #[test]

@@ -3,6 +3,7 @@
 
 #![allow(clippy::disallowed_methods, reason = "tests read their own files")]
 
+mod disk;
 mod rig;
 
 use std::process::Command;
@@ -10,6 +11,7 @@ use std::process::Command;
 use bramah::Simulation;
 use bramah::analysis::linear::{Choice, Chosen, linearize, response};
 use bramah::results::Trajectory;
+use disk::Disk;
 use rig::{at, circuit, column, last, line, mean_from, near, run, shipped, shipped_with};
 
 // --- Servo pump -------------------------------------------------------------------------------------------------------
@@ -256,6 +258,12 @@ fn the_experiments_name_what_there_is() {
         entries.sort_by_key(std::fs::DirEntry::path);
         for path in entries.iter().map(std::fs::DirEntry::path).filter(|p| p.extension().is_some_and(|e| e == "toml")) {
             let mut sources = bramah::diag::Sources::default();
+            // studies have a key of their own and are not experiments
+            if std::fs::read_to_string(&path).expect("a text").contains("\nversion = ") {
+                let study = bramah::study::Study::read(&Disk, &path, &mut sources);
+                assert!(study.value.is_some(), "{path:?}: {:?}", study.diagnostics);
+                continue;
+            }
             let file = sources.add(path.to_string_lossy(), std::fs::read_to_string(&path).expect("a text"));
             let checked = bramah::experiment::parse(&sources, file);
             assert!(checked.diagnostics.is_empty(), "{path:?}: {:?}", checked.diagnostics);

@@ -24,8 +24,8 @@ model AccumulatorRealGas "Bladder accumulator, real gas (Redlich and Kwong) with
 protected
   parameter Real a(unit = "Pa.m6/kg2") = 0.42748*R^2*T_c^2/p_c "Attraction at the critical temperature";
   parameter Real b(unit = "m3/kg") = 0.08664*R*T_c/p_c "Volume of the molecules";
-  Real v_pre(unit = "m3/kg", start = R*T_wall/p_pre, nominal = 1e-2) "Specific volume at the precharge";
-  Real v(unit = "m3/kg", start = R*T_wall/max(p_pre, p_start), nominal = 1e-2) "Specific volume";
+  Real v_pre(unit = "m3/kg", start = R*T_wall/p_pre, fixed = false, nominal = 1e-2) "Specific volume at the precharge";
+  Real v(unit = "m3/kg", start = R*T_wall/max(p_pre, p_start), fixed = false, nominal = 1e-2) "Specific volume";
   Real p_T(unit = "Pa/K", nominal = 1e4) "Derivative of the gas pressure by temperature";
   Real p_v(unit = "Pa.kg/m3", nominal = 1e9) "Derivative of the gas pressure by specific volume";
   Real p_dot(unit = "Pa/s", nominal = 1e6) "Rate of the oil pressure";
@@ -39,7 +39,6 @@ initial equation
 equation
   assert(V_0 > 0 and p_pre > 0, "V_0 and the precharge p_pre must be positive");
   assert(p_pre < p_max, "The precharge p_pre must lie below p_max");
-  assert(p_start >= p_pre, "The accumulator is empty at the start: its precharge p_pre lies above p_start", AssertionLevel.warning);
   assert(p < 1.05*p_max, "The pressure exceeds p_max of the accumulator", AssertionLevel.warning);
   assert(p_start <= 0 or p_start >= p_pre, "The pressure at the start p_start must not lie below the precharge p_pre");
   assert(v > 1.05*b, "The gas is compressed beyond the law of Redlich and Kwong");

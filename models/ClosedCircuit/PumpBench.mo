@@ -1,7 +1,7 @@
 within ClosedCircuit;
 model PumpBench "The pump alone between two pressures, at given speeds and pressures: for its clearances and weights of friction from a map of efficiencies"
-  Interfaces.RealInput N(unit = "rev/min", nominal = 1e3) "Speed";
-  Interfaces.RealInput p(unit = "Pa", nominal = 1e7) "Pressure of the high side above the low side";
+  Interfaces.RealInput N(unit = "rev/min", start = 1000, nominal = 1e3) "Speed";
+  Interfaces.RealInput p(unit = "Pa", start = 1e7, nominal = 1e7) "Pressure of the high side above the low side";
   parameter SI.Pressure p_low(nominal = 1e6) = 2e6 "Pressure of the low side";
   inner Oil.ClosedCircuitOil oil "Oil";
   Mechanical.Rotational.Speed drive "Shaft";

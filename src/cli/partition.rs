@@ -232,7 +232,10 @@ fn words(zones: &Zones, speed: &Signal, flow: &Signal) -> String {
         unit => format!("({})/({unit})", flow.unit),
     };
     let line = format!("{} {unit} in the load zone (R2 {})", n(zones.slope), number::rounded(zones.straight, 6));
-    format!("dead zone to {} {}, {line}, {saturation}", n(zones.dead), speed.unit).replace(" ,", ",").trim_end().to_owned()
+    format!("dead zone to {} {}, {line}, {saturation}", n(zones.dead), speed.unit)
+        .replace(" ,", ",")
+        .trim_end()
+        .to_owned()
 }
 
 /// The points, one row each.

@@ -151,10 +151,8 @@ fn draw_box(out: &mut String, layout: &Layout, node: usize, graph: &Graph, marks
     if let Some(symbol) = place.symbol {
         let (x, y) = place.symbol_place();
         let scale = layout::SYMBOL / symbols::FIELD;
-        let _ = writeln!(
-            out,
-            "<g transform=\"translate({x:.1} {y:.1}) scale({scale:.4})\" color=\"#1f3a4d\">{symbol}</g>"
-        );
+        let _ =
+            writeln!(out, "<g transform=\"translate({x:.1} {y:.1}) scale({scale:.4})\" color=\"#1f3a4d\">{symbol}</g>");
     }
     let places = component.ports.iter().flat_map(|port| layout.places(node, port).into_iter().map(move |p| (port, p)));
     for (port, p) in places {
@@ -186,7 +184,14 @@ mod tests {
         let mut graph = Graph::default();
         let nodes: Vec<_> = names
             .iter()
-            .map(|n| graph.add_node(ComponentBox { name: (*n).into(), class: format!("Lib.{n}"), bases: vec![], ports: vec![] }))
+            .map(|n| {
+                graph.add_node(ComponentBox {
+                    name: (*n).into(),
+                    class: format!("Lib.{n}"),
+                    bases: vec![],
+                    ports: vec![],
+                })
+            })
             .collect();
         for &(a, from, b, to) in wires {
             for (node, port) in [(a, from), (b, to)] {
