@@ -29,9 +29,9 @@ fn work(p: f64) -> f64 {
 fn a_throttle_warms_the_oil() {
     let mut throttle = circuit(
         &format!(
-            "{OIL} Hydraulic.PressureSource a; Hydraulic.PressureSource b; Hydraulic.Orifice way; Hydraulic.TemperatureSensor left; Hydraulic.TemperatureSensor right;"
+            "{OIL} Hydraulic.PressureSource a; Hydraulic.PressureSource b; Hydraulic.Orifice way; Hydraulic.TemperatureSensor left; Hydraulic.TemperatureSensor right; Hydraulic.FlowSensor line_a; Hydraulic.FlowSensor line_b;"
         ),
-        "connect(a.port, way.port_a); connect(way.port_b, b.port); connect(left.port, a.port); connect(right.port, b.port);",
+        "connect(a.port, line_a.port_a); connect(line_a.port_b, way.port_a); connect(way.port_b, line_b.port_a); connect(line_b.port_b, b.port); connect(left.port, way.port_a); connect(right.port, way.port_b);",
     );
     throttle.stop_time(1e-3);
     for (a, b) in [(1e6, 1e5), (1e7, 1e5), (3.5e7, 1e6), (1e5, 2e7)] {
@@ -50,9 +50,9 @@ fn a_throttle_warms_the_oil() {
 fn a_throttle_gives_its_loss_to_its_heat_port() {
     let throttle = circuit(
         &format!(
-            "{OIL} Hydraulic.PressureSource a(p = 2e7); Hydraulic.Tank b; Hydraulic.Orifice way(useHeatPort = true); Hydraulic.TemperatureSensor right; Thermal.FixedTemperature sink;"
+            "{OIL} Hydraulic.PressureSource a(p = 2e7); Hydraulic.Tank b; Hydraulic.Orifice way(useHeatPort = true); Hydraulic.TemperatureSensor right; Thermal.FixedTemperature sink; Hydraulic.FlowSensor line;"
         ),
-        "connect(a.port, way.port_a); connect(way.port_b, b.port); connect(right.port, b.port); connect(way.heatPort, sink.port);",
+        "connect(a.port, way.port_a); connect(way.port_b, line.port_a); connect(line.port_b, b.port); connect(right.port, way.port_b); connect(way.heatPort, sink.port);",
     );
     let t = run(&throttle);
     let entropic = -GAMMA * T_0 * work(2e7) / C_P;
@@ -244,9 +244,9 @@ fn a_pipe_loses_heat_on_its_way() {
     let t = run(&circuit(
         &format!(
             "{OIL} Hydraulic.FlowSource source(q = 2e-4, dT = 20); Hydraulic.Line pipe(L = 20, d = 0.02, n = 8, volume_a = true, useHeatPort = true, kA = 100);
-             Hydraulic.Tank tank; Hydraulic.TemperatureSensor sensor; Thermal.FixedTemperature wall(T = 293.15);"
+             Hydraulic.Tank tank; Hydraulic.TemperatureSensor sensor; Hydraulic.FlowSensor line; Thermal.FixedTemperature wall(T = 293.15);"
         ),
-        "connect(source.port, pipe.port_a); connect(pipe.port_b, tank.port); connect(sensor.port, tank.port);
+        "connect(source.port, pipe.port_a); connect(pipe.port_b, line.port_a); connect(line.port_b, tank.port); connect(sensor.port, line.port_a);
          connect(wall.port, pipe.heatPort); annotation(experiment(StopTime = 300, Tolerance = 1e-6));",
     ));
     let flow = RHO * 2e-4 * C_P;
@@ -263,9 +263,9 @@ fn coolers_take_what_their_size_allows() {
     let cooler = |class: &str| {
         run(&circuit(
             &format!(
-                "{OIL} Hydraulic.FlowSource source(q = 5e-4, dT = 20); Hydraulic.{class}; Hydraulic.Tank tank; Hydraulic.TemperatureSensor sensor;"
+                "{OIL} Hydraulic.FlowSource source(q = 5e-4, dT = 20); Hydraulic.{class}; Hydraulic.Tank tank; Hydraulic.TemperatureSensor sensor; Hydraulic.FlowSensor line;"
             ),
-            "connect(source.port, cooler.port_a); connect(cooler.port_b, tank.port); connect(sensor.port, tank.port);",
+            "connect(source.port, cooler.port_a); connect(cooler.port_b, line.port_a); connect(line.port_b, tank.port); connect(sensor.port, line.port_a);",
         ))
     };
     let flow = RHO * 5e-4 * C_P;
@@ -315,4 +315,37 @@ fn oil_of_one_temperature_has_no_heat_in_it() {
         let states: Vec<&str> = model.dae.states.iter().map(|v| model.dae.variables[v.index()].name.as_str()).collect();
         assert!(states.iter().all(|s| !s.contains(".T_oil") && !s.contains(".T_case")), "{class}: {states:?}");
     }
+}
+
+/// Every example of the hydraulic library runs when its oil carries heat, and keeps within a hundred kelvin of where it began.
+#[test]
+fn every_example_runs_with_oil_that_carries_heat() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("components/Hydraulic/Examples");
+    let mut tried = 0;
+    let mut entries: Vec<_> = std::fs::read_dir(folder).expect("the folder is there").flatten().collect();
+    entries.sort_by_key(std::fs::DirEntry::path);
+    for path in entries.iter().map(std::fs::DirEntry::path) {
+        let text = std::fs::read_to_string(&path).expect("a text");
+        let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
+        // an oil with a given temperature has no other
+        if !text.contains("inner Oil.") || text.contains("useTemperatureInput") {
+            continue;
+        }
+        let warm = format!("model Warm\n  extends Hydraulic.Examples.{name}(oil(thermal = true));\nend Warm;\n");
+        let request = Request { source: "warm.mo".into(), ..Request::default() };
+        let simulation = bramah::Simulation::compile(&MemoryWorld::single("warm.mo", warm), &request);
+        let t = simulation
+            .unwrap_or_else(|e| panic!("{name}: {e}"))
+            .run()
+            .unwrap_or_else(|e| panic!("{name}: {e}"))
+            .trajectory;
+        for (signal, values) in t.signals.iter().zip(&t.columns) {
+            if signal.name.ends_with(".T_oil") || signal.name.ends_with(".T_case") {
+                let far = values.iter().find(|v| (*v - T_0).abs() > 100.0);
+                assert!(far.is_none(), "{name}: {} of {} K", signal.name, far.unwrap_or(&T_0));
+            }
+        }
+        tried += 1;
+    }
+    assert!(tried > 90, "only {tried} examples");
 }

@@ -42,7 +42,7 @@ equation
   rho_b = oil.density(port_b.p);
   rho_x = oil.density(port_x.p);
   if oil.thermal then
-    T_in = noEvent(if dp >= 0 then oil.T_0 + inStream(port_a.dT_outflow) else oil.T_0 + inStream(port_b.dT_outflow));
+    T_in = oil.T_0 + (inStream(port_a.dT_outflow) + inStream(port_b.dT_outflow))/2 + Smooth.sgn(dp, 1e3)*(inStream(port_a.dT_outflow) - inStream(port_b.dT_outflow))/2;
     mu_in = oil.viscosity(T_in);
     growth = 1 + oil.gamma*(T_in - oil.T_0);
     rho = (rho_a + rho_b)/2/growth;

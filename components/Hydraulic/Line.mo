@@ -85,8 +85,8 @@ equation
   end for;
   for i in 1:M loop
     rho_m[i] = air[max(i - 1 + a, 1)].rho/growth[max(i - 1 + a, 1)];
-    T_m[i] = if not oil.thermal then oil.T else noEvent(if m_flow[i] >= 0 then (if i - 1 + a < 1 then oil.T_0 + inStream(port_a.dT_outflow) else T_oil[max(i - 1 + a, 1)])
-      else (if i + a > N then oil.T_0 + inStream(port_b.dT_outflow) else T_oil[min(i + a, N)]));
+    T_m[i] = if not oil.thermal then oil.T else (1 + Smooth.sgn(m_flow[i], 1e-3*A))/2*(if i - 1 + a < 1 then oil.T_0 + inStream(port_a.dT_outflow) else T_oil[max(i - 1 + a, 1)])
+      + (1 - Smooth.sgn(m_flow[i], 1e-3*A))/2*(if i + a > N then oil.T_0 + inStream(port_b.dT_outflow) else T_oil[min(i + a, N)]);
     friction[i].m_flow = m_flow[i];
     friction[i].rho = rho_m[i];
     friction[i].mu = if oil.thermal then oil.viscosity(T_m[i]) else oil.mu;

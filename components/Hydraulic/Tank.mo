@@ -1,6 +1,6 @@
 within Hydraulic;
 model Tank "Open or pressurised tank of constant pressure"
-  Interfaces.HydraulicPort port(dT_outflow = dT) "Port";
+  Interfaces.HydraulicPort port(dT_outflow = dT) "Port" annotation(__bramah_mixes = true);
   parameter SI.Pressure p(min = 0, nominal = 1e5) = 101325 "Pressure of the tank";
   parameter SI.TemperatureDifference dT(min = -100, max = 150) = 0 "Temperature of its oil above T_0, where oil carries heat";
 equation

@@ -57,5 +57,7 @@ one law, so that they cannot contradict each other and volumes conserve mass. Ch
 </ul>
 <p>The parameters <code>beta_0</code> to <code>lambda</code> feed the default laws; a law put in their place takes its values with the
 redeclaration, for instance <code>redeclare function density = Oil.Compression.linearModulus(beta_0 = 1.6e9, m = 12)</code>.</p>
+<p><b>Heat.</b> With <code>thermal = true</code> every volume, chamber, line, reservoir and machine has a temperature of its own, flow carries heat, and density and viscosity follow: see <code>Oil.Heat</code> and <code>Hydraulic.Bases.Storage</code>. The volume grows with <code>gamma</code>
+per kelvin, and <code>c_p</code> is constant: set <code>T_0</code> to the middle of the range of temperatures. Otherwise the oil has one temperature, <code>T_0</code> or what comes through <code>T_in</code>.</p>
 <p>Valid from about 0.01 to 50 MPa and -20 to 120 degC. The default is a mineral oil of ISO VG 46 at 40 degC.</p></html>"));
 end Fluid;

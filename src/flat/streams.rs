@@ -3,7 +3,7 @@
 
 use super::{Equation, FlatModel, Origin, OriginKind};
 use crate::expr::{Binary, ExprId, Exprs, Node, Rel};
-use crate::instance::{Instance, Junction, LEAST_FLOW, StreamMember};
+use crate::instance::{Instance, Junction, StreamMember};
 use crate::network::Network;
 
 use super::numbers::Numbers;
@@ -12,6 +12,10 @@ use petgraph::unionfind::UnionFind;
 /// Weight in the mixture of what flows into a component that mixes, where nothing flows. Multiplied by the inflow the mixture
 /// must give what is brought in to the last digit, or energy would not be conserved.
 const LEAST_SHARE: f64 = 1e-20;
+
+/// Flow to a node, in the unit of the connector's flow, below which its mixture leaves that of the flows for the plain mean: a
+/// ten thousandth of a usual flow of oil in m3/s, and far less of usual flows of mass in kg/s.
+const LEAST_MIXED: f64 = 1e-8;
 
 /// Tells the instance which stream variables are joined, so that `inStream` has a meaning in its equations.
 pub(super) fn prepare(instance: &mut Instance<'_, '_>, network: &Network) {
@@ -68,7 +72,7 @@ pub(super) fn equations(instance: &mut Instance<'_, '_>, network: &Network, numb
             let lhs = instance.exprs.var(instance.variables[member.variable as usize].id);
             let rhs = match instance.streams.at[number] {
                 Some(at) => instance.leaving(instance.streams.junctions[at].mixer),
-                None => instance.stream_mixture(&others, LEAST_FLOW),
+                None => instance.stream_mixture(&others, LEAST_MIXED),
             };
             instance.leaves_with(member.variable, rhs);
             let origin = Origin { span: set.span, instance: numbers.of(set.scope), kind: OriginKind::ConnectPotential };
@@ -93,7 +97,7 @@ impl Instance<'_, '_> {
         let members = &self.streams.sets[set];
         let others: Vec<StreamMember> =
             members.iter().filter(|m| m.outside || m.variable != variable).copied().collect();
-        if others.is_empty() { own } else { self.stream_mixture(&others, LEAST_FLOW) }
+        if others.is_empty() { own } else { self.stream_mixture(&others, LEAST_MIXED) }
     }
 
     /// Notes what leaves through a port, if it is a number.
@@ -122,39 +126,58 @@ impl Instance<'_, '_> {
         };
         let mut all = Exprs::ZERO;
         for m in &junction.others {
-            let flow = self.exprs.var(self.variables[m.flow as usize].id);
-            let towards = self.exprs.neg(flow);
-            let part = self.exprs.binary(Binary::Max, towards, Exprs::ZERO);
+            let part = self.sent(m);
             all = self.exprs.add(all, part);
         }
         all
     }
 
-    /// The mean of what members send, each with its flow, but the least one, as its weight.
+    /// The mean of what members send, each with its flow as its weight. Where all of them together send less than `least`, the
+    /// weights become equal (MLS 15.2).
     fn stream_mixture(&mut self, members: &[StreamMember], least: f64) -> ExprId {
-        let least = self.exprs.num(least);
         let mut parts = Vec::with_capacity(members.len());
         for m in members {
             let value = match m.outside {
                 true => self.in_stream(m.variable),
                 false => self.leaving(m.variable),
             };
-            let flow = self.exprs.var(self.variables[m.flow as usize].id);
-            let towards = if m.outside { flow } else { self.exprs.neg(flow) };
-            parts.push((value, self.exprs.binary(Binary::Max, towards, least)));
+            parts.push((value, self.sent(m)));
         }
         if let Some((value, rest)) = parts.split_first().map(|(&(value, _), rest)| (value, rest))
             && rest.iter().all(|(other, _)| *other == value)
         {
             return value;
         }
+        let equal = self.equal_share(&parts, least);
         let (mut carried, mut all) = (Exprs::ZERO, Exprs::ZERO);
-        for (value, weight) in parts {
+        for (value, sent) in parts {
+            let weight = self.exprs.add(sent, equal);
             let part = self.exprs.mul(weight, value);
             carried = self.exprs.add(carried, part);
             all = self.exprs.add(all, weight);
         }
         self.exprs.div(carried, all)
+    }
+
+    /// What a member sends to its node.
+    fn sent(&mut self, m: &StreamMember) -> ExprId {
+        let flow = self.exprs.var(self.variables[m.flow as usize].id);
+        let towards = if m.outside { flow } else { self.exprs.neg(flow) };
+        self.exprs.binary(Binary::Max, towards, Exprs::ZERO)
+    }
+
+    /// What is added to each weight: nothing from `least` on, and below as much as keeps the mixture determined and smooth.
+    fn equal_share(&mut self, parts: &[(ExprId, ExprId)], least: f64) -> ExprId {
+        let mut all = Exprs::ZERO;
+        for (_, sent) in parts {
+            all = self.exprs.add(all, *sent);
+        }
+        let (least, two) = (self.exprs.num(least), self.exprs.num(2.0));
+        let over = self.exprs.div(all, least);
+        let short = self.exprs.sub(Exprs::ONE, over);
+        let short = self.exprs.binary(Binary::Max, short, Exprs::ZERO);
+        let power = self.exprs.binary(Binary::Pow, short, two);
+        self.exprs.mul(least, power)
     }
 
     /// `actualStream(v)`: what flows through the port of `v` one way or the other.

@@ -32,10 +32,6 @@ use std::rc::Rc;
 use template::Template;
 use value::Val;
 
-/// Flow that counts at least, in the unit of the connector's flow, so that what it carries is determined where nothing flows:
-/// far below what a solver resolves. A watt of heat needs an enthalpy of 1e10 J/kg to pass with it.
-pub const LEAST_FLOW: f64 = 1e-10;
-
 /// Index of a [`Scope`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct ScopeId(pub u32);

@@ -22,7 +22,7 @@ equation
   rho_a = oil.density(port_a.p);
   rho_b = oil.density(port_b.p);
   if oil.thermal then
-    T_oil = noEvent(if dp >= 0 then oil.T_0 + inStream(port_a.dT_outflow) else oil.T_0 + inStream(port_b.dT_outflow));
+    T_oil = oil.T_0 + (inStream(port_a.dT_outflow) + inStream(port_b.dT_outflow))/2 + Smooth.sgn(dp, 1e3)*(inStream(port_a.dT_outflow) - inStream(port_b.dT_outflow))/2;
     mu_in = oil.viscosity(T_oil);
     growth = 1 + oil.gamma*(T_oil - oil.T_0);
     dT_gain = oil.throttling(port_a.p) - oil.throttling(port_b.p) - (if useHeatPort then dp/(rho*oil.c_p) else 0);
@@ -39,5 +39,5 @@ equation
   rho_a*port_a.q = m_flow;
   rho_b*port_b.q = -m_flow;
   annotation(Documentation(info = "<html><p>A component adds one equation, for <code>q</code> or <code>m_flow</code> over <code>dp</code>. Passive where <code>q*dp >= 0</code>.</p>
-<p><b>Heat</b>, where oil carries it: a throttle keeps the enthalpy, so that the power lost heats the oil behind it, by <code>(1 - gamma T_0) dp/(rho c_p)</code>, 0.48 K per MPa with the default oil; with <code>useHeatPort</code> it goes to what is joined there instead. Viscosity and density are those of the oil that comes in.</p></html>"));
+<p><b>Heat</b>, where oil carries it: a throttle keeps the enthalpy, so that the power lost heats the oil behind it, by <code>(1 - gamma T_0) dp/(rho c_p)</code>, 0.48 K per MPa with the default oil; with <code>useHeatPort</code> it goes to what is joined there instead. Viscosity and density are those of the oil that comes in, rounded over a kilopascal about standstill.</p></html>"));
 end TwoPort;

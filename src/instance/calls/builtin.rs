@@ -3,7 +3,6 @@
 use crate::diag::{Code, Diagnostic, Span};
 use crate::expr::differentiate::Leaf;
 use crate::expr::{Binary, ExprId, Exprs, Node, Rel, Unary};
-use crate::instance::LEAST_FLOW;
 use crate::instance::value::{Val, size_text, wider};
 use crate::instance::{Instance, View};
 use crate::syntax::ast::{Expr, ExprKind, Ident, Reference};
@@ -31,6 +30,10 @@ fn mathematical(name: &str) -> Option<Unary> {
         _ => return None,
     })
 }
+
+/// Flow that counts at least, in the unit of the connector's flow, so that what it carries is determined where nothing flows:
+/// far below what a solver resolves. A watt of heat needs an enthalpy of 1e10 J/kg to pass with it.
+const LEAST_FLOW: f64 = 1e-10;
 
 /// Names that are built in and valid, but not supported.
 const UNSUPPORTED: [&str; 8] =
