@@ -1,0 +1,32 @@
+within Hydraulic.Examples;
+model PostCompensatorExample "Two consumers of different load share a pump that delivers less and less"
+  inner Oil.ISOVG46 oil "Oil";
+  FlowSource pump(useInput = true);
+  Signal.Ramp delivery(offset = 6e-4, height = -4.5e-4, duration = 1, startTime = 0.5);
+  Volume line(V = 2e-4, p_start = 20e5);
+  VariableOrifice metering_1(A_max = 1e-5);
+  VariableOrifice metering_2(A_max = 1e-5);
+  PostCompensator compensator_1;
+  PostCompensator compensator_2;
+  PressureSource load_1(p = 120e5);
+  PressureSource load_2(p = 40e5);
+  ShuttleValve highest;
+  Signal.Constant lever_1(k = 0.8);
+  Signal.Constant lever_2(k = 0.4);
+equation
+  connect(delivery.y, pump.q_in);
+  connect(pump.port, line.port);
+  connect(line.port, metering_1.port_a);
+  connect(line.port, metering_2.port_a);
+  connect(metering_1.port_b, compensator_1.port_a);
+  connect(metering_2.port_b, compensator_2.port_a);
+  connect(compensator_1.port_b, load_1.port);
+  connect(compensator_2.port_b, load_2.port);
+  connect(load_1.port, highest.port_a);
+  connect(load_2.port, highest.port_b);
+  connect(highest.port_out, compensator_1.port_LS);
+  connect(highest.port_out, compensator_2.port_LS);
+  connect(lever_1.y, metering_1.u);
+  connect(lever_2.y, metering_2.u);
+  annotation(experiment(StartTime = 0, StopTime = 1.6, Interval = 0.004, Tolerance = 1e-6));
+end PostCompensatorExample;

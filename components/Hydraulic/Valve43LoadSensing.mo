@@ -1,0 +1,61 @@
+within Hydraulic;
+model Valve43LoadSensing "4/3 proportional valve with a load-sensing port: pressure of the consumer that is fed, tank in the middle"
+  Interfaces.HydraulicPort port_P "Supply";
+  Interfaces.HydraulicPort port_T "Return";
+  Interfaces.HydraulicPort port_A "Consumer A";
+  Interfaces.HydraulicPort port_B "Consumer B";
+  Interfaces.HydraulicPort port_LS "Load sensing";
+  Interfaces.RealInput u "Command, -1 to 1; positive joins P to A and B to T";
+  outer Oil.Fluid oil "Oil of the circuit";
+  replaceable Spool.SecondOrder spool constrainedby Spool.Law "Motion of the spool";
+  parameter SI.VolumeFlowRate q_P(min = 1e-8, max = 0.1, nominal = 1e-3) = 1e-3 "Flow through an edge at P when open, at dp_P";
+  parameter SI.Pressure dp_P(min = 1e3, max = 1e8, nominal = 1e6) = 15e5 "Pressure drop of q_P, the margin of the pump";
+  parameter SI.VolumeFlowRate q_T(min = 1e-8, max = 0.1, nominal = 1e-3) = 1e-3 "Flow through an edge at T when open, at dp_T";
+  parameter SI.Pressure dp_T(min = 1e3, max = 1e8, nominal = 1e6) = 5e5 "Pressure drop of q_T";
+  parameter Real overlap_P(unit = "1", min = 0, max = 0.5) = 0.15 "Travel before an edge at P opens";
+  parameter Real overlap_T(unit = "1", min = 0, max = 0.5) = 0.12 "Travel before an edge at T opens";
+  parameter Real travel_LS(unit = "1", min = 0.005, max = 0.4) = 0.06 "Travel at which the port of load sensing changes over from T to the consumer";
+  parameter SI.Area A_LS(min = 1e-10, max = 1e-4, nominal = 1e-6, displayUnit = "mm2") = 1e-6 "Cross section of the ways of load sensing when open";
+  parameter Real rounding(unit = "1", min = 1e-4, max = 0.5) = 0.02 "Travel over which an edge opens smoothly";
+  parameter Real leak(unit = "1", min = 1e-9, max = 0.1) = 1e-4 "Leakage cross section of an edge over its greatest";
+  parameter Real C_d(unit = "1", min = 0.1, max = 1) = 0.65 "Discharge coefficient";
+  SpoolEdge edge_PA(A_max = A_P, overlap = overlap_P, rounding = rounding, leak = leak, C_d = C_d) "P to A";
+  SpoolEdge edge_PB(A_max = A_P, overlap = overlap_P, rounding = rounding, leak = leak, C_d = C_d) "P to B";
+  SpoolEdge edge_AT(A_max = A_T, overlap = overlap_T, rounding = rounding, leak = leak, C_d = C_d) "A to T";
+  SpoolEdge edge_BT(A_max = A_T, overlap = overlap_T, rounding = rounding, leak = leak, C_d = C_d) "B to T";
+  SpoolEdge sense_A(A_max = A_LS, overlap = 0, rounding = 0.1, leak = leak, C_d = C_d) "A to the port of load sensing";
+  SpoolEdge sense_B(A_max = A_LS, overlap = 0, rounding = 0.1, leak = leak, C_d = C_d) "B to the port of load sensing";
+  SpoolEdge relief_LS(A_max = A_LS, overlap = 0, rounding = 0.1, leak = leak, C_d = C_d) "Port of load sensing to T, open in the middle";
+protected
+  parameter SI.Area A_P = q_P/(C_d*sqrt(2*dp_P/oil.rho_0))/(1 + leak - rounding/(2*(1 - overlap_P))) "A_max of the edges at P: full travel passes q_P at dp_P";
+  parameter SI.Area A_T = q_T/(C_d*sqrt(2*dp_T/oil.rho_0))/(1 + leak - rounding/(2*(1 - overlap_T))) "A_max of the edges at T";
+equation
+  assert(q_P > 0 and dp_P > 0 and q_T > 0 and dp_T > 0 and A_LS > 0, "q_P, dp_P, q_T, dp_T and A_LS must be positive");
+  assert(overlap_P >= 0 and overlap_P < 1 and overlap_T >= 0 and overlap_T < 1, "The overlaps must lie from 0 to below 1");
+  assert(travel_LS > 0 and travel_LS < 0.45, "travel_LS must lie above 0 and below 0.45");
+  connect(u, spool.u);
+  edge_PA.x = spool.y;
+  edge_PB.x = -spool.y;
+  edge_AT.x = -spool.y;
+  edge_BT.x = spool.y;
+  sense_A.x = min(max(spool.y/travel_LS - 1.1, -1), 1);
+  sense_B.x = min(max(-spool.y/travel_LS - 1.1, -1), 1);
+  relief_LS.x = max(1 - Smooth.mag(spool.y, 0.1*travel_LS)/travel_LS, -1);
+  connect(port_P, edge_PA.port_a);
+  connect(edge_PA.port_b, port_A);
+  connect(port_P, edge_PB.port_a);
+  connect(edge_PB.port_b, port_B);
+  connect(port_A, edge_AT.port_a);
+  connect(edge_AT.port_b, port_T);
+  connect(port_B, edge_BT.port_a);
+  connect(edge_BT.port_b, port_T);
+  connect(port_A, sense_A.port_a);
+  connect(sense_A.port_b, port_LS);
+  connect(port_B, sense_B.port_a);
+  connect(sense_B.port_b, port_LS);
+  connect(port_LS, relief_LS.port_a);
+  connect(relief_LS.port_b, port_T);
+  annotation(Documentation(info = "<html><p>Four metering edges, <code>SpoolEdge</code>, closed in the middle, and three narrow ones for load sensing, on one spool whose motion is replaceable. In the middle the port of load sensing is joined to T. At 1.1 times <code>travel_LS</code> that way is closed and the one to the consumer that will be fed begins to open; at 2.1 times it is open. With <code>2.1*travel_LS</code> up to <code>overlap_P</code> the pump knows the load before the metering edge opens.</p>
+<p>Join the port to <code>PumpControl.LoadSensingControl</code> or a compensator; for several consumers pass the highest pressure on with <code>ShuttleValve</code>. At full travel an edge at P passes <code>q_P</code> at <code>dp_P</code>, which is the flow of the consumer where the pump keeps that margin. The compensator is not part of the valve: <code>PressureCompensator</code> before it, <code>PostCompensator</code> behind it.</p>
+<p>Every edge is an orifice: passive, flow both ways. Flow forces are left out: valid where the spool is driven strongly enough. Sources: edges: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, chapter 5; load sensing: H. Murrenhoff, Grundlagen der Fluidtechnik 1: Hydraulik, 2012. The values are assumed.</p></html>"));
+end Valve43LoadSensing;

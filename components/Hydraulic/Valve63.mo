@@ -1,0 +1,63 @@
+within Hydraulic;
+model Valve63 "6/3 open-centre valve: the by-pass from P1 to C closes as the spool joins the consumers to P and T"
+  Interfaces.HydraulicPort port_P "Supply of the consumers";
+  Interfaces.HydraulicPort port_T "Return";
+  Interfaces.HydraulicPort port_A "Consumer A";
+  Interfaces.HydraulicPort port_B "Consumer B";
+  Interfaces.HydraulicPort port_P1 "Inlet of the by-pass";
+  Interfaces.HydraulicPort port_C "Outlet of the by-pass, to the next valve or the tank";
+  Interfaces.RealInput u "Command, -1 to 1; positive joins P to A and B to T";
+  outer Oil.Fluid oil "Oil of the circuit";
+  replaceable Spool.SecondOrder spool constrainedby Spool.Law "Motion of the spool";
+  parameter SI.VolumeFlowRate q_nom(min = 1e-8, max = 0.1, nominal = 1e-3) = 1e-3 "Flow through one edge of the consumers when open, at dp_nom";
+  parameter SI.Pressure dp_nom(min = 1e3, max = 1e8, nominal = 1e6) = 5e5 "Pressure drop of q_nom at one edge";
+  parameter SI.VolumeFlowRate q_C(min = 1e-8, max = 0.1, nominal = 1e-3) = 1e-3 "Flow through the by-pass in the middle, at dp_C";
+  parameter SI.Pressure dp_C(min = 1e3, max = 1e8, nominal = 1e6) = 3e5 "Pressure drop of q_C";
+  parameter Real overlap_P(unit = "1", min = 0, max = 0.5) = 0.12 "Travel before an edge at P opens";
+  parameter Real overlap_T(unit = "1", min = 0, max = 0.5) = 0.1 "Travel before an edge at T opens";
+  parameter Real begin_C(unit = "1", min = 0, max = 0.9) = 0.05 "Travel at which the by-pass begins to close";
+  parameter Real knee_C(unit = "1", min = 0.01, max = 0.95) = 0.35 "Travel from which it closes more slowly";
+  parameter Real opening_C(unit = "1", min = 0.001, max = 0.99) = 0.15 "Its cross section at knee_C over that in the middle";
+  parameter Real end_C(unit = "1", min = 0.02, max = 1) = 0.75 "Travel at which it is closed";
+  parameter Real rounding(unit = "1", min = 1e-4, max = 0.5) = 0.02 "Travel over which an edge opens and the by-pass bends smoothly";
+  parameter Real leak(unit = "1", min = 1e-9, max = 0.1) = 1e-4 "Leakage cross section of an edge over its greatest";
+  parameter Real C_d(unit = "1", min = 0.1, max = 1) = 0.65 "Discharge coefficient";
+  SpoolEdge edge_PA(A_max = A_P, overlap = overlap_P, rounding = rounding, leak = leak, C_d = C_d) "P to A";
+  SpoolEdge edge_PB(A_max = A_P, overlap = overlap_P, rounding = rounding, leak = leak, C_d = C_d) "P to B";
+  SpoolEdge edge_AT(A_max = A_T, overlap = overlap_T, rounding = rounding, leak = leak, C_d = C_d) "A to T";
+  SpoolEdge edge_BT(A_max = A_T, overlap = overlap_T, rounding = rounding, leak = leak, C_d = C_d) "B to T";
+  SpoolEdge edge_C(A_max = A_C, overlap = 0, rounding = rounding, leak = leak, C_d = C_d) "P1 to C, open in the middle";
+protected
+  parameter SI.Area A_nom = q_nom/(C_d*sqrt(2*dp_nom/oil.rho_0)) "Cross section that passes q_nom at dp_nom";
+  parameter SI.Area A_P = A_nom/(1 + leak - rounding/(2*(1 - overlap_P))) "A_max of the edges at P: full travel gives A_nom";
+  parameter SI.Area A_T = A_nom/(1 + leak - rounding/(2*(1 - overlap_T))) "A_max of the edges at T";
+  parameter SI.Area A_C = q_C/(C_d*sqrt(2*dp_C/oil.rho_0))/(1 + leak - rounding/2) "A_max of the by-pass: the middle passes q_C at dp_C";
+  parameter Real fall_1(unit = "1") = (1 - opening_C)/(knee_C - begin_C) "Fall of the by-pass over travel before the knee";
+  parameter Real fall_2(unit = "1") = opening_C/(end_C - knee_C) "The same behind it";
+  Real z(unit = "1") "Travel either way";
+equation
+  assert(q_nom > 0 and dp_nom > 0 and q_C > 0 and dp_C > 0, "q_nom, dp_nom, q_C and dp_C must be positive");
+  assert(overlap_P >= 0 and overlap_P < 1 and overlap_T >= 0 and overlap_T < 1, "The overlaps must lie from 0 to below 1");
+  assert(begin_C >= 0 and knee_C > begin_C and end_C > knee_C, "begin_C, knee_C and end_C must rise in this order");
+  assert(opening_C > 0 and opening_C < 1, "opening_C must lie between 0 and 1");
+  connect(u, spool.u);
+  z = Smooth.mag(spool.y, rounding);
+  edge_PA.x = spool.y;
+  edge_PB.x = -spool.y;
+  edge_AT.x = -spool.y;
+  edge_BT.x = spool.y;
+  edge_C.x = max(1 - fall_1*Smooth.ramp(z - begin_C, rounding) + (fall_1 - fall_2)*Smooth.ramp(z - knee_C, rounding), -1);
+  connect(port_P, edge_PA.port_a);
+  connect(edge_PA.port_b, port_A);
+  connect(port_P, edge_PB.port_a);
+  connect(edge_PB.port_b, port_B);
+  connect(port_A, edge_AT.port_a);
+  connect(edge_AT.port_b, port_T);
+  connect(port_B, edge_BT.port_a);
+  connect(edge_BT.port_b, port_T);
+  connect(port_P1, edge_C.port_a);
+  connect(edge_C.port_b, port_C);
+  annotation(Documentation(info = "<html><p>The valve of open-centre mobile machines. The pump is joined to P1 and, mostly over a load check valve (<code>CheckValve</code>), to P. In the middle its flow passes from P1 to C and on; as the spool moves either way, the by-pass closes, the pressure rises to that of the load, and the flow is shared between consumer and by-pass. Several such valves stand in a row where C of one is joined to P1 of the next.</p>
+<p>Five edges, <code>SpoolEdge</code>, on one spool whose motion is replaceable. The cross section of the by-pass over the travel z is a line with one bend: 1 up to <code>begin_C</code>, <code>opening_C</code> at <code>knee_C</code>, 0 at <code>end_C</code>; the bends are rounded, which moves the curve outward by 1.5 times <code>rounding</code>. In the middle it passes <code>q_C</code> at <code>dp_C</code>, and at full travel an edge of the consumers passes <code>q_nom</code> at <code>dp_nom</code>.</p>
+<p>Every edge is an orifice: passive, flow both ways. Flow forces are left out: valid where the spool is driven strongly enough. Sources: edges: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, chapter 5; symbol: ISO 1219-1. The values are assumed.</p></html>"));
+end Valve63;
