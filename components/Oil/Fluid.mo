@@ -5,7 +5,7 @@ model Fluid "Oil of the circuit: laws of density with bulk modulus and of viscos
   parameter SI.Temperature T_0(min = 220, max = 420) = 313.15 "Temperature of the oil where it is constant, of rho_0, and of oil whose temperature nobody gives";
   parameter SI.BulkModulus beta_0(min = 1e7, max = 1e10, nominal = 1e9) = 1.5e9 "Tangent bulk modulus of the air-free oil at p_0";
   parameter Real m(unit = "1", min = 0.1, max = 30) = 10 "Growth of the bulk modulus with pressure";
-  parameter SI.VolumeFraction alpha_0(min = 0, max = 0.3) = 0.01 "Share of free air in the volume at p_0, before any of it dissolves";
+  parameter SI.VolumeFraction alpha_0(min = 0, max = 0.2) = 0.01 "Share of free air in the volume at p_0, before any of it dissolves";
   parameter Real x_u(unit = "1", min = 0, max = 1) = 0.2 "Share of the air that is not dissolved in lines and volumes";
   parameter Real n_g(unit = "1", min = 1, max = 1.67) = 1.2 "Polytropic exponent of the air bubbles";
   parameter SI.DynamicViscosity mu_ref(min = 1e-4, max = 10, nominal = 0.03) = 0.0396 "Dynamic viscosity at T_mu and low pressure";

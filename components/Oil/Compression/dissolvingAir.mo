@@ -9,7 +9,7 @@ function dissolvingAir "Oil with air that dissolves at once as the pressure rise
   input SI.Pressure p_v = 0 "Pressure that is not reached however far the oil is drawn apart";
   input SI.Pressure w_v = 1e3 "Fall of the pressure over which voids grow to e times their volume";
 protected
-  SI.Pressure p_s "Pressure of the bubbles";
+  SI.Pressure p_s "Pressure of the bubbles: they grow no more where voids are a thousand times the oil";
   Real v_v "Volume of voids over the volume of the air-free oil at p_0";
   Real x "Modulus of the oil over its value at p_0";
   Real u "Place between p_0 and p_sat, 0 to 1";
@@ -17,7 +17,7 @@ protected
   Real v_l "Volume of the oil over the volume of the air-free oil at p_0";
   Real r "Volume of a bubble over that at p_0";
 algorithm
-  p_s := max(p, 1);
+  p_s := max(p, p_v + 2*w_v);
   x := max(1 + m*(p - p_0)/beta_0, 1e-3);
   u := min(max((p - p_0)/(p_sat - p_0), 0), 1);
   x_eq := 1 - u*u*(3 - 2*u);

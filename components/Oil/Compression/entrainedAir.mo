@@ -8,13 +8,13 @@ function entrainedAir "Oil with entrained air whose undissolved share is frozen"
   input SI.Pressure p_v = 0 "Pressure that is not reached however far the oil is drawn apart";
   input SI.Pressure w_v = 1e3 "Fall of the pressure over which voids grow to e times their volume";
 protected
-  SI.Pressure p_s "Pressure of the bubbles";
+  SI.Pressure p_s "Pressure of the bubbles: they grow no more where voids are a thousand times the oil";
   Real x "Modulus of the oil over its value at p_0";
   Real v_l "Volume of the oil over the volume of the air-free oil at p_0";
   Real v_g "Volume of the undissolved air, likewise";
   Real v_v "Volume of voids, likewise";
 algorithm
-  p_s := max(p, 1);
+  p_s := max(p, p_v + 2*w_v);
   x := max(1 + m*(p - p_0)/beta_0, 1e-3);
   v_l := (1 - alpha_0)*x^(-1/m);
   v_g := alpha_0*x_u*(p_0/p_s)^(1/n_g);
