@@ -34,7 +34,6 @@ protected
   SI.Density rho(nominal = 1000) "Mean density";
   SI.Temperature T_in(nominal = 300) "Temperature of the oil that comes in";
   SI.DynamicViscosity mu_in(nominal = 0.03) "Its viscosity at low pressure";
-  Real growth(unit = "1") "Its volume over that at T_0";
 equation
   assert(p_open > p_crack, "p_open must lie above p_crack");
   dp = port_a.p - port_b.p;
@@ -44,12 +43,10 @@ equation
   if oil.thermal then
     T_in = oil.T_0 + (inStream(port_a.dT_outflow) + inStream(port_b.dT_outflow))/2 + Smooth.sgn(dp, 1e3)*(inStream(port_a.dT_outflow) - inStream(port_b.dT_outflow))/2;
     mu_in = oil.viscosity(T_in);
-    growth = 1 + oil.gamma*(T_in - oil.T_0);
-    rho = (rho_a + rho_b)/2/growth;
+    rho = (rho_a + rho_b)/2/(1 + oil.gamma*(T_in - oil.T_0));
   else
     T_in = oil.T;
     mu_in = oil.mu;
-    growth = 1;
     rho = (rho_a + rho_b)/2;
   end if;
   A = pi*d*sin(alpha)*x_max*Smooth.ramp(min(x/x_max, 1), 0.01);

@@ -12,7 +12,6 @@ partial model TwoPort "Two ports that exchange oil without storing it"
   SI.Temperature T_oil(nominal = 300) "Temperature of the oil that comes in";
 protected
   SI.DynamicViscosity mu_in(nominal = 0.03) "Viscosity of the oil that comes in, at low pressure";
-  Real growth(unit = "1") "Its volume over that at T_0";
   SI.TemperatureDifference dT_gain(nominal = 1) "Rise of the temperature from a to b";
   SI.Density rho_a(nominal = 1000) "Density at a, at T_0";
   SI.Density rho_b(nominal = 1000) "Density at b, at T_0";
@@ -24,13 +23,11 @@ equation
   if oil.thermal then
     T_oil = oil.T_0 + (inStream(port_a.dT_outflow) + inStream(port_b.dT_outflow))/2 + Smooth.sgn(dp, 1e3)*(inStream(port_a.dT_outflow) - inStream(port_b.dT_outflow))/2;
     mu_in = oil.viscosity(T_oil);
-    growth = 1 + oil.gamma*(T_oil - oil.T_0);
     dT_gain = oil.throttling(port_a.p) - oil.throttling(port_b.p) - (if useHeatPort then dp/(rho*oil.c_p) else 0);
-    rho = (rho_a + rho_b)/2/growth;
+    rho = (rho_a + rho_b)/2/(1 + oil.gamma*(T_oil - oil.T_0));
   else
     T_oil = oil.T;
     mu_in = oil.mu;
-    growth = 1;
     dT_gain = 0;
     rho = (rho_a + rho_b)/2;
   end if;
