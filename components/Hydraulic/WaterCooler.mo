@@ -26,6 +26,9 @@ equation
   N = kA/C_less;
   T_coolant = T_water;
   effectiveness = C_less/C_oil*(1 - exp(-N*(1 - ratio)))/(1 - ratio*exp(-N*(1 - ratio)));
+  if not oil.thermal then
+    Q_flow = 0;
+  end if;
   T_return = T_water + Q_flow/C_water;
   annotation(Documentation(info = "<html>
 <p>Counterflow of two streams: with the smaller of the heat capacities that flow, <code>C_less</code>, its ratio r to the larger and <code>N = kA/C_less</code>, the smaller stream changes by
