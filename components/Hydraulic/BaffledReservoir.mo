@@ -40,7 +40,7 @@ equation
   if oil.thermal then
     mean = sum(growth)/n;
     for i in 1:n loop
-      growth[i] = 1 + oil.gamma*(T_oil[i] - oil.T_0);
+      growth[i] = oil.growth(T_oil[i]);
       Q_flow[i] = if useHeatPort then kA/n*(heatPort.T - T_oil[i]) else 0;
       mass/n*oil.c_p*der(T_oil[i]) = Q_flow[i]
         + (if i > 1 then oil.c_p*max(m_flow[max(i - 1, 1)], 0)*(T_oil[max(i - 1, 1)] - T_oil[i]) else rho*oil.c_p*Connections.inflow(port_a.dT_outflow)*(inStream(port_a.dT_outflow) - port_a.dT_outflow))

@@ -41,9 +41,9 @@ equation
   rho_b = oil.density(port_b.p);
   rho_x = oil.density(port_x.p);
   if oil.thermal then
-    T_in = oil.T_0 + (inStream(port_a.dT_outflow) + inStream(port_b.dT_outflow))/2 + Smooth.sgn(dp, 1e3)*(inStream(port_a.dT_outflow) - inStream(port_b.dT_outflow))/2;
+    T_in = oil.T_0 + Smooth.blend(dp, 1e3, inStream(port_a.dT_outflow), inStream(port_b.dT_outflow));
     mu_in = oil.viscosity(T_in);
-    rho = (rho_a + rho_b)/2/(1 + oil.gamma*(T_in - oil.T_0));
+    rho = (rho_a + rho_b)/2/oil.growth(T_in);
   else
     T_in = oil.T;
     mu_in = oil.mu;

@@ -69,7 +69,7 @@ equation
     supply[i] = noEvent(max(m_left[i], 0))*((if i > 1 then air[max(i - 1, 1)].x else oil.x_u) - air[i].x)
       + noEvent(max(-m_right[i], 0))*((if i < N then air[min(i + 1, N)].x else oil.x_u) - air[i].x);
     if oil.thermal then
-      growth[i] = 1 + oil.gamma*(T_oil[i] - oil.T_0);
+      growth[i] = oil.growth(T_oil[i]);
       T_low[i] = T_oil[i] + oil.throttling(p[i]);
       Q_flow[i] = if useHeatPort then kA/N*(heatPort.T - T_oil[i]) else 0;
       air[i].rho*V_p[i]/growth[i]*oil.c_p*der(T_oil[i]) = oil.c_p*max(m_left[i], 0)*((if i > 1 then T_low[max(i - 1, 1)] else oil.T_0 + inStream(port_a.dT_outflow) + oil.throttling(port_a.p)) - T_low[i])
@@ -85,8 +85,9 @@ equation
   end for;
   for i in 1:M loop
     rho_m[i] = air[max(i - 1 + a, 1)].rho/growth[max(i - 1 + a, 1)];
-    T_m[i] = if not oil.thermal then oil.T else (1 + Smooth.sgn(m_flow[i], 1e-3*A))/2*(if i - 1 + a < 1 then oil.T_0 + inStream(port_a.dT_outflow) else T_oil[max(i - 1 + a, 1)])
-      + (1 - Smooth.sgn(m_flow[i], 1e-3*A))/2*(if i + a > N then oil.T_0 + inStream(port_b.dT_outflow) else T_oil[min(i + a, N)]);
+    T_m[i] = if not oil.thermal then oil.T else Smooth.blend(m_flow[i], 1e-3*A,
+      if i - 1 + a < 1 then oil.T_0 + inStream(port_a.dT_outflow) else T_oil[max(i - 1 + a, 1)],
+      if i + a > N then oil.T_0 + inStream(port_b.dT_outflow) else T_oil[min(i + a, N)]);
     friction[i].m_flow = m_flow[i];
     friction[i].rho = rho_m[i];
     friction[i].mu = if oil.thermal then oil.viscosity(T_m[i]) else oil.mu;

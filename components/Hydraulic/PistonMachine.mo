@@ -79,7 +79,7 @@ equation
   w = der(flange.phi);
   dp = port_a.p - port_b.p;
   if oil.thermal then
-    growth = 1 + oil.gamma*(T_oil - oil.T_0);
+    growth = oil.growth(T_oil);
     mu_oil = oil.viscosity(T_oil);
     oil.rho_0*V_oil*oil.c_p*der(T_oil) = rho_a*oil.c_p*(max(port_a.q, 0)*(inStream(port_a.dT_outflow) - port_a.dT_outflow) + port_a.q*oil.throttling(port_a.p))
       + rho_b*oil.c_p*(max(port_b.q, 0)*(inStream(port_b.dT_outflow) - port_b.dT_outflow) + port_b.q*oil.throttling(port_b.p))

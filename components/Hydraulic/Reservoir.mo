@@ -31,7 +31,7 @@ equation
   end if;
   rho = oil.density(port.p);
   if oil.thermal then
-    growth = 1 + oil.gamma*(T_oil - oil.T_0);
+    growth = oil.growth(T_oil);
     A*der(h) = growth*port.q + A*h*oil.gamma/growth*der(T_oil);
     mass*oil.c_p*der(T_oil) = rho*oil.c_p*Connections.inflow(port.dT_outflow)*(inStream(port.dT_outflow) - port.dT_outflow) + Q_flow;
   else

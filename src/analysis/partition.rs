@@ -3,6 +3,48 @@
 //! In the load zone the flow is a straight line over the speed. It ends below where the pump just covers its leakage, above
 //! where the flow follows the speed no longer. Source: Zhang et al., Processes 2021, 9, 814, section 2 and Fig. 2.
 
+use super::Local;
+use super::linear::Chosen;
+use super::steady::{Point, Unsteady, reach};
+use crate::expr::VarId;
+
+/// No operating point was found at a speed.
+#[derive(Clone, Debug)]
+pub struct Missed {
+    /// The speed.
+    pub speed: f64,
+    /// Why.
+    pub why: Unsteady,
+}
+
+/// Flow, the first output of `local`, over increasing speeds at a load: the operating point is followed from the slowest
+/// speed to either side. The point at the slowest speed comes with it, from which another load is reached.
+///
+/// # Errors
+/// [`Missed`].
+pub fn curve(
+    chosen: &Chosen,
+    local: &mut Local,
+    from: &Point,
+    (speed, speeds): (VarId, &[f64]),
+    load: Option<(VarId, f64)>,
+) -> Result<(Point, Vec<(f64, f64)>), Missed> {
+    let mut points = vec![(0.0, 0.0); speeds.len()];
+    let mut go = |from: &Point, i: usize| {
+        let target: Vec<(VarId, f64)> = load.into_iter().chain([(speed, speeds[i])]).collect();
+        let point = reach(chosen, local, from, &target).map_err(|why| Missed { speed: speeds[i], why })?;
+        points[i] = (speeds[i], local.outputs[0]);
+        Ok(point)
+    };
+    let Some(slowest) = (0..speeds.len()).min_by(|&a, &b| speeds[a].abs().total_cmp(&speeds[b].abs())) else {
+        return Ok((from.clone(), points));
+    };
+    let first = go(from, slowest)?;
+    (slowest + 1..speeds.len()).try_fold(first.clone(), |from, i| go(&from, i))?;
+    (0..slowest).rev().try_fold(first.clone(), |from, i| go(&from, i))?;
+    Ok((first, points))
+}
+
 /// What a curve of flow over speed says of one direction of rotation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Zones {
@@ -16,18 +58,15 @@ pub struct Zones {
     pub saturation: Option<f64>,
 }
 
-/// Intervals whose slope is above this part of the usual one belong to the load zone.
+/// Intervals whose slope is above this part of the usual one belong to the load zone: half way between it and the flat zones.
 const LOADED: f64 = 0.5;
-/// The usual slope is that of this place among all that lie in the direction, from the least: a few steep intervals, where
-/// a valve opens, do not count.
-const USUAL: f64 = 0.8;
 /// Points that a line needs beside its ends.
 const LEAST: usize = 3;
 
 /// The zones for positive speeds, and for negative ones with the sign of the curve; `None` where a direction has no load zone
 /// of at least three points.
 ///
-/// `curve` holds speed and flow, the speeds increasing.
+/// `curve` holds speed and flow, the speeds increasing, none twice.
 pub fn zones(curve: &[(f64, f64)]) -> [Option<Zones>; 2] {
     let forward: Vec<(f64, f64)> = curve.iter().copied().filter(|p| p.0 >= 0.0).collect();
     let backward: Vec<(f64, f64)> = curve.iter().rev().map(|p| (-p.0, -p.1)).filter(|p| p.0 >= 0.0).collect();
@@ -36,14 +75,8 @@ pub fn zones(curve: &[(f64, f64)]) -> [Option<Zones>; 2] {
 }
 
 fn one_way(curve: &[(f64, f64)]) -> Option<Zones> {
-    let slope = |w: &[(f64, f64)]| (w[1].1 - w[0].1) / (w[1].0 - w[0].0);
-    let slopes: Vec<f64> = curve.windows(2).map(slope).collect();
-    let mut sorted: Vec<f64> = slopes.iter().copied().filter(|s| *s > 0.0).collect();
-    sorted.sort_by(f64::total_cmp);
-    let highest = *sorted.last()?;
-    // flat zones are longer than the load zone on some curves: only what rises counts
-    sorted.retain(|s| *s > 1e-3 * highest);
-    let usual = sorted[((sorted.len() - 1) as f64 * USUAL).floor() as usize];
+    let slopes: Vec<f64> = curve.windows(2).map(|w| (w[1].1 - w[0].1) / (w[1].0 - w[0].0)).collect();
+    let usual = usual_slope(curve, &slopes)?;
     let (from, to) = longest(&slopes, |s| s > LOADED * usual)?;
     let inner = curve.get(from + 1..to)?;
     if inner.len() < LEAST {
@@ -56,6 +89,21 @@ fn one_way(curve: &[(f64, f64)]) -> Option<Zones> {
         (most - offset) / slope
     });
     Some(Zones { dead: -offset / slope, slope, straight, saturation })
+}
+
+/// The slope up to which half of the whole rise is made: flat zones add little to it however long they are, and a few steep
+/// intervals, where a valve opens, not much.
+fn usual_slope(curve: &[(f64, f64)], slopes: &[f64]) -> Option<f64> {
+    let rise = |i: usize| curve[i + 1].1 - curve[i].1;
+    let mut rising: Vec<usize> = (0..slopes.len()).filter(|&i| slopes[i].is_finite() && rise(i) > 0.0).collect();
+    rising.sort_by(|&a, &b| slopes[a].total_cmp(&slopes[b]));
+    let half = rising.iter().map(|&i| rise(i)).sum::<f64>() / 2.0;
+    let mut made = 0.0;
+    let reached = rising.into_iter().find(|&i| {
+        made += rise(i);
+        made >= half
+    });
+    reached.map(|i| slopes[i])
 }
 
 /// The longest run of intervals that hold, as the indices of its first and last point.

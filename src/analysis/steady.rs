@@ -5,6 +5,7 @@
 
 use super::linear::Chosen;
 use super::local::{Local, LocalError};
+use crate::expr::VarId;
 use crate::solve::State;
 use crate::units::Unit;
 use nalgebra::{DMatrix, DVector};
@@ -82,6 +83,48 @@ fn same_kind(a: &str, b: &str) -> bool {
 /// [`Unsteady`].
 pub fn settle(local: &mut Local, time: f64, x: Vec<f64>, theta: &[f64], u: &[f64]) -> Result<Steady, Unsteady> {
     search(local, (time, theta, u), &x, &[])
+}
+
+/// A steady state that others are reached from.
+#[derive(Clone, Debug)]
+pub struct Point {
+    /// Its states, in the order of the plan.
+    pub x: Vec<f64>,
+    /// A state of the model, for what is given there: time, parameters and inputs.
+    pub given: State,
+}
+
+/// A way that is too long at once is halved so often: to a thirty-second of it.
+const HALVINGS: u32 = 5;
+
+/// The steady state with other values of parameters and inputs: reached at once, or over the middle of the way. Outputs of
+/// `local` are then those of this state.
+///
+/// # Errors
+/// [`Unsteady`], as it was met first.
+pub fn reach(chosen: &Chosen, local: &mut Local, from: &Point, target: &[(VarId, f64)]) -> Result<Point, Unsteady> {
+    go(chosen, local, from, target, HALVINGS)
+}
+
+fn go(
+    chosen: &Chosen,
+    local: &mut Local,
+    from: &Point,
+    target: &[(VarId, f64)],
+    halvings: u32,
+) -> Result<Point, Unsteady> {
+    let mut given = from.given.clone();
+    target.iter().for_each(|&(v, value)| given.values[v.index()] = value);
+    let (theta, u) = chosen.given(&given);
+    let why = match settle(local, given.time, from.x.clone(), &theta, &u) {
+        Ok(found) => return Ok(Point { x: found.x, given }),
+        Err(why) if halvings > 0 => why,
+        Err(why) => return Err(why),
+    };
+    let middle = |&(v, value): &(VarId, f64)| (v, 0.5 * (from.given.values[v.index()] + value));
+    let middle: Vec<(VarId, f64)> = target.iter().map(middle).collect();
+    let half = go(chosen, local, from, &middle, halvings - 1).map_err(|_| why)?;
+    go(chosen, local, &half, target, halvings - 1)
 }
 
 /// The steady state of `local` at a time with its parameters and inputs, reached from `x`. States among `places` may move

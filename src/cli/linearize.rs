@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::axes::Entry;
 use super::messages::Messages;
 use super::recorder::write_text;
 use super::request::ModelArgs;
@@ -330,16 +331,15 @@ fn ranges(model: &Model, chosen: &Chosen, state: &State) -> Result<Vec<(f64, f64
 /// The values asked for each scheduling quantity.
 fn grid(args: &LinearizeArgs, chosen: &Chosen) -> Result<Vec<Option<Vec<f64>>>, Failure> {
     let mut all: Vec<Option<Vec<f64>>> = vec![None; chosen.rho().len()];
-    for entry in &args.grid {
-        let wrong = |why: &str| Failure::new(Code::BadArgument, format!("`--grid {entry}`: {why}"));
-        let (name, values) = entry.split_once('=').ok_or_else(|| wrong("NAME=VALUES is expected"))?;
-        let k = chosen.rho().iter().position(|r| r.name == name.trim());
-        let k = k.ok_or_else(|| wrong("it is not a scheduling quantity"))?;
+    for text in &args.grid {
+        let entry = Entry::parse("--grid", text)?;
+        let k = chosen.rho().iter().position(|r| r.name == entry.name);
+        let k = k.ok_or_else(|| entry.wrong("it is not a scheduling quantity"))?;
         if all[k].is_some() {
-            let d = Diagnostic::new(Code::BadArgument, format!("`--grid {entry}`: this quantity has a grid already"));
-            return Err(d.help(format!("give all its values at once: `--grid {}=1,2,5`", name.trim())).into());
+            let d = Diagnostic::new(Code::BadArgument, format!("`--grid {text}`: this quantity has a grid already"));
+            return Err(d.help(format!("give all its values at once: `--grid {}=1,2,5`", entry.name)).into());
         }
-        all[k] = Some(crate::analysis::grid::values(values, &chosen.rho()[k].unit).map_err(|e| wrong(&e))?);
+        all[k] = Some(entry.values(&chosen.rho()[k].unit)?);
     }
     Ok(all)
 }

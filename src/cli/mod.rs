@@ -5,6 +5,7 @@
 #![allow(rustdoc::broken_intra_doc_links, reason = "help texts show brackets as a user types them")]
 #![allow(clippy::disallowed_methods, clippy::print_stderr, reason = "the one place that may")]
 
+mod axes;
 mod check;
 mod checkpoint;
 mod columns;

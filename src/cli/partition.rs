@@ -4,22 +4,22 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::axes::Entry;
 use super::linearize::{restless, state_at};
 use super::messages::Messages;
-use super::recorder::write_text;
+use super::recorder::{write_points, write_text};
 use super::request::ModelArgs;
 use super::{Ending, Failure, files, model, plot};
-use crate::analysis::linear::{Choice, Chosen};
-use crate::analysis::partition::{Zones, zones};
-use crate::analysis::steady::{Unsteady, settle};
-use crate::analysis::{Local, grid};
+use crate::analysis::linear::{Choice, Chosen, outputs};
+use crate::analysis::partition::{Zones, curve, zones};
+use crate::analysis::steady::Point;
 use crate::compile::Model;
 use crate::diag::Code;
 use crate::expr::VarId;
 use crate::plot::Figure;
 use crate::plot::figure::{Panel, Series};
-use crate::results::{CsvWriter, Signal, number};
-use crate::solve::State;
+use crate::results::{Signal, number};
+use crate::solve::signals;
 
 /// Where a pump delivers: dead, load and saturation zone of its flow over the speed, under loads
 #[derive(Args, Debug)]
@@ -54,9 +54,6 @@ pub(super) struct PartitionArgs {
     plot: Option<PathBuf>,
 }
 
-/// A way that is too long at once is halved so often.
-const HALVINGS: u32 = 5;
-
 /// A quantity and the values it takes.
 struct Axis {
     variable: VarId,
@@ -75,17 +72,23 @@ pub(super) fn run(args: &PartitionArgs, messages: &mut Messages) -> Result<Endin
     args.plot.as_deref().map_or(Ok(()), plot::ready)?;
     let experiment = args.model.experiment(None, messages)?;
     let model = model::compile(&experiment, messages)?;
-    let entries: Vec<&str> = [Some(args.speed.as_str()), args.load.as_deref()].into_iter().flatten().collect();
-    let names: Vec<String> = entries.iter().map(|e| e.split('=').next().unwrap_or(e).trim().to_owned()).collect();
-    let choice = Choice { inputs: names, outputs: vec![args.flow.clone()] };
+    let entries = [Some(("--speed", &args.speed)), args.load.as_ref().map(|load| ("--load", load))];
+    let entries = entries.into_iter().flatten().map(|(option, text)| Entry::parse(option, text));
+    let entries: Vec<Entry<'_>> = entries.collect::<Result<_, _>>()?;
+    let inputs = entries.iter().map(|entry| entry.name.to_owned()).collect();
+    let choice = Choice { inputs, outputs: vec![args.flow.clone()] };
     let chosen = Chosen::new(&model.flat, &choice, &[]).map_err(|diagnostics| Failure { diagnostics })?;
-    let mut axes = entries.iter().map(|entry| axis(&model, entry)).collect::<Result<Vec<_>, _>>()?;
+    let axes = entries.iter().zip(chosen.asked()).map(|(entry, variable)| axis(&model, entry, variable));
+    let mut axes: Vec<Axis> = axes.collect::<Result<_, _>>()?;
     axes[0].values.sort_by(f64::total_cmp);
-    let flow = position(&model, &args.flow);
+    axes[0].values.dedup();
+    let flow = outputs(&model.flat, &choice.outputs)?;
+    let flow = signals(&model.dae, &flow).remove(0);
     let curves = curves(&model, &chosen, &axes)?;
-    let flow = signal(&model, flow);
     if let Some(path) = &args.output_file {
-        write_text(&path.display().to_string(), &table(&axes, &flow, &curves)?)?;
+        let columns: Vec<Signal> = axes.iter().rev().map(|axis| &axis.signal).chain([&flow]).cloned().collect();
+        let rows = curves.iter().flat_map(|c| c.points.iter().map(|p| c.load.into_iter().chain([p.0, p.1]).collect()));
+        write_points(path, &columns, rows)?;
     }
     if let Some(path) = &args.plot {
         plot::write(&picture(&model, &axes, &flow, &curves), &[], path, messages)?;
@@ -93,90 +96,31 @@ pub(super) fn run(args: &PartitionArgs, messages: &mut Messages) -> Result<Endin
     say(&model, &axes, &flow, &curves)
 }
 
-/// Reads `NAME=VALUES`.
-fn axis(model: &Model, entry: &str) -> Result<Axis, Failure> {
-    let wrong = |why: String| Failure::new(Code::BadArgument, format!("`{entry}`: {why}"));
-    let (name, text) = entry.split_once('=').ok_or_else(|| wrong("NAME=VALUES is expected".to_owned()))?;
-    let variable = position(model, name.trim());
-    let signal = signal(model, variable);
-    let values = grid::values(text, &signal.unit).map_err(wrong)?;
-    Ok(Axis { variable, signal, values })
+fn axis(model: &Model, entry: &Entry<'_>, variable: VarId) -> Result<Axis, Failure> {
+    let signal = signals(&model.dae, &[variable]).remove(0);
+    Ok(Axis { variable, values: entry.values(&signal.unit)?, signal })
 }
 
-/// A variable that the choice has found before.
-fn position(model: &Model, name: &str) -> VarId {
-    let i = model.flat.variables.iter().position(|v| v.name == name).unwrap_or(0);
-    VarId(u32::try_from(i).expect("fewer than 2^32 variables"))
-}
-
-fn signal(model: &Model, v: VarId) -> Signal {
-    let variable = &model.flat.variables[v.index()];
-    Signal { unit: variable.unit.as_deref().unwrap_or("").to_owned(), ..Signal::new(&variable.name) }
-}
-
-/// Follows the operating point over the speeds, at each load from the slowest speed to either side.
+/// The curve at each load, from the point at the slowest speed of the one before.
 fn curves(model: &Model, chosen: &Chosen, axes: &[Axis]) -> Result<Vec<Curve>, Failure> {
     let loads: Vec<Option<f64>> = match axes.get(1) {
         Some(load) => load.values.iter().copied().map(Some).collect(),
         None => vec![None],
     };
-    let start = state_at(model, None)?.0;
-    let mut local = chosen.at(&start).map_err(|why| restless(&why.into(), chosen))?;
-    let mut first = Point { x: local.state(), given: start };
-    let speeds = &axes[0].values;
-    let slowest = (0..speeds.len()).min_by(|&a, &b| speeds[a].abs().total_cmp(&speeds[b].abs())).unwrap_or(0);
+    let given = state_at(model, None)?.0;
+    let mut local = chosen.at(&given).map_err(|why| restless(&why.into(), chosen))?;
+    let mut from = Point { x: local.state(), given };
     let mut found = Vec::with_capacity(loads.len());
     for load in loads {
-        let mut points = vec![(0.0, 0.0); speeds.len()];
-        let mut go = |from: &Point, i: usize| {
-            let values = axes.iter().zip([Some(speeds[i]), load]);
-            let target: Vec<(VarId, f64)> = values.filter_map(|(axis, value)| Some((axis.variable, value?))).collect();
-            let point = reach(chosen, &mut local, from, &target, HALVINGS)
-                .map_err(|why| located(restless(&why, chosen), axes, speeds[i], load))?;
-            points[i] = (speeds[i], local.outputs[0]);
-            Ok::<Point, Failure>(point)
-        };
-        first = go(&first, slowest)?;
-        (slowest + 1..speeds.len()).try_fold(first.clone(), |from, i| go(&from, i))?;
-        (0..slowest).rev().try_fold(first.clone(), |from, i| go(&from, i))?;
+        let speeds = (axes[0].variable, &axes[0].values[..]);
+        let at = axes.get(1).zip(load).map(|(axis, value)| (axis.variable, value));
+        let curve = curve(chosen, &mut local, &from, speeds, at);
+        let (first, points) =
+            curve.map_err(|missed| located(restless(&missed.why, chosen), axes, missed.speed, load))?;
+        from = first;
         found.push(Curve { load, points });
     }
     Ok(found)
-}
-
-/// An operating point: its states, and a state of the model for what is given.
-#[derive(Clone)]
-struct Point {
-    x: Vec<f64>,
-    given: State,
-}
-
-/// The operating point at other values: at once, or over the middle of the way. Outputs are then those of this point.
-fn reach(
-    chosen: &Chosen,
-    local: &mut Local,
-    from: &Point,
-    target: &[(VarId, f64)],
-    halvings: u32,
-) -> Result<Point, Unsteady> {
-    let moved = |share: f64| {
-        let mut given = from.given.clone();
-        for &(v, value) in target {
-            given.values[v.index()] += share * (value - given.values[v.index()]);
-        }
-        given
-    };
-    let given = moved(1.0);
-    let (theta, u) = chosen.given(&given);
-    let why = match settle(local, given.time, from.x.clone(), &theta, &u) {
-        Ok(found) => return Ok(Point { x: found.x, given }),
-        Err(why) if halvings > 0 => why,
-        Err(why) => return Err(why),
-    };
-    let middle = moved(0.5);
-    let middle: Vec<(VarId, f64)> = target.iter().map(|(v, _)| (*v, middle.values[v.index()])).collect();
-    let half = reach(chosen, local, from, &middle, halvings - 1).map_err(|_| why)?;
-    reach(chosen, local, &half, target, halvings - 1)
 }
 
 /// Says at which point a search failed.
@@ -236,22 +180,6 @@ fn words(zones: &Zones, speed: &Signal, flow: &Signal) -> String {
         .replace(" ,", ",")
         .trim_end()
         .to_owned()
-}
-
-/// The points, one row each.
-fn table(axes: &[Axis], flow: &Signal, curves: &[Curve]) -> Result<String, Failure> {
-    let mut signals: Vec<Signal> = axes.get(1).map(|a| a.signal.clone()).into_iter().collect();
-    signals.push(axes[0].signal.clone());
-    signals.push(flow.clone());
-    let mut out = Vec::new();
-    let io = |e: std::io::Error| Failure::new(Code::BadArgument, e.to_string());
-    let mut writer = CsvWriter::new(&mut out, &signals).map_err(io)?;
-    let rows = curves.iter().flat_map(|c| c.points.iter().map(|p| (c.load, *p)));
-    for (i, (load, (speed, flow))) in rows.enumerate() {
-        writer.row(i as f64, load.into_iter().chain([speed, flow])).map_err(io)?;
-    }
-    writer.finish().map_err(io)?;
-    Ok(String::from_utf8_lossy(&out).replacen("time", "point", 1))
 }
 
 fn picture(model: &Model, axes: &[Axis], flow: &Signal, curves: &[Curve]) -> Figure {

@@ -296,6 +296,23 @@ pub(super) fn write_text(name: &str, text: &str) -> Result<(), Failure> {
     if name == "-" { print(text) } else { super::files::write(Path::new(name), text.as_bytes()) }
 }
 
+/// Writes a table of operating points, a row each, numbered in the first column; `-` is stdout.
+pub(super) fn write_points(
+    path: &Path,
+    signals: &[Signal],
+    rows: impl Iterator<Item = Vec<f64>>,
+) -> Result<(), Failure> {
+    let mut out = Vec::new();
+    let io = |e: std::io::Error| access(path, "written", &e);
+    let mut writer = CsvWriter::new(&mut out, signals).map_err(io)?;
+    for (i, row) in rows.enumerate() {
+        writer.row(i as f64, row).map_err(io)?;
+    }
+    writer.finish().map_err(io)?;
+    let text = String::from_utf8_lossy(&out).replacen("time", "point", 1);
+    write_text(&path.display().to_string(), &text)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -4,20 +4,20 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::axes::Entry;
 use super::linearize::{rest, restless, run_from, run_to, state_at};
 use super::messages::Messages;
-use super::recorder::write_text;
+use super::recorder::write_points;
 use super::request::ModelArgs;
 use super::{Ending, Failure, columns, files, model};
 use crate::analysis::balance::{self, Budget};
-use crate::analysis::grid;
 use crate::analysis::linear::{Choice, Chosen};
 use crate::compile::Model;
 use crate::diag::Code;
 use crate::experiment::seconds;
 use crate::expr::VarId;
 use crate::plot::{png, sankey};
-use crate::results::{CsvWriter, Signal, Trajectory, number};
+use crate::results::{Signal, Trajectory, number};
 use crate::solve::{Settings, State, signals};
 
 /// Operating points: where nothing changes any more, and where the power goes there
@@ -124,12 +124,10 @@ pub(super) fn run(args: &SteadyArgs, messages: &mut Messages) -> Result<Ending, 
 /// What is moved, and its values; one point without a name where nothing is.
 fn over(args: &SteadyArgs, model: &Model) -> Result<(Vec<String>, Vec<f64>), Failure> {
     let Some(entry) = &args.over else { return Ok((Vec::new(), vec![0.0])) };
-    let wrong = |why: String| Failure::new(Code::BadArgument, format!("`--over {entry}`: {why}"));
-    let (name, text) = entry.split_once('=').ok_or_else(|| wrong("NAME=VALUES is expected".to_owned()))?;
-    let name = name.trim();
-    let unit = model.flat.variables.iter().find(|v| v.name == name).and_then(|v| v.unit.as_deref()).unwrap_or("");
-    let values = grid::values(text, unit).map_err(wrong)?;
-    Ok((vec![name.to_owned()], values))
+    let entry = Entry::parse("--over", entry)?;
+    let variable = model.flat.variables.iter().find(|v| v.name == entry.name);
+    let values = entry.values(variable.and_then(|v| v.unit.as_deref()).unwrap_or(""))?;
+    Ok((vec![entry.name.to_owned()], values))
 }
 
 fn wanted(args: &SteadyArgs, model: &Model, chosen: &Chosen) -> Result<Vec<VarId>, Failure> {
@@ -156,18 +154,10 @@ fn settled(model: &Model, chosen: &Chosen, state: &State, wanted: &[VarId]) -> R
 
 fn tell(args: &SteadyArgs, over: &[String], table: &Trajectory) -> Result<(), Failure> {
     if let Some(path) = &args.output_file {
-        let mut out = Vec::new();
-        let io = |e: std::io::Error| files::access(path, "written", &e);
         let mut all: Vec<Signal> = over.iter().map(Signal::new).collect();
         all.extend(table.signals.iter().cloned());
-        let mut writer = CsvWriter::new(&mut out, &all).map_err(io)?;
-        for (i, &value) in table.times.iter().enumerate() {
-            let row = over.iter().map(|_| value).chain(table.columns.iter().map(|c| c[i]));
-            writer.row(i as f64, row).map_err(io)?;
-        }
-        writer.finish().map_err(io)?;
-        let text = String::from_utf8_lossy(&out).replacen("time", "point", 1);
-        return write_text(&path.display().to_string(), &text);
+        let row = |i: usize| over.iter().map(|_| table.times[i]).chain(table.columns.iter().map(|c| c[i])).collect();
+        return write_points(path, &all, (0..table.len()).map(row));
     }
     let mut out = String::new();
     for (i, value) in table.times.iter().enumerate() {

@@ -70,8 +70,8 @@ pub(super) fn equations(instance: &mut Instance<'_, '_>, network: &Network, numb
         for member in set.members.iter().filter(|m| m.outside) {
             let others: Vec<StreamMember> = set.members.iter().filter(|m| *m != member).copied().collect();
             let lhs = instance.exprs.var(instance.variables[member.variable as usize].id);
-            let rhs = match instance.streams.at[number] {
-                Some(at) => instance.leaving(instance.streams.junctions[at].mixer),
+            let rhs = match instance.streams.junction(number).map(|junction| junction.mixer) {
+                Some(mixer) => instance.leaving(mixer),
                 None => instance.stream_mixture(&others, LEAST_MIXED),
             };
             instance.leaves_with(member.variable, rhs);
@@ -86,13 +86,12 @@ impl Instance<'_, '_> {
     pub fn in_stream(&mut self, variable: u32) -> ExprId {
         let own = self.exprs.var(self.variables[variable as usize].id);
         let Some(&set) = self.streams.inside.get(&variable) else { return own };
-        if let Some(at) = self.streams.at[set] {
-            let junction = self.streams.junctions[at].clone();
-            return match variable == junction.mixer {
-                true if junction.others.is_empty() => own,
-                true => self.stream_mixture(&junction.others, LEAST_SHARE),
-                false => self.leaving(junction.mixer),
-            };
+        if let Some(junction) = self.streams.junction(set) {
+            if variable != junction.mixer {
+                return self.leaving(junction.mixer);
+            }
+            let others = junction.others.clone();
+            return if others.is_empty() { own } else { self.stream_mixture(&others, LEAST_SHARE) };
         }
         let members = &self.streams.sets[set];
         let others: Vec<StreamMember> =
@@ -118,18 +117,14 @@ impl Instance<'_, '_> {
     /// `Connections.inflow(v)`: how much comes in through the port of `v`. Through a component that mixes passes all that
     /// others send to its node, though more than its own flow.
     pub fn inflow(&mut self, variable: u32, flow: u32) -> ExprId {
-        let at = self.streams.inside.get(&variable).and_then(|&set| self.streams.at[set]);
-        let junction = at.map(|at| self.streams.junctions[at].clone()).filter(|j| j.mixer == variable);
-        let Some(junction) = junction else {
+        let junction = self.streams.inside.get(&variable).and_then(|&set| self.streams.junction(set));
+        let Some(junction) = junction.filter(|junction| junction.mixer == variable) else {
             let flow = self.exprs.var(self.variables[flow as usize].id);
             return self.exprs.binary(Binary::Max, flow, Exprs::ZERO);
         };
-        let mut all = Exprs::ZERO;
-        for m in &junction.others {
-            let part = self.sent(m);
-            all = self.exprs.add(all, part);
-        }
-        all
+        let others = junction.others.clone();
+        let sent: Vec<ExprId> = others.iter().map(|m| self.sent(m)).collect();
+        self.total(sent)
     }
 
     /// The mean of what members send, each with its flow as its weight. Where all of them together send less than `least`, the
@@ -148,7 +143,8 @@ impl Instance<'_, '_> {
         {
             return value;
         }
-        let equal = self.equal_share(&parts, least);
+        let total = self.total(parts.iter().map(|(_, sent)| *sent));
+        let equal = self.equal_share(total, least);
         let (mut carried, mut all) = (Exprs::ZERO, Exprs::ZERO);
         for (value, sent) in parts {
             let weight = self.exprs.add(sent, equal);
@@ -166,14 +162,15 @@ impl Instance<'_, '_> {
         self.exprs.binary(Binary::Max, towards, Exprs::ZERO)
     }
 
-    /// What is added to each weight: nothing from `least` on, and below as much as keeps the mixture determined and smooth.
-    fn equal_share(&mut self, parts: &[(ExprId, ExprId)], least: f64) -> ExprId {
-        let mut all = Exprs::ZERO;
-        for (_, sent) in parts {
-            all = self.exprs.add(all, *sent);
-        }
+    fn total(&mut self, parts: impl IntoIterator<Item = ExprId>) -> ExprId {
+        parts.into_iter().fold(Exprs::ZERO, |sum, part| self.exprs.add(sum, part))
+    }
+
+    /// What is added to each weight where `total` is sent: nothing from `least` on, and below as much as keeps the mixture
+    /// determined and smooth.
+    fn equal_share(&mut self, total: ExprId, least: f64) -> ExprId {
         let (least, two) = (self.exprs.num(least), self.exprs.num(2.0));
-        let over = self.exprs.div(all, least);
+        let over = self.exprs.div(total, least);
         let short = self.exprs.sub(Exprs::ONE, over);
         let short = self.exprs.binary(Binary::Max, short, Exprs::ZERO);
         let power = self.exprs.binary(Binary::Pow, short, two);

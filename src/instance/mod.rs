@@ -222,6 +222,13 @@ pub struct Streams {
     pub junctions: Vec<Junction>,
 }
 
+impl Streams {
+    /// The junction at whose node a connection set lies.
+    pub fn junction(&self, set: usize) -> Option<&Junction> {
+        self.at[set].map(|at| &self.junctions[at])
+    }
+}
+
 /// A node of which one component takes in all that comes, and gives all that leaves.
 #[derive(Clone, Debug)]
 pub struct Junction {

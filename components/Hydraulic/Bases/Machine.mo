@@ -71,7 +71,7 @@ equation
   side = (1 + Smooth.sgn(dp, 2e4))/2;
   rho_high = side*rho_a + (1 - side)*rho_b;
   if oil.thermal then
-    growth = 1 + oil.gamma*(T_case - oil.T_0);
+    growth = oil.growth(T_case);
     oil.rho_0*V_oil*oil.c_p*der(T_case) = oil.c_p*(rho_a*(max(port_a.q, 0)*(inStream(port_a.dT_outflow) - port_a.dT_outflow) + port_a.q*oil.throttling(port_a.p))
       + rho_b*(max(port_b.q, 0)*(inStream(port_b.dT_outflow) - port_b.dT_outflow) + port_b.q*oil.throttling(port_b.p))) + H_case + T_sh*w + Q_heat;
   else

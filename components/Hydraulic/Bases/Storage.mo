@@ -16,7 +16,7 @@ protected
   Real growth(unit = "1") "Volume of the oil over that at T_0";
 equation
   if oil.thermal then
-    growth = 1 + oil.gamma*(T_oil - oil.T_0);
+    growth = oil.growth(T_oil);
     inflow = growth*air.port_density*port.q + air.swell + V_oil*oil.gamma/growth*der(T_oil);
     mass*oil.c_p*der(T_oil) = oil.density(port.p)*oil.c_p*Connections.inflow(port.dT_outflow)*(inStream(port.dT_outflow) - port.dT_outflow) + Q_flow + oil.gamma*T_oil/growth*V_oil*der(port.p);
   else

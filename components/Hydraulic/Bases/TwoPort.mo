@@ -21,10 +21,10 @@ equation
   rho_a = oil.density(port_a.p);
   rho_b = oil.density(port_b.p);
   if oil.thermal then
-    T_oil = oil.T_0 + (inStream(port_a.dT_outflow) + inStream(port_b.dT_outflow))/2 + Smooth.sgn(dp, 1e3)*(inStream(port_a.dT_outflow) - inStream(port_b.dT_outflow))/2;
+    T_oil = oil.T_0 + Smooth.blend(dp, 1e3, inStream(port_a.dT_outflow), inStream(port_b.dT_outflow));
     mu_in = oil.viscosity(T_oil);
     dT_gain = oil.throttling(port_a.p) - oil.throttling(port_b.p) - (if useHeatPort then dp/(rho*oil.c_p) else 0);
-    rho = (rho_a + rho_b)/2/(1 + oil.gamma*(T_oil - oil.T_0));
+    rho = (rho_a + rho_b)/2/oil.growth(T_oil);
   else
     T_oil = oil.T;
     mu_in = oil.mu;

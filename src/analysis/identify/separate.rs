@@ -1,11 +1,12 @@
 //! What can be found at all: parameters without influence, and groups that the data cannot tell apart.
 
 use nalgebra::{DMatrix, DVector};
+use petgraph::unionfind::UnionFind;
 
 /// A direction in which the unknowns can move unseen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Blind {
-    /// Indices of the parameters that take part, strongest first.
+    /// Indices of the parameters that take part, strongest first; in their own order where several directions share them.
     pub group: Vec<usize>,
     /// The direction in z, of length 1.
     pub direction: Vec<f64>,
@@ -67,7 +68,7 @@ pub fn separate(information: &DMatrix<f64>) -> Separation {
             blind.push(Blind { group: group(&direction), direction, deviation });
         }
     }
-    merge_hidden(&mut blind);
+    merge_hidden(&mut blind, p);
     (0..p).filter(|j| !seen.contains(j)).for_each(|j| variance[j] = size[j].powi(-2));
     Separation {
         rank: p - blind.len(),
@@ -90,19 +91,18 @@ fn group(direction: &[f64]) -> Vec<usize> {
 
 /// Several directions that the data do not see span a space of which any basis would do: those that share parameters name all
 /// of them, so that what is said does not hang on rounding.
-fn merge_hidden(blind: &mut [Blind]) {
-    let hidden = |b: &Blind| b.deviation.is_infinite();
-    loop {
-        let found = (0..blind.len()).flat_map(|a| (a + 1..blind.len()).map(move |b| (a, b))).find(|&(a, b)| {
-            let (a, b) = (&blind[a], &blind[b]);
-            hidden(a) && hidden(b) && a.group != b.group && a.group.iter().any(|j| b.group.contains(j))
-        });
-        let Some((a, b)) = found else { return };
-        let mut all: Vec<usize> = blind[a].group.iter().chain(&blind[b].group).copied().collect();
-        all.sort_unstable();
-        all.dedup();
-        let old = [blind[a].group.clone(), blind[b].group.clone()];
-        blind.iter_mut().filter(|x| hidden(x) && old.contains(&x.group)).for_each(|x| x.group.clone_from(&all));
+fn merge_hidden(blind: &mut [Blind], parameters: usize) {
+    let hidden: Vec<&mut Blind> =
+        blind.iter_mut().filter(|b| b.deviation.is_infinite() && !b.group.is_empty()).collect();
+    let mut sets = UnionFind::<usize>::new(parameters);
+    for b in &hidden {
+        b.group.windows(2).for_each(|pair| _ = sets.union(pair[0], pair[1]));
+    }
+    let set: Vec<usize> = hidden.iter().map(|b| sets.find(b.group[0])).collect();
+    for (b, own) in hidden.into_iter().zip(&set) {
+        if set.iter().filter(|other| *other == own).count() > 1 {
+            b.group = (0..parameters).filter(|&j| sets.find(j) == *own).collect();
+        }
     }
 }
 

@@ -50,11 +50,9 @@ impl<'a> Instance<'a, '_> {
         span: Span,
     ) -> Option<Option<Val>> {
         if let [package, query] = function.parts.as_slice() {
-            let name = query.name.name.as_str();
-            return match name {
-                _ if package.name.name != "Connections" => None,
-                "isRoot" | "rooted" => Some(self.connection_query(name, args, view, span)),
-                "inflow" => Some(self.stream(name, args, view, span)),
+            return match (package.name.name.as_str(), query.name.name.as_str()) {
+                ("Connections", name @ ("isRoot" | "rooted")) => Some(self.connection_query(name, args, view, span)),
+                ("Connections", name @ "inflow") => Some(self.stream(name, args, view, span)),
                 _ => None,
             };
         }

@@ -472,20 +472,20 @@ impl<'a> Instance<'a, '_> {
         let none: Rc<[_]> = Rc::from([]);
         let redeclaration = |s: &&Source<'a>| s.base == 0 && template.bases[0].short;
         let (own, inherited): (Vec<_>, Vec<_>) = element.modified.iter().partition(redeclaration);
-        let as_args = |sources: Vec<&Source<'a>>| -> Vec<Arg<'a>> {
-            let arg = |s: &Source<'a>| source_arg(s, View { scope, base: s.base }, &none);
-            sources.into_iter().filter_map(arg).collect()
-        };
+        let as_arg = |s: &Source<'a>| source_arg(s, View { scope, base: s.base }, &none);
+        let own: Vec<Arg<'a>> = own.into_iter().filter_map(as_arg).collect();
         let defaults = defaults.into_iter().cloned().collect();
-        // those of a base class where it was found come before what the base says itself
-        let mut inherited: Vec<(u32, Arg<'a>)> =
-            inherited.into_iter().filter_map(|s: &Source<'a>| Some((s.base, as_args(vec![s]).pop()?))).collect();
-        for (base, arg) in template.base_args.iter().filter(|(_, a)| a.target() == element.name).rev() {
-            let at = inherited.iter().position(|(b, _)| b >= base).unwrap_or(inherited.len());
-            inherited.insert(at, (*base, arg.clone()));
+        // what is modified of a base class where it was found comes before what that class says itself
+        let mut of_bases = template.base_args.iter().filter(|(_, arg)| arg.target() == element.name).peekable();
+        let mut below = Vec::with_capacity(inherited.len());
+        for source in inherited {
+            while let Some((_, arg)) = of_bases.next_if(|(base, _)| *base <= source.base) {
+                below.push(arg.clone());
+            }
+            below.extend(as_arg(source));
         }
-        let inherited = inherited.into_iter().map(|(_, arg)| arg).collect();
-        for arg in [as_args(own), defaults, inherited].iter().flatten() {
+        below.extend(of_bases.map(|(_, arg)| arg.clone()));
+        for arg in [own, defaults, below].iter().flatten() {
             self.check_final(arg.final_, outer, arg.span, element.name);
             reached.take(arg);
             outer = outer.or(Some(arg.span));

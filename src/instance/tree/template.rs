@@ -25,8 +25,8 @@ pub struct Template<'a> {
     pub builtin: Option<Builtin>,
     /// Attribute modifications along the chain of types, outermost first.
     pub builtin_args: Vec<Source<'a>>,
-    /// What is modified of a base class where it was found, with the index of that base: a class element carries the
-    /// modifiers of its `constrainedby` and of the component or package that holds it.
+    /// What is modified of a base class where it was found, with the index of that base, outermost first: a class element
+    /// carries the modifiers of its `constrainedby` and of the component or package that holds it.
     pub base_args: Vec<(u32, Arg<'a>)>,
     /// Array dimensions of a type such as `type Triple = Real[3]`, outermost last.
     pub dims: Vec<(&'a [ast::Subscript], u32)>,
@@ -423,8 +423,9 @@ impl<'a> Instance<'a, '_> {
         chain: &mut Vec<ClassId>,
     ) {
         let before = t.builtin_args.len();
-        let inner = self.gather(t, found.class, found.parent, chain);
+        let inner = u32::try_from(t.bases.len()).expect("fewer than 2^32 bases");
         t.base_args.extend(found.args.iter().map(|arg| (inner, arg.clone())));
+        self.gather(t, found.class, found.parent, chain);
         let names = t.bases[inner as usize].names.clone();
         // Outer attribute modifications come before those of the type chain.
         let outer = arguments.iter().map(|a| Source { what: What::Argument(a), base });
