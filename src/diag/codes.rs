@@ -98,6 +98,7 @@ codes! {
     Overdetermined = "E303", Error, "a quantity is determined twice";
     IndexReduction = "E304", Error, "constraints that cannot be differentiated";
     ReinitNoState = "E305", Error, "`reinit` of something that is no state";
+    HeldStill = "N306", Note, "a body cannot move";
     // 4xx initialization
     InitialOver = "E401", Error, "start values contradict each other";
     InitialUnder = "W402", Warning, "start values were chosen";

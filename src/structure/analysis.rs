@@ -9,8 +9,8 @@ use super::solve_block::BlockSolver;
 use super::sorting::{Columns, System, SystemRow};
 use super::{
     ActionKind, Alias, Assign, Block, Dae, Selection, StateChoice, Unknown, alias, assertions, cancelling,
-    closed_groups, delays, discrete, dummy_derivatives, duplicates, events, initial, messages, parameters, regularity,
-    start_derivatives, zeros,
+    closed_groups, delays, discrete, dummy_derivatives, duplicates, events, held, initial, messages, parameters,
+    regularity, start_derivatives, zeros,
 };
 use crate::diag::{Checked, Diagnostic};
 use crate::expr::{Node, VarId};
@@ -83,6 +83,7 @@ fn run(
 
     let mut reduction = Reduction::new(&mut draft);
     reduction.reduce(&mut draft)?;
+    diagnostics.extend(held::find(&draft, &reduction, &aliases));
     let chosen = dummy_derivatives::select(&mut draft, &reduction, &values, choice);
     let states = settle_states(&mut draft, &mut reduction, &chosen.dummies);
     diagnostics.extend(reinit_of_no_state(&draft, &states.states));

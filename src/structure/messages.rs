@@ -110,6 +110,19 @@ pub(super) fn reinit_of_no_state(draft: &Draft, v: VarId, origin: Origin) -> Dia
         .help("set the state it follows from; a variable is a state if its derivative is used and nothing ties it to others")
 }
 
+/// A position that a constraint of parameters alone fixes, though the circuit has an acceleration for it.
+pub(super) fn held_still(draft: &Draft, bodies: &[VarId], equation: &Equation) -> Diagnostic {
+    let names: Vec<String> = bodies.iter().map(|&v| name(draft, v)).collect();
+    let mut made = Diagnostic::new(Code::HeldStill, format!("{} cannot change", listed(&names)));
+    if let Some(&first) = bodies.first() {
+        made = made.at(places::own_place(draft, first), "what moves with it stays at rest");
+    }
+    let holder = &draft.instances[equation.origin.instance as usize];
+    let by = if holder.name.is_empty() { String::new() } else { format!(" of `{}`", holder.name) };
+    made.note(format!("the equation `{}`{by} fixes it", sides(draft, equation)))
+        .help("if it should move, put a spring, a cylinder or an actuator between it and what holds it")
+}
+
 /// Constraints that no choice of states satisfies.
 pub(super) fn dependent_constraints(draft: &Draft, equations: &[Equation], unknowns: &[Unknown]) -> Diagnostic {
     let made = Diagnostic::new(Code::Overdetermined, "constraints and their derivatives depend on each other");

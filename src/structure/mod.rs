@@ -16,6 +16,7 @@ mod dulmage_mendelsohn;
 mod dummy_derivatives;
 mod duplicates;
 mod events;
+mod held;
 mod incidence;
 mod initial;
 mod matching;

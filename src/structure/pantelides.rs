@@ -65,6 +65,18 @@ impl Reduction {
         self.derivative.iter().all(|&d| d == NONE)
     }
 
+    /// Equations of one unknown that were differentiated at least twice: the unknown, and the index of the equation.
+    pub fn constraints_twice_differentiated(&self) -> impl Iterator<Item = (VarId, usize)> {
+        let twice = |&row: &usize| match (self.integral[row], self.derivative[row]) {
+            (NONE, d) if d != NONE => self.derivative[d as usize] != NONE,
+            _ => false,
+        };
+        (0..self.equations.len()).filter(twice).filter_map(|row| match self.incidence.all(row as u32) {
+            [c] => Some((self.variable(*c)?, self.equations[row] as usize)),
+            _ => None,
+        })
+    }
+
     /// The variable of a column that is one.
     pub fn variable(&self, column: u32) -> Option<VarId> {
         match self.columns[column as usize].unknown {
