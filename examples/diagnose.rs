@@ -1,4 +1,4 @@
-//! Where model and bench part: a mass on a spring whose bench has dry friction, which the model lacks. The recordings are
+//! Where model and machine differ: a mass on a spring whose machine has dry friction, which the model lacks. The recordings are
 //! made here.
 
 #![allow(clippy::print_stdout, reason = "an example shows what it found")]

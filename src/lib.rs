@@ -59,7 +59,7 @@
 //! | `cli` (default) | the command, with all below |
 //! | `plot` | pictures as PNG; SVG and HTML are always there |
 //! | `parquet` | trajectories and tables of sweeps as Parquet |
-//! | `gap` | the diagnosis: where model and bench part |
+//! | `gap` | the diagnosis: where model and machine differ |
 //! | `analysis` | linear models, identification, sweeps, studies, experiment files |
 //!
 //! Without any, circuits are compiled and run.

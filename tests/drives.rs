@@ -379,3 +379,39 @@ fn the_observed_speed_is_right_and_off_by_the_error_of_the_slip() {
         assert!((off + 0.2 * slip / 2.0).abs() < 0.05 * slip.abs(), "{w}: off by {off}, slip {slip}");
     }
 }
+
+/// Resistors in star to the neutral behind a soft starter at a constant firing angle, ten periods long after the first.
+fn behind_soft_starter(degrees: f64) -> Trajectory {
+    let mut simulation = circuit(
+        "Electrical.ThreePhaseVoltage mains;
+        Electrical.SoftStarter starter(useInput = true);
+        Electrical.Resistor load[3](each R = 10);
+        Electrical.Ground ground;
+        Real square(start = 0, fixed = true); Real given(start = 0, fixed = true); Real taken(start = 0, fixed = true);",
+        &format!(
+            "starter.angle = {degrees}*Modelica.Constants.pi/180;
+            connect(mains.neutral, ground.p);
+            connect(mains.a, starter.a); connect(mains.b, starter.b); connect(mains.c, starter.c);
+            connect(starter.U, load[1].p); connect(starter.V, load[2].p); connect(starter.W, load[3].p);
+            connect(load[1].n, ground.p); connect(load[2].n, ground.p); connect(load[3].n, ground.p);
+            der(square) = load[1].v^2; der(given) = mains.power;
+            der(taken) = starter.lossPower + load[1].v*load[1].i + load[2].v*load[2].i + load[3].v*load[3].i;"
+        ),
+    );
+    simulation.stop_time(0.22);
+    run(&simulation)
+}
+
+/// Rashid, Power Electronics, AC voltage controllers: U sqrt(1 - alpha/pi + sin(2 alpha)/(2 pi)) behind thyristors that
+/// fire at alpha after each zero crossing. The thyristors keep 1e-3 of 10 ohm, and 1e-4 S where they block.
+#[test]
+fn a_soft_starter_gives_resistors_what_its_angle_says() {
+    for degrees in [30.0_f64, 60.0, 90.0, 120.0] {
+        let t = behind_soft_starter(degrees);
+        let rms = mean(&t, "square", 0.02, 0.22).sqrt();
+        let alpha = degrees.to_radians();
+        let expected = 230.0 * (1.0 - degrees / 180.0 + (2.0 * alpha).sin() / (2.0 * std::f64::consts::PI)).sqrt();
+        assert!((rms - expected).abs() < 5e-4 * expected, "{degrees} degrees: {rms} V instead of {expected} V");
+        near(at(&t, "given", 0.22), at(&t, "taken", 0.22), 1e-6);
+    }
+}

@@ -26,7 +26,7 @@ protected
   Real growth[n](each unit = "1") "Volumes of the oil over those at T_0";
   Real mean(unit = "1") "Their mean";
 equation
-  assert(A > 0 and h_max > h_start, "The area must be positive, the level at the start below the height");
+  assert(A > 0 and h_max > h_start and h_start > h_min, "The area must be positive, the level at the start between h_min and the height");
   assert(h > h_min, "The reservoir runs dry: its lines draw air");
   assert(h < h_max, "The reservoir overflows");
   rho = oil.density(port_b.p);

@@ -21,7 +21,7 @@ protected
   SI.HeatFlowRate Q_flow(nominal = 10) "Heat through heatPort";
   Real growth(unit = "1") "Volume of the oil over that at T_0";
 equation
-  assert(A > 0 and h_max > h_start, "The area must be positive, the level at the start below the height");
+  assert(A > 0 and h_max > h_start and h_start > h_min, "The area must be positive, the level at the start between h_min and the height");
   assert(h > h_min, "The reservoir runs dry: its lines draw air");
   assert(h < h_max, "The reservoir overflows");
   if closed then

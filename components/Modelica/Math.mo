@@ -3,44 +3,44 @@ package Math "Mathematical functions"
   function sin "Sine"
     input Modelica.Units.SI.Angle u "Angle";
     output Real y "sin(u)";
-    external "builtin" y = sin(u);
+  external "builtin" y = sin(u);
   end sin;
 
   function cos "Cosine"
     input Modelica.Units.SI.Angle u "Angle";
     output Real y "cos(u)";
-    external "builtin" y = cos(u);
+  external "builtin" y = cos(u);
   end cos;
 
   function tan "Tangent, |u| < pi/2"
     input Modelica.Units.SI.Angle u "Angle";
     output Real y "tan(u)";
-    external "builtin" y = tan(u);
+  external "builtin" y = tan(u);
   end tan;
 
   function asin "Inverse sine, -1 <= u <= 1"
     input Real u "Sine";
     output Modelica.Units.SI.Angle y "Angle between -pi/2 and pi/2";
-    external "builtin" y = asin(u);
+  external "builtin" y = asin(u);
   end asin;
 
   function acos "Inverse cosine, -1 <= u <= 1"
     input Real u "Cosine";
     output Modelica.Units.SI.Angle y "Angle between 0 and pi";
-    external "builtin" y = acos(u);
+  external "builtin" y = acos(u);
   end acos;
 
   function atan "Inverse tangent"
     input Real u "Tangent";
     output Modelica.Units.SI.Angle y "Angle between -pi/2 and pi/2";
-    external "builtin" y = atan(u);
+  external "builtin" y = atan(u);
   end atan;
 
   function atan2 "Angle of the point (u2, u1), in all four quadrants"
     input Real u1 "Ordinate";
     input Real u2 "Abscissa";
     output Modelica.Units.SI.Angle y "Angle between -pi and pi";
-    external "builtin" y = atan2(u1, u2);
+  external "builtin" y = atan2(u1, u2);
   end atan2;
 
   function atan3 "Angle of the point (u2, u1), the solution nearest to y0"
@@ -59,19 +59,19 @@ package Math "Mathematical functions"
   function sinh "Hyperbolic sine"
     input Real u;
     output Real y "sinh(u)";
-    external "builtin" y = sinh(u);
+  external "builtin" y = sinh(u);
   end sinh;
 
   function cosh "Hyperbolic cosine"
     input Real u;
     output Real y "cosh(u)";
-    external "builtin" y = cosh(u);
+  external "builtin" y = cosh(u);
   end cosh;
 
   function tanh "Hyperbolic tangent"
     input Real u;
     output Real y "tanh(u)";
-    external "builtin" y = tanh(u);
+  external "builtin" y = tanh(u);
   end tanh;
 
   function asinh "Inverse hyperbolic sine"
@@ -99,19 +99,19 @@ package Math "Mathematical functions"
   function exp "Exponential function"
     input Real u;
     output Real y "e^u";
-    external "builtin" y = exp(u);
+  external "builtin" y = exp(u);
   end exp;
 
   function log "Natural logarithm, u > 0"
     input Real u;
     output Real y "ln(u)";
-    external "builtin" y = log(u);
+  external "builtin" y = log(u);
   end log;
 
   function log10 "Logarithm of base 10, u > 0"
     input Real u;
     output Real y "log10(u)";
-    external "builtin" y = log10(u);
+  external "builtin" y = log10(u);
   end log10;
 
   function isEqual "True where two numbers differ by at most a tolerance"

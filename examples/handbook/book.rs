@@ -24,7 +24,10 @@ pub const PARTS: [(&str, &[&str]); 4] = [
             "validation/libraries",
         ],
     ),
-    ("Model and bench", &["study", "identify", "gap", "validation/gap", "sensitivity", "sweep", "linearize"]),
+    (
+        "Model and test rig",
+        &["study", "identify", "gap", "gap_method", "validation/gap", "sensitivity", "sweep", "linearize"],
+    ),
     ("The two papers", &["papers/servo_pump", "papers/closed_circuit"]),
     ("Solver and messages", &["bench", "errors/README"]),
 ];

@@ -1,6 +1,7 @@
 //! The classes of `components/` and `models/` by name, what they inherit, and who uses whom.
 
-use bramah::resolve::{ClassId, Library, nested_classes};
+pub use bramah::resolve::names::{Member, bases, body, lineage, named, resolve};
+use bramah::resolve::{ClassId, Library, names, nested_classes};
 use bramah::syntax::ast::{
     Argument, ArgumentKind, Class, ClassBody, ClassKind, Component, ElementKind, Expr, Import, LongBody, Path,
 };
@@ -38,17 +39,6 @@ pub struct Catalogue {
     pub shown_in: BTreeMap<String, Vec<(String, String)>>,
     /// For each class those that extend it.
     pub extended_by: BTreeMap<String, Vec<String>>,
-}
-
-/// A declared component with the class that declares it.
-#[derive(Clone, Copy)]
-pub struct Member<'a> {
-    /// Where it is declared: the class itself or a base.
-    pub owner: ClassId,
-    /// Its declaration.
-    pub component: &'a Component,
-    /// Not meant for users.
-    pub protected: bool,
 }
 
 /// Values that `extends` clauses give to inherited components: by name, whether final.
@@ -148,63 +138,18 @@ pub fn annotation<'a>(class: &'a Class, path: &[&str]) -> Option<&'a bramah::syn
     Some(at)
 }
 
-/// The long body of a class, where it has one.
-pub fn body(class: &Class) -> Option<&LongBody> {
-    match &class.body {
-        ClassBody::Long(body) => Some(body),
-        _ => None,
-    }
-}
-
-/// Direct bases of a class.
-pub fn bases(library: &mut Library<'_>, id: ClassId) -> Vec<ClassId> {
-    let class = library.class(id);
-    let paths: Vec<&Path> = match &class.body {
-        ClassBody::Short { base, .. } => vec![base],
-        ClassBody::Long(body) => body
-            .elements
-            .iter()
-            .filter_map(|e| match &e.kind {
-                ElementKind::Extends(x) => Some(&x.base),
-                _ => None,
-            })
-            .collect(),
-        _ => Vec::new(),
-    };
-    paths.into_iter().filter_map(|p| resolve_outside(library, id, p)).collect()
-}
-
-/// A class and all it inherits, nearest first.
-pub fn lineage(library: &mut Library<'_>, id: ClassId) -> Vec<ClassId> {
-    let mut out = vec![id];
-    let mut next = 0;
-    while next < out.len() {
-        for base in bases(library, out[next]) {
-            if !out.contains(&base) {
-                out.push(base);
-            }
-        }
-        next += 1;
-    }
-    out
-}
-
 /// All components of a class, its own first, and the values that `extends` clauses give them.
 pub fn members<'a>(library: &mut Library<'a>, id: ClassId) -> (Vec<Member<'a>>, Given<'a>) {
-    let (mut out, mut given) = (Vec::new(), Given::new());
+    let mut given = Given::new();
     for owner in lineage(library, id) {
         let Some(body) = body(library.class(owner)) else { continue };
         for element in &body.elements {
-            match &element.kind {
-                ElementKind::Component(component) => {
-                    out.push(Member { owner, component, protected: element.protected });
-                }
-                ElementKind::Extends(x) => note_given(x.modification.iter().flat_map(|m| &m.arguments), &mut given),
-                _ => {}
+            if let ElementKind::Extends(x) = &element.kind {
+                note_given(x.modification.iter().flat_map(|m| &m.arguments), &mut given);
             }
         }
     }
-    (out, given)
+    (names::members(library, id), given)
 }
 
 fn note_given<'a>(arguments: impl Iterator<Item = &'a Argument>, given: &mut Given<'a>) {
@@ -215,63 +160,4 @@ fn note_given<'a>(arguments: impl Iterator<Item = &'a Argument>, given: &mut Giv
             given.entry(path.parts[0].name.as_str()).or_insert((value, argument.final_));
         }
     }
-}
-
-/// The class that a name means inside a class.
-pub fn resolve(library: &mut Library<'_>, from: ClassId, path: &Path) -> Option<ClassId> {
-    let parts: Vec<Symbol> = path.parts.iter().map(|p| p.name).collect();
-    named(library, Some(from), &parts, path.global)
-}
-
-/// As [`resolve`] for the bases of a class, which are looked up without what is inherited.
-fn resolve_outside(library: &mut Library<'_>, class: ClassId, path: &Path) -> Option<ClassId> {
-    let parts: Vec<Symbol> = path.parts.iter().map(|p| p.name).collect();
-    if let Some(found) = library.child(class, parts[0]).filter(|f| *f != class) {
-        return descend(library, found, &parts[1..]);
-    }
-    let parent = library.parent(class);
-    named(library, parent, &parts, path.global)
-}
-
-/// The class that dotted words mean inside a class.
-pub fn named(library: &mut Library<'_>, from: Option<ClassId>, parts: &[Symbol], global: bool) -> Option<ClassId> {
-    let (first, rest) = parts.split_first()?;
-    let mut scope = from.filter(|_| !global);
-    while let Some(id) = scope {
-        if let Some(found) = in_scope(library, id, *first) {
-            return descend(library, found, rest);
-        }
-        scope = library.parent(id);
-    }
-    let top = library.top(*first)?;
-    descend(library, top, rest)
-}
-
-fn in_scope(library: &mut Library<'_>, id: ClassId, name: Symbol) -> Option<ClassId> {
-    for class in lineage(library, id) {
-        if let Some(found) = library.child(class, name) {
-            return Some(found);
-        }
-    }
-    imported(library, id, name)
-}
-
-fn imported(library: &mut Library<'_>, id: ClassId, name: Symbol) -> Option<ClassId> {
-    let body = body(library.class(id))?;
-    for element in &body.elements {
-        let ElementKind::Import(Import::Single { alias, path }) = &element.kind else { continue };
-        let last = path.parts.last().expect("a path has parts").name;
-        if alias.map_or(last, |a| a.name) == name {
-            let parts: Vec<Symbol> = path.parts.iter().map(|p| p.name).collect();
-            return named(library, None, &parts, true);
-        }
-    }
-    None
-}
-
-fn descend(library: &mut Library<'_>, mut id: ClassId, parts: &[Symbol]) -> Option<ClassId> {
-    for part in parts {
-        id = in_scope(library, id, *part)?;
-    }
-    Some(id)
 }

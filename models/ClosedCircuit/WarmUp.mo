@@ -50,10 +50,10 @@ equation
   P_shafts = pump.T_sh*pump.w + hydraulicMotor.T_sh*hydraulicMotor.w + chargePump.T_sh*chargePump.w + loadPump.T_sh*loadPump.w;
   P_room = cooler.Q_flow + loadCooler.Q_flow + room.port.Q_flow;
   E = oil.c_p*(reservoir.mass/3*(sum(reservoir.T_oil) - 3*T_room) + sum({
-      side_A.mass*(side_A.T_oil - T_room), side_B.mass*(side_B.T_oil - T_room), chargeLine.mass*(chargeLine.T_oil - T_room),
-      flushLine.mass*(flushLine.T_oil - T_room), loadLine.mass*(loadLine.T_oil - T_room), loadReturn.mass*(loadReturn.T_oil - T_room),
-      oil.rho_0*pump.V_oil*(pump.T_case - T_room), oil.rho_0*hydraulicMotor.V_oil*(hydraulicMotor.T_case - T_room),
-      oil.rho_0*chargePump.V_oil*(chargePump.T_case - T_room), oil.rho_0*loadPump.V_oil*(loadPump.T_case - T_room)}))
+    side_A.mass*(side_A.T_oil - T_room), side_B.mass*(side_B.T_oil - T_room), chargeLine.mass*(chargeLine.T_oil - T_room),
+    flushLine.mass*(flushLine.T_oil - T_room), loadLine.mass*(loadLine.T_oil - T_room), loadReturn.mass*(loadReturn.T_oil - T_room),
+    oil.rho_0*pump.V_oil*(pump.T_case - T_room), oil.rho_0*hydraulicMotor.V_oil*(hydraulicMotor.T_case - T_room),
+    oil.rho_0*chargePump.V_oil*(chargePump.T_case - T_room), oil.rho_0*loadPump.V_oil*(loadPump.T_case - T_room)}))
     + 2e4*(housing_1.port.T - T_room) + 2e4*(housing_2.port.T - T_room);
   annotation(
     experiment(StartTime = 0, StopTime = 10800, Interval = 20, Tolerance = 1e-6),

@@ -10,9 +10,9 @@ protected
 equation
   for i in 1:N loop
     der(u[i]) = A + u[i]^2*v[i] - (B + 1)*u[i]
-      + d*((if i == 1 then 1 else u[i-1]) - 2*u[i] + (if i == N then 1 else u[i+1]));
+      + d*((if i == 1 then 1 else u[i - 1]) - 2*u[i] + (if i == N then 1 else u[i + 1]));
     der(v[i]) = B*u[i] - u[i]^2*v[i]
-      + d*((if i == 1 then 3 else v[i-1]) - 2*v[i] + (if i == N then 3 else v[i+1]));
+      + d*((if i == 1 then 3 else v[i - 1]) - 2*v[i] + (if i == N then 3 else v[i + 1]));
   end for;
   annotation(
     experiment(StartTime = 0, StopTime = 10, Interval = 0.02, Tolerance = 1e-6),

@@ -11,8 +11,8 @@ protected
 equation
   phi = if time <= 5 then 2 else 0;
   left[1] = phi;
-  left[2:N] = u[1:N-1];
-  right[1:N-1] = u[2:N];
+  left[2:N] = u[1:N - 1];
+  right[1:N - 1] = u[2:N];
   right[N] = u[N];
   for j in 1:N loop
     der(u[j]) = 2*(j*d - 1)^3/c^2*(right[j] - left[j])/(2*d)

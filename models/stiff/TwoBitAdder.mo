@@ -48,9 +48,9 @@ model TwoBitAdder "Adder for two bits of 39 MOS transistors in ten gates, index 
     u_gd = v_d - g.v;
     j = smooth(1, noEvent(
       if u_ds >= 0 then
-        (if w_s <= 0 then 0 elseif w_s <= u_ds then beta*w_s^2*(1 + delta*u_ds) else beta*u_ds*(2*w_s - u_ds)*(1 + delta*u_ds))
+      (if w_s <= 0 then 0 elseif w_s <= u_ds then beta*w_s^2*(1 + delta*u_ds) else beta*u_ds*(2*w_s - u_ds)*(1 + delta*u_ds))
       else
-        (if w_d <= 0 then 0 elseif w_d <= -u_ds then -beta*w_d^2*(1 - delta*u_ds) else beta*u_ds*(2*w_d + u_ds)*(1 - delta*u_ds))));
+      (if w_d <= 0 then 0 elseif w_d <= -u_ds then -beta*w_d^2*(1 - delta*u_ds) else beta*u_ds*(2*w_d + u_ds)*(1 - delta*u_ds))));
     C_g*der(u_gs) = j - (v_s - s.v)/R;
     C_g*der(u_gd) = -j - (v_d - d.v)/R;
     i_s = (V_bb - u_bs - s.v)/R_b;

@@ -1,9 +1,9 @@
 //! What a shipped class offers to those who use it, as text: ports, parameters, members of a package.
 
-use crate::resolve::{ClassId, Library, Trees, nested_classes};
+use crate::resolve::names::{self, Member};
+use crate::resolve::{ClassId, Library, Trees};
 use crate::shipped::Shipped;
-use crate::syntax::ast::{ClassBody, ClassKind, Component, ElementKind, Path, Variability};
-use crate::syntax::symbol::Symbol;
+use crate::syntax::ast::{ClassKind, Component, Variability};
 use crate::world::World;
 use std::fmt::Write;
 
@@ -58,12 +58,7 @@ fn search(library: &mut Library<'_>, id: ClassId, word: &str, found: &mut Vec<St
 
 /// Classes in a package, those of its own text first.
 fn children(library: &mut Library<'_>, id: ClassId) -> Vec<ClassId> {
-    if library.class(id).kind != ClassKind::Package {
-        return Vec::new();
-    }
-    let mut names: Vec<Symbol> = nested_classes(library.class(id)).map(|c| c.name.name).collect();
-    names.extend(library.folder_members(id));
-    names.into_iter().filter_map(|name| library.child(id, name)).collect()
+    if library.class(id).kind == ClassKind::Package { names::classes(library, id) } else { Vec::new() }
 }
 
 fn members(library: &mut Library<'_>, id: ClassId, page: &mut String) {
@@ -79,20 +74,16 @@ fn members(library: &mut Library<'_>, id: ClassId, page: &mut String) {
 /// Ports, parameters and exchangeable parts, inherited ones too.
 fn offers(library: &mut Library<'_>, id: ClassId, page: &mut String) {
     let (mut ports, mut parameters, mut parts) = (Vec::new(), Vec::new(), Vec::new());
-    for owner in lineage(library, id) {
-        let ClassBody::Long(body) = &library.class(owner).body else { continue };
-        for element in body.elements.iter().filter(|e| !e.protected) {
-            let ElementKind::Component(c) = &element.kind else { continue };
-            let said = c.description.as_deref().unwrap_or_default().to_owned();
-            let class = c.class.dotted();
-            if c.prefix.variability == Some(Variability::Parameter) {
-                parameters.push([c.name.name.as_str().to_owned(), value(library, c), said]);
-            } else if class.contains("Interfaces.") {
-                let when = c.condition.as_ref().map(|e| format!(" if {}", library.sources.text(e.span)));
-                ports.push([c.name.name.as_str().to_owned(), class + &when.unwrap_or_default(), said]);
-            } else if c.prefixes.replaceable {
-                parts.push([c.name.name.as_str().to_owned(), class, said]);
-            }
+    for Member { component: c, .. } in names::members(library, id).into_iter().filter(|m| !m.protected) {
+        let said = c.description.as_deref().unwrap_or_default().to_owned();
+        let class = c.class.dotted();
+        if c.prefix.variability == Some(Variability::Parameter) {
+            parameters.push([c.name.name.as_str().to_owned(), value(library, c), said]);
+        } else if class.contains("Interfaces.") {
+            let when = c.condition.as_ref().map(|e| format!(" if {}", library.sources.text(e.span)));
+            ports.push([c.name.name.as_str().to_owned(), class + &when.unwrap_or_default(), said]);
+        } else if c.prefixes.replaceable {
+            parts.push([c.name.name.as_str().to_owned(), class, said]);
         }
     }
     for (title, rows) in [("Ports", ports), ("Parameters", parameters), ("Parts that can be redeclared", parts)] {
@@ -111,48 +102,6 @@ fn value(library: &Library<'_>, c: &Component) -> String {
         Some(e) => format!("{kind} = {}", library.sources.text(e.span)),
         None => kind.to_owned(),
     }
-}
-
-/// A class and all it inherits, nearest first.
-fn lineage(library: &mut Library<'_>, id: ClassId) -> Vec<ClassId> {
-    let mut all = vec![id];
-    let mut next = 0;
-    while next < all.len() {
-        let class = library.class(all[next]);
-        let paths: Vec<&Path> = match &class.body {
-            ClassBody::Short { base, .. } => vec![base],
-            ClassBody::Long(body) => body.elements.iter().filter_map(|e| base(&e.kind)).collect(),
-            _ => Vec::new(),
-        };
-        for path in paths {
-            if let Some(found) = around(library, all[next], path).filter(|f| !all.contains(f)) {
-                all.push(found);
-            }
-        }
-        next += 1;
-    }
-    all
-}
-
-fn base(kind: &ElementKind) -> Option<&Path> {
-    match kind {
-        ElementKind::Extends(x) => Some(&x.base),
-        _ => None,
-    }
-}
-
-/// The class of this name in the packages around a class, innermost first.
-fn around(library: &mut Library<'_>, from: ClassId, path: &Path) -> Option<ClassId> {
-    let wanted = path.dotted();
-    let mut scope = library.parent(from);
-    while let Some(id) = scope {
-        let name = format!("{}.{wanted}", library.full_name(id));
-        if let Some(found) = library.find(&name) {
-            return Some(found);
-        }
-        scope = library.parent(id);
-    }
-    library.find(&wanted)
 }
 
 fn table(page: &mut String, rows: &[[String; 3]]) {

@@ -17,7 +17,7 @@ use crate::gap::verdict::conclude;
 use crate::gap::words::words;
 use crate::study::Study;
 
-/// Find where model and bench part, and which missing effect explains it
+/// Find where model and machine differ, and which missing effect explains it
 #[derive(Args, Debug)]
 #[command(after_help = "\
 The verdict goes to stdout as JSON (or into the file given), the words to stderr. Recordings of role `held` take no part

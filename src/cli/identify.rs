@@ -15,10 +15,10 @@ use crate::diag::{Code, Diagnostic};
 use crate::results::Globs;
 use crate::study::Role;
 
-/// Find parameters from recordings of a bench
+/// Find parameters from recordings of a test rig
 #[derive(Args, Debug)]
 #[command(after_help = "\
-Before the fit stands what the data can tell at all: parameters without influence, and groups that cannot be told apart.
+The report begins with what the data can show at all: parameters without influence, and groups that cannot be separated.
 Estimates carry one standard deviation, corrected for errors that resemble their neighbours. Recordings of role `held`
 are read last and judge the result.
 

@@ -15,6 +15,7 @@ mod data;
 mod describe;
 mod explain;
 mod files;
+mod fmt;
 mod gap;
 mod identify;
 mod inputs;
@@ -83,6 +84,7 @@ enum Command {
     Partition(partition::PartitionArgs),
     Linearize(linearize::LinearizeArgs),
     Sensitivity(sensitivity::SensitivityArgs),
+    Fmt(fmt::FmtArgs),
     Explain(explain::ExplainArgs),
     Completions(completions::CompletionsArgs),
 }
@@ -164,6 +166,7 @@ fn dispatch(command: Command, messages: &mut Messages) -> Result<Ending, Failure
         Command::Partition(args) => partition::run(&args, messages),
         Command::Linearize(args) => linearize::run(&args, messages),
         Command::Sensitivity(args) => sensitivity::run(&args, messages),
+        Command::Fmt(args) => fmt::run(&args, messages),
         Command::Explain(args) => explain::run(&args),
         Command::Completions(args) => completions::run(&args),
     }

@@ -83,7 +83,7 @@ codes! {
     SizeMismatch = "E211", Error, "arrays of different size";
     NotConstant = "E212", Error, "a value must be known before the run";
     NoValue = "E213", Error, "a parameter without a value";
-    CyclicParameter = "E214", Error, "parameters depend on each other in a circle";
+    CyclicParameter = "E214", Error, "parameters depend on each other cyclically";
     OutOfRange = "E215", Error, "a value outside `min` and `max`";
     BadIndex = "E216", Error, "an index outside the array";
     Evaluation = "E217", Error, "an expression cannot be evaluated";

@@ -369,7 +369,7 @@ impl Plan {
             format!("{} at {}", h.effect, h.places.join(" + "))
         };
         let mut text = format!(
-            "Of {} effects {seen} would be seen at their usual size. {} pairs could not be told apart{}\n",
+            "Of {} effects {seen} would be seen at their usual size. {} pairs could not be separated{}\n",
             self.hypotheses.len(),
             self.confused.len(),
             if self.confused.is_empty() { "." } else { ":" },
@@ -388,7 +388,7 @@ impl Plan {
         for (what, changes) in [("excitation", &self.excitations), ("further sensor", &self.sensors)] {
             for c in changes {
                 text.push_str(&format!(
-                    "{what} {}: tells {} of them apart, shows {} effects\n",
+                    "{what} {}: separates {} of them, shows {} effects\n",
                     c.what, c.separates, c.seen
                 ));
             }

@@ -66,7 +66,7 @@ fn before(problem: &Problem<'_>, v: &Verdict, left: &[Left]) -> String {
         &gaps(v),
     ));
     out.push_str(&table("Parameters against their tolerances", DRIFTS, &drifts(v)));
-    out.push_str(&table("Places where model and bench part", PLACES, &places(v)));
+    out.push_str(&table("Places where model and recordings differ", PLACES, &places(v)));
     out.push_str(&table("What stays unexplained", UNEXPLAINED, &unexplained(v)));
     out.push_str(&table(
         "What is left of the recordings used, beside the sensors' noise",
@@ -104,7 +104,7 @@ const EFFECTS: &[&str] = &[
     "t",
     "closes alone",
     "closes last",
-    "cannot be told from",
+    "indistinguishable from",
 ];
 const GAPS: &[&str] = &["recordings", "signal", "nominal", "within tolerances", "with effects", "sensor noise"];
 const DRIFTS: &[&str] = &["parameter", "nominal", "fitted", "std", "tolerances"];

@@ -2,6 +2,8 @@
 //!
 //! Names that depend on an instance (inherited elements, redeclared classes) are the business of `instance`.
 
+pub mod names;
+
 use crate::diag::{Code, Diagnostic, FileId, Sources};
 use crate::syntax::ast::{self, ClassBody, ElementKind};
 use crate::syntax::symbol::Symbol;

@@ -20,7 +20,7 @@ pub(super) fn cyclic_parameters(draft: &Draft, circle: &[VarId]) -> Diagnostic {
     let names: Vec<String> = circle.iter().map(|&v| name(draft, v)).collect();
     let message = match names.as_slice() {
         [one] => format!("parameter {one} depends on itself"),
-        _ => format!("parameters depend on each other in a circle: {}", listed(&names)),
+        _ => format!("parameters depend on each other cyclically: {}", listed(&names)),
     };
     let mut made = Diagnostic::new(Code::CyclicParameter, message);
     for &v in circle.iter().take(MOST_ITEMS) {

@@ -1,6 +1,7 @@
 //! Text to syntax tree. Never fails: errors come beside the tree, several per file.
 
 pub mod ast;
+pub mod format;
 mod lexer;
 mod parser;
 mod print;

@@ -21,7 +21,7 @@ model M
       input Smoothness smoothness;
       input Outside outside;
       output Curve curve;
-      protected String file = "NoName";
+    protected String file = "NoName";
     external "C" curve = ModelicaStandardTables_CombiTable1D_init3("NoName", "NoName", table, size(table, 1), size(table, 2),
         columns, size(columns, 1), smoothness, outside, true, ",", 0);
     end constructor;

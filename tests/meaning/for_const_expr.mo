@@ -27,7 +27,7 @@ package P
     Real tt[nc, nr] = transpose(T);
     Real c2[nr] = T[:, 2];
     Real sub[2, 2] = T[:, 2:end];
-    Real mm = max(T[nr, :]) ;
+    Real mm = max(T[nr, :]);
     Real e[0];
     Real nz = sum(e);
   equation

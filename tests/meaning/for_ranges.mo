@@ -27,7 +27,7 @@ model M "ranges, nested comprehension, end arithmetic"
   Integer g = sum(1:2:7);
   Integer h[3] = 10:-2:6;
   Real m[2, 2] = [time, 2*time; 3*time, 5*time];
-  Integer n = sum(size({{1, 2, 3}, {4, 5, 6}}))+1;
+  Integer n = sum(size({{1, 2, 3}, {4, 5, 6}})) + 1;
   Integer o = sum(c[end - 1, :]) - 23 + 1 + 20 - 1;
 equation
   for i in 1:2:5 loop

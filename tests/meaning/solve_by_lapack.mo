@@ -15,7 +15,7 @@ model M
     Integer lda = max(1, size(A, 1));
     Integer ldb = max(1, size(b, 1));
     Integer ipiv[size(A, 1)];
-    external "FORTRAN 77" dgesv(n, nrhs, Awork, lda, ipiv, x, ldb, info);
+  external "FORTRAN 77" dgesv(n, nrhs, Awork, lda, ipiv, x, ldb, info);
   end solve;
   function fit
     input Real A[:, :];
@@ -33,7 +33,7 @@ model M
     Real work[20];
     Real Awork[size(A, 1), size(A, 2)] = A;
     Integer jpvt[size(A, 2)] = zeros(ncol);
-    external "FORTRAN 77" dgelsy(nrow, ncol, nrhs, Awork, nrow, x, nx, jpvt, rcond, rank, work, lwork, info);
+  external "FORTRAN 77" dgelsy(nrow, ncol, nrhs, Awork, nrow, x, nx, jpvt, rcond, rank, work, lwork, info);
   end fit;
   parameter Real c[3] = fit([0, 1; 1, 1; 2, 1], {1, 3, 5});
   Real v[2](start = {1, 2});

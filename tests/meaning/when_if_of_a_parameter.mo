@@ -5,8 +5,8 @@
 //! m(2) = 0
 model M
   parameter Boolean b = false;
-  Real x(start=1, fixed=true);
-  discrete Real n(start=0, fixed=true), m(start=0, fixed=true);
+  Real x(start = 1, fixed = true);
+  discrete Real n(start = 0, fixed = true), m(start = 0, fixed = true);
 equation
   der(x) = -x;
   when time >= 0.5 then

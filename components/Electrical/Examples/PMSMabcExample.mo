@@ -7,8 +7,8 @@ model PMSMabcExample "The motor in phases, on sinusoidal voltages turning with i
 equation
   connect(drive.flange, motor.flange);
   for j in 1:3 loop
-  phase[j].v = 32*cos(8*50*time + 1.7 - (j - 1)*2*Modelica.Constants.pi/3);
-  connect(phase[j].n, ground.p);
+    phase[j].v = 32*cos(8*50*time + 1.7 - (j - 1)*2*Modelica.Constants.pi/3);
+    connect(phase[j].n, ground.p);
   end for;
   connect(phase[1].p, motor.a);
   connect(phase[2].p, motor.b);

@@ -38,7 +38,7 @@ pub enum Reason {
     #[error("closes less than is worth a name")]
     NotWorth,
     /// Its size may as well be none, by so many of its standard deviations.
-    #[error("its size cannot be told from nothing: {0:.1} standard deviations")]
+    #[error("its size does not differ significantly from zero: {0:.1} standard deviations")]
     NoSize(f64),
     /// The gap over all signals grows, by this factor.
     #[error("the gap over all signals grows to {0:.2} times what it was")]
@@ -53,7 +53,7 @@ pub enum Reason {
     #[error("surely worse: leaves {0:.4} of full scale, the best {1:.4}")]
     Beaten(f64, f64),
     /// In the set of what was taken.
-    #[error("cannot be told from what was taken, which is simpler or more usual")]
+    #[error("indistinguishable from an accepted effect that is simpler or more common")]
     Alike,
 }
 

@@ -23,7 +23,7 @@ impl<'a> Instance<'a, '_> {
                 Diagnostic::new(Code::CyclicParameter, format!("`{name}` depends on itself"))
                     .at(declared, "its value leads back to itself")
                     .at(span, "used here")
-                    .help("give one of the parameters of the circle a number"),
+                    .help("give one of the parameters of the cycle a number"),
             );
             return None;
         }

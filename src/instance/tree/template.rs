@@ -220,7 +220,7 @@ impl<'a> Instance<'a, '_> {
             let mut made = Diagnostic::new(Code::CyclicExtends, format!("`{name}` extends itself"))
                 .at(ast.name.span, "this class is among its own bases")
                 .class(name.clone())
-                .help("remove one of the `extends` clauses of the circle");
+                .help("remove one of the `extends` clauses of the cycle");
             if circle.len() > 1 {
                 made = made.note(format!("{} extends `{name}` again", circle.join(" extends ")));
             }

@@ -95,10 +95,21 @@ impl Parser<'_> {
         self.long_class(start, kind, prefixes, name, None)
     }
 
-    /// The name of a class, which is missing when the next line begins with two names.
+    /// The name of a class, which is missing when the next line is the declaration of a component.
     fn class_name(&mut self, keyword: &str) -> Parse<Ident> {
         let what = format!("the name of the {keyword}");
-        let is_missing = self.is_on_new_line() && self.at(TokenKind::Ident) && self.peek_kind(1) == TokenKind::Ident;
+        let declares = matches!(
+            self.peek_kind(2),
+            TokenKind::Semicolon
+                | TokenKind::Comma
+                | TokenKind::Equal
+                | TokenKind::LeftParen
+                | TokenKind::String
+                | TokenKind::If
+                | TokenKind::Annotation
+        );
+        let named_type = self.at(TokenKind::Ident) && self.peek_kind(1) == TokenKind::Ident;
+        let is_missing = self.is_on_new_line() && named_type && declares;
         if is_missing { Err(self.unexpected(&what)) } else { self.ident(&what) }
     }
 

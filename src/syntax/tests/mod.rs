@@ -3,6 +3,7 @@
 #![allow(clippy::disallowed_methods, clippy::print_stdout, reason = "reads models that lie beside the project")]
 
 mod bad;
+mod format;
 mod fuzz;
 mod good;
 mod limits;

@@ -1,0 +1,101 @@
+//! `bramah fmt`
+
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::messages::Messages;
+use super::{DiskWorld, Ending, Failure, files};
+use crate::diag::Code;
+use crate::syntax::format::format;
+use crate::world::World;
+
+/// Lay out Modelica files: indentation and blanks; comments and line breaks stay
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  bramah fmt Press.mo
+  bramah fmt Library --check            names the files that would change, for a build server
+  bramah fmt - < Press.mo               from stdin to stdout, for an editor
+
+Exit status: 0 fine, 1 a file has syntax errors, or would change with --check, 2 bad arguments or files.")]
+pub(super) struct FmtArgs {
+    /// Files, or folders whose `.mo` files are laid out; `-` reads stdin and writes stdout
+    #[arg(required = true, value_name = "PATH")]
+    paths: Vec<PathBuf>,
+    /// Write nothing, name the files that would change
+    #[arg(long)]
+    check: bool,
+}
+
+pub(super) fn run(args: &FmtArgs, messages: &mut Messages) -> Result<Ending, Failure> {
+    let mut all = Vec::new();
+    for path in &args.paths {
+        collect(path, &mut all)?;
+    }
+    let mut ending = Ending::Fine;
+    for path in &all {
+        match one(path, args.check, messages) {
+            Ok(Ending::Fine) => {}
+            Ok(Ending::Wrong) => ending = Ending::Wrong,
+            // the others are laid out all the same
+            Err(failure) if all.len() > 1 && failure.exit_code(&messages.sources) == 1 => {
+                messages.say(&failure.diagnostics);
+                ending = Ending::Wrong;
+            }
+            Err(failure) => return Err(failure),
+        }
+    }
+    Ok(ending)
+}
+
+/// The path itself, or all `.mo` files below it; folders whose name begins with a dot are left out.
+fn collect(path: &Path, all: &mut Vec<PathBuf>) -> Result<(), Failure> {
+    let Some(entries) = DiskWorld.list(path) else {
+        all.push(path.to_owned());
+        return Ok(());
+    };
+    for (name, is_folder) in entries {
+        let inner = path.join(&name);
+        if is_folder && !name.starts_with('.') && !inner.is_symlink() {
+            collect(&inner, all)?;
+        } else if !is_folder && name.ends_with(".mo") {
+            all.push(inner);
+        }
+    }
+    Ok(())
+}
+
+fn one(path: &Path, check: bool, messages: &mut Messages) -> Result<Ending, Failure> {
+    let stdin = path == Path::new("-");
+    let text = if stdin { from_stdin()? } else { read(path)? };
+    let file = messages.sources.add(path.display().to_string(), text.clone());
+    let laid_out = format(file, &text).map_err(|diagnostics| Failure { diagnostics })?;
+    if stdin && !check {
+        files::print(&laid_out)?;
+        return Ok(Ending::Fine);
+    }
+    if laid_out == text {
+        return Ok(Ending::Fine);
+    }
+    if check {
+        files::print(&format!("{}\n", path.display()))?;
+        return Ok(Ending::Wrong);
+    }
+    files::write(path, laid_out.as_bytes())?;
+    messages.remark(&format!("laid out {}", path.display()));
+    Ok(Ending::Fine)
+}
+
+fn read(path: &Path) -> Result<String, Failure> {
+    let unreadable = |why| Failure::new(Code::FileAccess, format!("`{}` cannot be read: {why}", path.display()));
+    DiskWorld.read(path).map_err(unreadable)
+}
+
+fn from_stdin() -> Result<String, Failure> {
+    let mut text = String::new();
+    let read = std::io::stdin().read_to_string(&mut text);
+    read.map_err(|e| files::access(Path::new("-"), "read", &e))?;
+    Ok(text)
+}

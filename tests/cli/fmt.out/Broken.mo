@@ -1,0 +1,3 @@
+model Broken
+  Real x = ;
+end Broken;

@@ -1,0 +1,3 @@
+model Neat "As it should be"
+  Real x = 1;
+end Neat;
