@@ -2,9 +2,7 @@
 
 pub use bramah::resolve::names::{Member, bases, body, lineage, named, resolve};
 use bramah::resolve::{ClassId, Library, names, nested_classes};
-use bramah::syntax::ast::{
-    Argument, ArgumentKind, Class, ClassBody, ClassKind, Component, ElementKind, Expr, Import, LongBody, Path,
-};
+use bramah::syntax::ast::{Argument, ArgumentKind, Class, ClassBody, ClassKind, ElementKind, Expr, Path};
 use bramah::syntax::symbol::Symbol;
 use std::collections::BTreeMap;
 

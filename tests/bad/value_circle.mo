@@ -1,4 +1,4 @@
-//! E214 at 3: "circle"
+//! E214 at 3: "cyclically"
 model M
   parameter Real a = 2*b;
   parameter Real b = a + 1;
