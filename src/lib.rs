@@ -57,6 +57,7 @@
 //! | feature | brings |
 //! |---|---|
 //! | `cli` (default) | the command, with all below |
+//! | `lsp` | what editors ask about texts |
 //! | `plot` | pictures as PNG; SVG and HTML are always there |
 //! | `parquet` | trajectories and tables of sweeps as Parquet |
 //! | `gap` | the diagnosis: where model and machine differ |
@@ -121,6 +122,9 @@ pub mod study;
 
 #[cfg(feature = "gap")]
 pub mod gap;
+
+#[cfg(feature = "lsp")]
+pub mod editor;
 
 #[cfg(feature = "cli")]
 pub mod cli;

@@ -88,6 +88,10 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "world",
         ],
     ),
+    (
+        "editor",
+        &["compile", "diag", "expr", "lower", "resolve", "results", "shipped", "syntax", "types", "units", "world"],
+    ),
 ];
 
 /// The one file besides `cli` that reads a clock, for the statistics of a run.

@@ -21,6 +21,7 @@ mod identify;
 mod inputs;
 mod interrupt;
 mod linearize;
+mod lsp;
 mod messages;
 mod model;
 mod new;
@@ -85,6 +86,7 @@ enum Command {
     Linearize(linearize::LinearizeArgs),
     Sensitivity(sensitivity::SensitivityArgs),
     Fmt(fmt::FmtArgs),
+    Lsp(lsp::LspArgs),
     Explain(explain::ExplainArgs),
     Completions(completions::CompletionsArgs),
 }
@@ -167,6 +169,7 @@ fn dispatch(command: Command, messages: &mut Messages) -> Result<Ending, Failure
         Command::Linearize(args) => linearize::run(&args, messages),
         Command::Sensitivity(args) => sensitivity::run(&args, messages),
         Command::Fmt(args) => fmt::run(&args, messages),
+        Command::Lsp(args) => lsp::run(&args),
         Command::Explain(args) => explain::run(&args),
         Command::Completions(args) => completions::run(&args),
     }

@@ -159,13 +159,21 @@ fn relative(folder: &Path, file: &str) -> String {
     folder.join(file).display().to_string()
 }
 
-/// The folders of `--library`, then those of MODELICAPATH.
+/// The folders of an experiment's `--library`, then those of MODELICAPATH.
 ///
 /// # Errors
 /// When a folder of `--library` does not exist.
 pub(super) fn library_folders(experiment: &Experiment) -> Result<Vec<PathBuf>, Failure> {
+    folders(&experiment.library)
+}
+
+/// The folders of `--library`, then those of MODELICAPATH.
+///
+/// # Errors
+/// When a folder of `--library` does not exist.
+pub(super) fn folders(library: &[String]) -> Result<Vec<PathBuf>, Failure> {
     let mut folders: Vec<PathBuf> = Vec::new();
-    for folder in &experiment.library {
+    for folder in library {
         if !Path::new(folder).is_dir() {
             return Err(Failure::new(Code::FileAccess, format!("`--library {folder}`: there is no such folder")));
         }

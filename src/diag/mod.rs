@@ -112,6 +112,17 @@ pub struct Diagnostic {
     pub notes: Vec<String>,
     /// What to do about it.
     pub help: Vec<String>,
+    /// A change of the text that would do it, for editors.
+    pub fix: Option<Fix>,
+}
+
+/// A change of a text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fix {
+    /// What is replaced; empty where something is inserted.
+    pub span: Span,
+    /// What stands there afterwards.
+    pub text: String,
 }
 
 impl Diagnostic {
@@ -126,6 +137,7 @@ impl Diagnostic {
             class: None,
             notes: Vec::new(),
             help: Vec::new(),
+            fix: None,
         }
     }
 
@@ -147,6 +159,24 @@ impl Diagnostic {
     #[must_use]
     pub fn help(mut self, text: impl Into<String>) -> Self {
         self.help.push(text.into());
+        self
+    }
+
+    /// Proposes the name that was probably meant in place of the one at the primary place.
+    #[must_use]
+    pub fn meant(self, near: &str) -> Self {
+        let primary = self.labels.first().map(|l| l.span);
+        let made = self.help(format!("did you mean `{near}`?"));
+        match primary {
+            Some(span) => made.fix(span, near),
+            None => made,
+        }
+    }
+
+    /// Proposes a change of the text.
+    #[must_use]
+    pub fn fix(mut self, span: Span, text: impl Into<String>) -> Self {
+        self.fix = Some(Fix { span, text: text.into() });
         self
     }
 

@@ -130,7 +130,7 @@ impl<'a> Instance<'a, '_> {
         };
         let mut d = Diagnostic::new(Code::UnknownClass, message).at(path.parts[part].span, "not found");
         if let Some(near) = nearest(name, names.iter().map(|n| n.as_str())) {
-            d = d.help(format!("did you mean `{near}`?"));
+            d = d.meant(near);
         } else if part == 0 && name == "Modelica" || whole.starts_with("Modelica.") {
             d = d.help("only `Modelica.Units.SI`, `Modelica.Constants` and `Modelica.Math` are built in; give other libraries with `--library DIR`");
         } else {
@@ -171,7 +171,7 @@ impl<'a> Instance<'a, '_> {
         .at(name.span, "not an element of this class")
         .class(class);
         d = match nearest(name.name.as_str(), known.iter().map(|n| n.as_str())) {
-            Some(near) => d.help(format!("did you mean `{near}`?")),
+            Some(near) => d.meant(near),
             None => d.help(list_names("it has", known)),
         };
         self.report(d);
@@ -194,7 +194,7 @@ impl<'a> Instance<'a, '_> {
             Diagnostic::new(Code::UnknownModifier, format!("`{}` is not an attribute of `{ty}`", short(name.as_str())))
                 .at(span, "not known here");
         if let Some(near) = nearest(name.as_str(), known.iter().copied()) {
-            d = d.help(format!("did you mean `{near}`?"));
+            d = d.meant(near);
         } else {
             d = d.help(format!("attributes are: {}", known.join(", ")));
         }

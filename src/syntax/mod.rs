@@ -2,11 +2,11 @@
 
 pub mod ast;
 pub mod format;
-mod lexer;
+pub(crate) mod lexer;
 mod parser;
 mod print;
 pub mod symbol;
-mod token;
+pub(crate) mod token;
 
 use crate::diag::{Checked, Code, Diagnostic, FileId, Span};
 use parser::Parser;

@@ -1,6 +1,6 @@
 //! `outer` components: the `inner` ones that they mean, made where there is none.
 
-use crate::diag::{Code, Diagnostic};
+use crate::diag::{Code, Diagnostic, Span};
 use crate::instance::building::components::Plan;
 use crate::instance::lookup::{Builtin, Found};
 use crate::instance::modifiers::Reached;
@@ -38,11 +38,14 @@ impl<'a> Instance<'a, '_> {
             self.report(no_inner(instance, help));
             return None;
         }
-        self.report(
-            Diagnostic::new(Code::AutomaticInner, format!("`inner {full} {name}` was added to the model"))
-                .at(declared.name.span, format!("`outer {name}` has no `inner` above it"))
-                .help(format!("write `inner {full} {name};` in the model to choose its parameters")),
-        );
+        let made = Diagnostic::new(Code::AutomaticInner, format!("`inner {full} {name}` was added to the model"))
+            .at(declared.name.span, format!("`outer {name}` has no `inner` above it"))
+            .help(format!("write `inner {full} {name};` in the model to choose its parameters"));
+        let first = self.first_element_of_model();
+        self.report(match first {
+            Some(place) => made.fix(place, format!("inner {full} {name};\n  ")),
+            None => made,
+        });
         let root = self.root;
         let plan = Plan {
             name: name.as_str().to_string(),
@@ -56,6 +59,13 @@ impl<'a> Instance<'a, '_> {
         let node = self.build_shaped(&plan, &found, &[], Reached::default())?;
         self.inner_declared.insert((root, name), node);
         Some(node)
+    }
+
+    /// An empty place before the first element of the model.
+    fn first_element_of_model(&self) -> Option<Span> {
+        let class = self.library.class(self.scope(self.root).template.class);
+        let first = crate::resolve::names::body(class)?.elements.first()?.span;
+        Some(Span { end: first.start, ..first })
     }
 
     /// An `outer` element is somebody else's and cannot be modified (MLS 5.4).

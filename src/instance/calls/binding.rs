@@ -59,7 +59,7 @@ impl<'a> Instance<'a, '_> {
             let mut d = Diagnostic::new(Code::BadCall, format!("`{}` has no input `{}`", callee.name, name.name))
                 .at(name.span, "not an input");
             d = match crate::instance::errors::nearest(name.name.as_str(), names.iter().map(|n| n.as_str())) {
-                Some(near) => d.help(format!("did you mean `{near}`?")),
+                Some(near) => d.meant(near),
                 None => d.help(crate::instance::errors::list_names("it takes", &names)),
             };
             self.report(d);

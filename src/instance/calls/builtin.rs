@@ -703,7 +703,7 @@ impl<'a> Instance<'a, '_> {
         if name == "pow" {
             d = d.help("write `x^y`");
         } else if let Some(near) = crate::instance::errors::nearest(&name, KNOWN) {
-            d = d.help(format!("did you mean `{near}`?"));
+            d = d.meant(near);
         }
         self.report(d);
     }

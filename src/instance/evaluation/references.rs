@@ -162,7 +162,7 @@ impl<'a> Instance<'a, '_> {
         let mut d = Diagnostic::new(Code::UnknownName, format!("there is no `{}` here", short(name.as_str())))
             .at(span, "not found");
         d = match nearest(name.as_str(), names.iter().map(|n| n.as_str())) {
-            Some(near) => d.help(format!("did you mean `{near}`?")),
+            Some(near) => d.meant(near),
             None => d.help(list_names("known here are", names)),
         };
         self.report(d);
@@ -358,7 +358,7 @@ impl<'a> Instance<'a, '_> {
             .instance(instance)
             .class(class);
         d = match nearest(name.as_str(), names.iter().map(|n| n.as_str())) {
-            Some(near) => d.help(format!("did you mean `{near}`?")),
+            Some(near) => d.meant(near),
             None => d.help(list_names("it has", &names)),
         };
         self.report(d);
@@ -471,7 +471,7 @@ impl<'a> Instance<'a, '_> {
         let mut d = Diagnostic::new(Code::UnknownName, format!("`{class}` has no `{}`", short(name.as_str())))
             .at(part.name.span, "not found");
         d = match nearest(name.as_str(), names.iter().map(|n| n.as_str())) {
-            Some(near) => d.help(format!("did you mean `{near}`?")),
+            Some(near) => d.meant(near),
             None => d.help(list_names("it has", &names)),
         };
         self.report(d);

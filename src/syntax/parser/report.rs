@@ -191,7 +191,10 @@ impl Parser<'_> {
         let place = Span { file: self.file, start: end, end };
         let after = self.describe(self.previous());
         let message = format!("expected `;` after {after}, found {}", self.describe(self.token()));
-        let diagnostic = Diagnostic::new(Code::Syntax, message).at(place, "`;` is missing here").help("write `;` here");
+        let diagnostic = Diagnostic::new(Code::Syntax, message)
+            .at(place, "`;` is missing here")
+            .help("write `;` here")
+            .fix(place, ";");
         self.report(diagnostic);
         self.guessed = true;
     }
@@ -262,7 +265,11 @@ impl Parser<'_> {
             .at(place, format!("{what} ends here"))
             .at(open.span, "it begins here")
             .help(format!("write `{closing}`"));
-        self.report_end(diagnostic);
+        let word = closing.strip_prefix("end ").filter(|_| place != self.span());
+        self.report_end(match word {
+            Some(word) => diagnostic.fix(place, word),
+            None => diagnostic,
+        });
     }
 
     /// A word of other languages at the beginning of an item, with the Modelica word meant.

@@ -1,0 +1,345 @@
+//! What the server offers, and the answers to requests.
+
+use std::collections::{BTreeMap, HashMap};
+use std::path::PathBuf;
+
+use lsp_server::Request;
+use lsp_types::request::{self, Request as _};
+use lsp_types::{
+    CodeAction, CodeActionOrCommand, CodeActionParams, CompletionList, CompletionResponse, DocumentSymbolResponse,
+    FoldingRangeParams, GotoDefinitionParams, GotoDefinitionResponse, InlayHintParams, Location, Position, Range,
+    ReferenceParams, RenameFile, ResourceOp, SemanticTokens, TextDocumentEdit, TextDocumentPositionParams, TextEdit,
+    Uri, WorkspaceEdit,
+};
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+
+use super::files::{Cache, Open, below};
+use super::texts;
+use crate::compile::{Request as Wanted, flatten, runnable};
+use crate::diag::FileId;
+use crate::editor::hints::{Facts, hints};
+use crate::editor::messages::Message;
+use crate::editor::navigate::{self, Declared, Place};
+use crate::editor::{View, complete, hover, is_shipped, lines, outline, signature, tokens};
+use crate::plot::network;
+use crate::syntax::format::format;
+
+/// The request of the picture of a model's network.
+const NETWORK: &str = "bramah/network";
+
+/// Texts and what is known about them.
+pub(super) struct Answers {
+    pub open: Open,
+    pub libraries: Vec<PathBuf>,
+    pub cache: Cache,
+    pub facts: Facts,
+    /// Folders of the editor.
+    roots: Vec<PathBuf>,
+}
+
+/// What an editor may ask.
+pub(super) fn capabilities() -> Value {
+    serde_json::json!({
+        "textDocumentSync": { "openClose": true, "change": 2, "save": true },
+        "completionProvider": { "triggerCharacters": [".", "(", "\""] },
+        "signatureHelpProvider": { "triggerCharacters": ["(", ","] },
+        "hoverProvider": true,
+        "definitionProvider": true,
+        "typeDefinitionProvider": true,
+        "referencesProvider": true,
+        "documentHighlightProvider": true,
+        "renameProvider": { "prepareProvider": true },
+        "documentSymbolProvider": true,
+        "foldingRangeProvider": true,
+        "documentFormattingProvider": true,
+        "codeActionProvider": { "codeActionKinds": ["quickfix"] },
+        "inlayHintProvider": true,
+        "semanticTokensProvider": {
+            "legend": { "tokenTypes": tokens::TYPES, "tokenModifiers": tokens::MODIFIERS },
+            "full": true,
+        },
+        "executeCommandProvider": { "commands": [] },
+        "experimental": { "networkProvider": true },
+    })
+}
+
+type Answer = Result<Value, String>;
+
+/// Of the model whose network is drawn.
+#[derive(Deserialize)]
+struct NetworkParams {
+    uri: Uri,
+    model: Option<String>,
+}
+
+impl Answers {
+    pub fn new(params: &Value, mut libraries: Vec<PathBuf>) -> Answers {
+        let cache = Cache::new();
+        let address = |v: &Value| serde_json::from_value::<Uri>(v.clone()).ok().and_then(|uri| cache.path(&uri));
+        let folders = params["workspaceFolders"].as_array().into_iter().flatten();
+        let mut roots: Vec<PathBuf> = folders.filter_map(|f| address(&f["uri"])).collect();
+        if roots.is_empty() {
+            roots.extend(address(&params["rootUri"]));
+        }
+        let options = params["initializationOptions"]["libraries"].as_array().into_iter().flatten();
+        libraries.extend(options.filter_map(|l| l.as_str()).map(PathBuf::from));
+        Answers { open: Open::default(), libraries, cache, facts: Facts::default(), roots }
+    }
+
+    /// `None` for what is not offered.
+    pub fn answer(&mut self, request: &Request, said: &BTreeMap<PathBuf, Vec<Message>>) -> Option<Answer> {
+        let params = &request.params;
+        Some(match request.method.as_str() {
+            request::Completion::METHOD => self.at_place(params, |_, view, at| {
+                let items = complete::complete(view, at);
+                Some(CompletionResponse::List(CompletionList { is_incomplete: false, items }))
+            }),
+            request::SignatureHelpRequest::METHOD => self.at_place(params, |_, view, at| signature::help(view, at)),
+            request::HoverRequest::METHOD => {
+                self.at_place(params, |answers, view, at| hover::hover(view, at, &answers.facts))
+            }
+            request::GotoDefinition::METHOD => self.go(params, navigate::definition),
+            request::GotoTypeDefinition::METHOD => self.go(params, navigate::type_definition),
+            request::References::METHOD => self.references(params),
+            request::DocumentHighlightRequest::METHOD => self.highlights(params),
+            request::PrepareRenameRequest::METHOD => self.at_place(params, |_, view, at| {
+                let found = navigate::occurrence_at(view, at).filter(|o| o.target.is_some())?;
+                Some(lines::range(&view.text, found.ident.span))
+            }),
+            request::Rename::METHOD => self.rename(params),
+            request::DocumentSymbolRequest::METHOD => {
+                self.of_file(params, |_, view| DocumentSymbolResponse::Nested(outline::symbols(view)))
+            }
+            request::FoldingRangeRequest::METHOD => read::<FoldingRangeParams>(params).and_then(|p| {
+                let text = self.text(&p.text_document.uri)?;
+                write(outline::folds(&text))
+            }),
+            request::Formatting::METHOD => self.formatting(params),
+            request::CodeActionRequest::METHOD => self.actions(params, said),
+            request::InlayHintRequest::METHOD => read::<InlayHintParams>(params).and_then(|p| {
+                let facts = &self.facts;
+                let all = self.look(&p.text_document.uri, |view| hints(view, facts));
+                let shown = |h: &lsp_types::InlayHint| p.range.start <= h.position && h.position <= p.range.end;
+                write(all.unwrap_or_default().into_iter().filter(shown).collect::<Vec<_>>())
+            }),
+            request::SemanticTokensFullRequest::METHOD => {
+                self.of_file(params, |_, view| SemanticTokens { result_id: None, data: tokens::tokens(view) })
+            }
+            NETWORK => self.network(params),
+            _ => return None,
+        })
+    }
+
+    fn look<T>(&self, uri: &Uri, act: impl FnOnce(&mut View<'_, '_>) -> T) -> Option<T> {
+        let path = self.cache.path(uri)?;
+        texts(&self.open, &self.libraries).look(&path, |mut view| act(&mut view))
+    }
+
+    /// Answers about a place; null where there is nothing to say.
+    fn at_place<T: serde::Serialize>(
+        &self,
+        params: &Value,
+        act: impl FnOnce(&Self, &mut View<'_, '_>, u32) -> Option<T>,
+    ) -> Answer {
+        let p: TextDocumentPositionParams = read(params)?;
+        let found = self.look(&p.text_document.uri, |view| {
+            let at = lines::offset(&view.text, p.position);
+            act(self, view, at)
+        });
+        write(found.flatten())
+    }
+
+    fn of_file<T: serde::Serialize>(&self, params: &Value, act: impl FnOnce(&Self, &mut View<'_, '_>) -> T) -> Answer {
+        let uri: Uri = read(&params["textDocument"]["uri"])?;
+        write(self.look(&uri, |view| act(self, view)))
+    }
+
+    fn text(&self, uri: &Uri) -> Result<String, String> {
+        let path = self.cache.path(uri).ok_or("the address is not that of a file")?;
+        let text = texts(&self.open, &self.libraries).read(&path);
+        text.ok_or_else(|| format!("`{}` cannot be read", path.display()))
+    }
+
+    fn go(&self, params: &Value, find: impl FnOnce(&mut View<'_, '_>, u32) -> Option<Place>) -> Answer {
+        let p: GotoDefinitionParams = read(params)?;
+        let p = p.text_document_position_params;
+        let place = self.look(&p.text_document.uri, |view| {
+            let at = lines::offset(&view.text, p.position);
+            find(view, at)
+        });
+        write(place.flatten().and_then(|place| self.location(&place)).map(GotoDefinitionResponse::Scalar))
+    }
+
+    fn location(&self, place: &Place) -> Option<Location> {
+        Some(Location { uri: self.cache.uri(&place.path)?, range: place.lsp_range() })
+    }
+
+    /// What is declared at a place, and where it is used in the files of the user.
+    fn used(&self, uri: &Uri, position: Position) -> Option<(Declared, Vec<Place>)> {
+        let declared = self.look(uri, |view| {
+            let at = lines::offset(&view.text, position);
+            navigate::declared(view, at)
+        })??;
+        let files = if declared.local { self.cache.path(uri).into_iter().collect() } else { self.own_files(uri) };
+        let places = navigate::references(&texts(&self.open, &self.libraries), &files, &declared);
+        Some((declared, places))
+    }
+
+    /// The files of the editor's folders, and those that are open.
+    fn own_files(&self, uri: &Uri) -> Vec<PathBuf> {
+        let mut files = below(&self.roots);
+        files.extend(self.open.paths().filter(|p| !is_shipped(p)).cloned());
+        files.extend(self.cache.path(uri).filter(|p| !is_shipped(p)));
+        files.sort();
+        files.dedup();
+        files
+    }
+
+    fn references(&self, params: &Value) -> Answer {
+        let p: ReferenceParams = read(params)?;
+        let at = &p.text_document_position;
+        let Some((declared, mut places)) = self.used(&at.text_document.uri, at.position) else {
+            return Ok(Value::Null);
+        };
+        if !p.context.include_declaration {
+            places.retain(|place| *place != declared.place);
+        } else if !places.contains(&declared.place) {
+            places.insert(0, declared.place);
+        }
+        write(places.iter().filter_map(|place| self.location(place)).collect::<Vec<_>>())
+    }
+
+    fn highlights(&self, params: &Value) -> Answer {
+        let p: TextDocumentPositionParams = read(params)?;
+        let path = self.cache.path(&p.text_document.uri).ok_or("the address is not that of a file")?;
+        let declared = self.look(&p.text_document.uri, |view| {
+            let at = lines::offset(&view.text, p.position);
+            navigate::declared(view, at)
+        });
+        let Some(declared) = declared.flatten() else { return Ok(Value::Null) };
+        let places = navigate::references(&texts(&self.open, &self.libraries), std::slice::from_ref(&path), &declared);
+        let here = places.iter().filter(|place| place.path == path);
+        write(
+            here.map(|place| lsp_types::DocumentHighlight { range: place.lsp_range(), kind: None }).collect::<Vec<_>>(),
+        )
+    }
+
+    fn rename(&self, params: &Value) -> Answer {
+        let p: lsp_types::RenameParams = read(params)?;
+        if !navigate::is_name(&p.new_name) {
+            return Err(format!("`{}` is not a name: letters, digits and `_`, no keyword", p.new_name));
+        }
+        let at = &p.text_document_position;
+        let found = self.used(&at.text_document.uri, at.position);
+        let (declared, places) = found.ok_or("there is nothing here that can be renamed")?;
+        if is_shipped(&declared.place.path) {
+            return Err(format!("`{}` ships with bramah", declared.name));
+        }
+        if !self.own_files(&at.text_document.uri).contains(&declared.place.path) {
+            return Err(format!("`{}` is declared in a library", declared.name));
+        }
+        let mut edits: BTreeMap<PathBuf, Vec<TextEdit>> = BTreeMap::new();
+        for place in places {
+            let edit = TextEdit { range: place.lsp_range(), new_text: p.new_name.clone() };
+            edits.entry(place.path).or_default().push(edit);
+        }
+        write(self.workspace_edit(edits, declared.own_file.then_some((&declared.place.path, &p.new_name))))
+    }
+
+    /// The edits, and the new name of the file or folder that a class has to itself.
+    fn workspace_edit(
+        &self,
+        edits: BTreeMap<PathBuf, Vec<TextEdit>>,
+        file: Option<(&PathBuf, &String)>,
+    ) -> WorkspaceEdit {
+        let Some((path, name)) = file else {
+            let changes = edits.into_iter().filter_map(|(path, edits)| Some((self.cache.uri(&path)?, edits)));
+            #[allow(clippy::mutable_key_type, reason = "the protocol's type")]
+            let changes: HashMap<Uri, Vec<TextEdit>> = changes.collect();
+            return WorkspaceEdit { changes: Some(changes), ..WorkspaceEdit::default() };
+        };
+        let mut all: Vec<lsp_types::DocumentChangeOperation> = Vec::new();
+        for (path, edits) in edits {
+            let Some(uri) = self.cache.uri(&path) else { continue };
+            let document = lsp_types::OptionalVersionedTextDocumentIdentifier { uri, version: None };
+            let edits = edits.into_iter().map(lsp_types::OneOf::Left).collect();
+            all.push(lsp_types::DocumentChangeOperation::Edit(TextDocumentEdit { text_document: document, edits }));
+        }
+        let (old, new) = match path.file_name() {
+            Some(f) if f == "package.mo" => {
+                let folder = path.parent().unwrap_or(path);
+                (folder.to_path_buf(), folder.with_file_name(name))
+            }
+            _ => (path.clone(), path.with_file_name(format!("{name}.mo"))),
+        };
+        if let (Some(old_uri), Some(new_uri)) = (self.cache.uri(&old), self.cache.uri(&new)) {
+            let rename = RenameFile { old_uri, new_uri, options: None, annotation_id: None };
+            all.push(lsp_types::DocumentChangeOperation::Op(ResourceOp::Rename(rename)));
+        }
+        let changes = lsp_types::DocumentChanges::Operations(all);
+        WorkspaceEdit { document_changes: Some(changes), ..WorkspaceEdit::default() }
+    }
+
+    fn formatting(&self, params: &Value) -> Answer {
+        let uri: Uri = read(&params["textDocument"]["uri"])?;
+        let text = self.text(&uri)?;
+        let Ok(new_text) = format(FileId(0), &text) else { return Ok(Value::Null) };
+        if new_text == text {
+            return write(Vec::<TextEdit>::new());
+        }
+        let range = Range::new(Position::new(0, 0), lines::position(&text, text.len() as u32));
+        write(vec![TextEdit { range, new_text }])
+    }
+
+    fn actions(&self, params: &Value, said: &BTreeMap<PathBuf, Vec<Message>>) -> Answer {
+        let p: CodeActionParams = read(params)?;
+        let path = self.cache.path(&p.text_document.uri).ok_or("the address is not that of a file")?;
+        let mut actions = Vec::new();
+        for message in said.values().flatten().filter(|m| m.path == path) {
+            let range = message.diagnostic.range;
+            let touched = range.start <= p.range.end && p.range.start <= range.end;
+            let Some(correction) = message.correction.as_ref().filter(|_| touched) else { continue };
+            #[allow(clippy::mutable_key_type, reason = "the protocol's type")]
+            let changes = HashMap::from([(p.text_document.uri.clone(), vec![correction.edit.clone()])]);
+            actions.push(CodeActionOrCommand::CodeAction(CodeAction {
+                title: correction.title.clone(),
+                kind: Some(lsp_types::CodeActionKind::QUICKFIX),
+                diagnostics: Some(vec![message.diagnostic.clone()]),
+                edit: Some(WorkspaceEdit { changes: Some(changes), ..WorkspaceEdit::default() }),
+                is_preferred: Some(true),
+                ..CodeAction::default()
+            }));
+        }
+        write(actions)
+    }
+
+    /// The picture of a model's network, also where its equations do not fit together yet.
+    fn network(&self, params: &Value) -> Answer {
+        let p: NetworkParams = read(params)?;
+        let path = self.cache.path(&p.uri).ok_or("the address is not that of a file")?;
+        let shipped =
+            is_shipped(&path).then(|| self.look(&p.uri, |view| Some(view.library.full_name(*view.classes.first()?))));
+        let source = shipped.flatten().flatten().map_or_else(|| path.clone(), PathBuf::from);
+        let request = Wanted { source, libraries: self.libraries.clone(), ..Wanted::default() };
+        let model = match p.model {
+            Some(model) => Some(model),
+            None if is_shipped(&path) => None,
+            None => runnable(&self.open, &request).ok().and_then(|names| names.into_iter().next()),
+        };
+        let outcome = flatten(&self.open, &Wanted { model, ..request });
+        let first = outcome.diagnostics.iter().find(|d| d.is_error()).map(|d| d.message.clone());
+        let flattened = outcome.value.ok_or(first.unwrap_or_else(|| "there is no model here".to_owned()))?;
+        let svg = network::write(&flattened.graph, &flattened.flat.class);
+        Ok(serde_json::json!({ "model": flattened.flat.class, "svg": svg }))
+    }
+}
+
+fn read<P: DeserializeOwned>(params: &Value) -> Result<P, String> {
+    serde_json::from_value(params.clone()).map_err(|e| e.to_string())
+}
+
+fn write(answer: impl serde::Serialize) -> Answer {
+    serde_json::to_value(answer).map_err(|e| e.to_string())
+}

@@ -1,0 +1,61 @@
+//! Places as editors count them: lines and UTF-16 units from 0.
+
+use crate::diag::Span;
+use lsp_types::{Position, Range};
+
+/// Where a byte stands; one beyond the end stands at the end.
+pub fn position(text: &str, offset: u32) -> Position {
+    let mut at = (offset as usize).min(text.len());
+    while !text.is_char_boundary(at) {
+        at -= 1;
+    }
+    let before = &text[..at];
+    let line = before.bytes().filter(|&b| b == b'\n').count();
+    let start = before.rfind('\n').map_or(0, |i| i + 1);
+    let column: usize = before[start..].chars().map(char::len_utf16).sum();
+    Position::new(line as u32, column as u32)
+}
+
+/// The byte at a place; one beyond the end of a line stands at its end.
+pub fn offset(text: &str, position: Position) -> u32 {
+    let mut start = 0;
+    for _ in 0..position.line {
+        match text[start..].find('\n') {
+            Some(i) => start += i + 1,
+            None => return text.len() as u32,
+        }
+    }
+    let line = text[start..].split('\n').next().unwrap_or("");
+    let line = line.strip_suffix('\r').unwrap_or(line);
+    let mut units = 0;
+    for (i, c) in line.char_indices() {
+        if units >= position.character as usize {
+            return (start + i) as u32;
+        }
+        units += c.len_utf16();
+    }
+    (start + line.len()) as u32
+}
+
+/// The range of a span.
+pub fn range(text: &str, span: Span) -> Range {
+    Range::new(position(text, span.start), position(text, span.end))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{offset, position};
+    use lsp_types::Position;
+
+    #[test]
+    fn bytes_and_places_meet() {
+        let text = "a\u{e4}\u{1f600}b\r\nzwei\n";
+        for (byte, line, column) in [(0, 0, 0), (1, 0, 1), (3, 0, 2), (7, 0, 4), (8, 0, 5), (10, 1, 0), (15, 2, 0)] {
+            assert_eq!(position(text, byte), Position::new(line, column), "{byte}");
+            assert_eq!(offset(text, Position::new(line, column)), byte, "{line}:{column}");
+        }
+        assert_eq!(offset(text, Position::new(1, 99)), 14);
+        assert_eq!(offset(text, Position::new(9, 0)), text.len() as u32);
+        assert_eq!(offset(text, Position::new(0, 99)), 8);
+    }
+}

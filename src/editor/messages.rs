@@ -1,0 +1,152 @@
+//! What is said of a file: every model in it goes the way of `check`.
+
+use super::actions::{Correction, correction};
+use super::hints::Facts;
+use super::{Texts, is_shipped, lines};
+use crate::compile::{Request, compile, runnable};
+use crate::diag::{Code, Diagnostic, FileId, Severity, Sources};
+use crate::lower::Options;
+use crate::resolve::names;
+use crate::syntax::ast::ClassKind;
+use lsp_types::{DiagnosticRelatedInformation, DiagnosticSeverity, Location, NumberOrString, Range, Uri};
+use std::path::{Path, PathBuf};
+
+/// More models of one file are not looked at while it is edited.
+const MOST_MODELS: usize = 12;
+
+/// A message in a file, with the correction it proposes.
+#[derive(Clone, Debug)]
+pub struct Message {
+    /// The file.
+    pub path: PathBuf,
+    /// As editors know it.
+    pub diagnostic: lsp_types::Diagnostic,
+    /// What would mend it.
+    pub correction: Option<Correction>,
+}
+
+/// What the parser says.
+pub fn of_syntax(path: &Path, text: &str) -> Vec<Message> {
+    let mut sources = Sources::default();
+    let file = sources.add(path.display().to_string(), text);
+    let parsed = crate::syntax::parse(file, text);
+    parsed.diagnostics.iter().filter_map(|d| message(&sources, d, path, &no_link)).collect()
+}
+
+/// What the pipeline says of the models in a file, in turn; `go_on` is asked before each.
+pub fn of_models(
+    texts: &Texts<'_>,
+    path: &Path,
+    link: &dyn Fn(&Path) -> Option<Uri>,
+    facts: &mut Facts,
+    go_on: &dyn Fn() -> bool,
+) -> Vec<Message> {
+    let request = Request { source: path.to_path_buf(), libraries: texts.libraries.to_vec(), ..Request::default() };
+    let names = runnable(texts.world, &request).unwrap_or_default();
+    let mut found: Vec<Message> = Vec::new();
+    for name in names.into_iter().take(MOST_MODELS) {
+        if !go_on() {
+            return found;
+        }
+        let one = Request { model: Some(name.clone()), ..request.clone() };
+        let outcome = compile(texts.world, &one, &Options { native: false });
+        if let Some(model) = &outcome.value {
+            facts.learn(model);
+        }
+        let component = is_component(texts, path, &name);
+        for diagnostic in outcome.diagnostics.iter().filter(|d| !(component && is_of_use(d.code))) {
+            let Some(message) = message(&outcome.sources, diagnostic, path, link) else { continue };
+            let same = |m: &Message| m.path == message.path && m.diagnostic == message.diagnostic;
+            if !is_shipped(&message.path) && !found.iter().any(same) {
+                found.push(message);
+            }
+        }
+    }
+    found
+}
+
+/// Whether a class has ports of its own, to be joined where it is used.
+fn is_component(texts: &Texts<'_>, path: &Path, name: &str) -> bool {
+    texts
+        .look(path, |view| {
+            let Some(id) = view.library.find(name) else { return false };
+            let is_port = |m: names::Member<'_>, library: &mut _| {
+                names::type_of(library, m).is_some_and(|c| {
+                    names::is_connector(library, c)
+                        && names::members(library, c).iter().any(|m| m.component.prefix.flow)
+                })
+            };
+            view.library.class(id).kind != ClassKind::Package
+                && names::members(view.library, id).into_iter().any(|m| is_port(m, view.library))
+        })
+        .unwrap_or(false)
+}
+
+/// What is said only because the ports of a component are open, or its inputs free.
+fn is_of_use(code: Code) -> bool {
+    let id = code.id();
+    code == Code::OpenPort
+        || id.starts_with("E3")
+        || id.starts_with("E4")
+        || id.starts_with("W4")
+        || id == "E106"
+        || id == "N025"
+}
+
+fn no_link(_: &Path) -> Option<Uri> {
+    None
+}
+
+fn message(sources: &Sources, d: &Diagnostic, asked: &Path, link: &dyn Fn(&Path) -> Option<Uri>) -> Option<Message> {
+    // a place in the file asked about, if there is one
+    let shown = asked.display().to_string();
+    let primary = d.labels.iter().find(|l| sources.get(l.span.file).path == shown).or(d.labels.first());
+    let (path, range) = match primary {
+        Some(label) => {
+            let source = sources.get(label.span.file);
+            (PathBuf::from(&source.path), lines::range(&source.text, label.span))
+        }
+        None => (asked.to_path_buf(), Range::default()),
+    };
+    let mut text = d.message.clone();
+    if let Some(label) = primary.filter(|l| !l.text.is_empty()) {
+        text.push_str(&format!("\n{}", label.text));
+    }
+    d.notes.iter().for_each(|n| text.push_str(&format!("\n{n}")));
+    d.help.iter().for_each(|h| text.push_str(&format!("\nhelp: {h}")));
+    let others = d.labels.iter().filter(|l| Some(l.span) != primary.map(|p| p.span));
+    let related: Vec<DiagnosticRelatedInformation> = others
+        .filter_map(|l| {
+            related(sources, l.span.file, lines::range(&sources.get(l.span.file).text, l.span), &l.text, link)
+        })
+        .collect();
+    Some(Message {
+        correction: correction(sources, d)
+            .filter(|_| d.fix.as_ref().is_some_and(|f| sources.get(f.span.file).path == path.display().to_string())),
+        path,
+        diagnostic: lsp_types::Diagnostic {
+            range,
+            severity: Some(match d.severity {
+                Severity::Error => DiagnosticSeverity::ERROR,
+                Severity::Warning => DiagnosticSeverity::WARNING,
+                Severity::Note => DiagnosticSeverity::INFORMATION,
+            }),
+            code: Some(NumberOrString::String(d.code.id().to_owned())),
+            source: Some("bramah".to_owned()),
+            message: text,
+            related_information: (!related.is_empty()).then_some(related),
+            ..lsp_types::Diagnostic::default()
+        },
+    })
+}
+
+fn related(
+    sources: &Sources,
+    file: FileId,
+    range: Range,
+    text: &str,
+    link: &dyn Fn(&Path) -> Option<Uri>,
+) -> Option<DiagnosticRelatedInformation> {
+    let uri = link(Path::new(&sources.get(file).path))?;
+    Some(DiagnosticRelatedInformation { location: Location { uri, range }, message: text.to_owned() })
+}
