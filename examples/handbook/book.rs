@@ -15,6 +15,7 @@ pub const PARTS: [(&str, &[&str]); 4] = [
         "Circuits",
         &[
             "first_circuit",
+            "editor",
             "oil_and_volumes",
             "drives",
             "friction_and_events",

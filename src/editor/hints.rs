@@ -1,6 +1,6 @@
 //! Values behind what is written: `V = 10 ml` where the text has an expression or a number in SI units.
 
-use super::{View, lines};
+use super::View;
 use crate::compile::Model;
 use crate::expr::VarId;
 use crate::resolve::ClassId;
@@ -130,7 +130,7 @@ fn hint(view: &View<'_, '_>, value: &Value, written: &Expr, found: &mut Vec<Inla
         (false, _) => format!("= {}", value.shown(false)),
     };
     found.push(InlayHint {
-        position: lines::position(&view.text, written.span.end),
+        position: view.lines.position(written.span.end),
         label: InlayHintLabel::String(label),
         kind: None,
         text_edits: None,

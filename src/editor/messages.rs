@@ -6,8 +6,7 @@ use super::{Texts, is_shipped, lines};
 use crate::compile::{Request, compile, runnable};
 use crate::diag::{Code, Diagnostic, FileId, Severity, Sources};
 use crate::lower::Options;
-use crate::resolve::names;
-use crate::syntax::ast::ClassKind;
+use crate::resolve::{Library, names};
 use lsp_types::{DiagnosticRelatedInformation, DiagnosticSeverity, Location, NumberOrString, Range, Uri};
 use std::path::{Path, PathBuf};
 
@@ -53,8 +52,8 @@ pub fn of_models(
         if let Some(model) = &outcome.value {
             facts.learn(model);
         }
-        let component = is_component(texts, path, &name);
-        for diagnostic in outcome.diagnostics.iter().filter(|d| !(component && is_of_use(d.code))) {
+        let ports = ports(texts, path, &name);
+        for diagnostic in outcome.diagnostics.iter().filter(|d| !hangs_on_use(d.code, ports)) {
             let Some(message) = message(&outcome.sources, diagnostic, path, link) else { continue };
             let same = |m: &Message| m.path == message.path && m.diagnostic == message.diagnostic;
             if !is_shipped(&message.path) && !found.iter().any(same) {
@@ -65,32 +64,37 @@ pub fn of_models(
     found
 }
 
-/// Whether a class has ports of its own, to be joined where it is used.
-fn is_component(texts: &Texts<'_>, path: &Path, name: &str) -> bool {
-    texts
-        .look(path, |view| {
-            let Some(id) = view.library.find(name) else { return false };
-            let is_port = |m: names::Member<'_>, library: &mut _| {
-                names::type_of(library, m).is_some_and(|c| {
-                    names::is_connector(library, c)
-                        && names::members(library, c).iter().any(|m| m.component.prefix.flow)
-                })
-            };
-            view.library.class(id).kind != ClassKind::Package
-                && names::members(view.library, id).into_iter().any(|m| is_port(m, view.library))
-        })
-        .unwrap_or(false)
+/// What a class is joined by where it is used.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Ports {
+    None,
+    /// Inputs and outputs.
+    Signals,
+    /// Connectors with flows.
+    Flows,
 }
 
-/// What is said only because the ports of a component are open, or its inputs free.
-fn is_of_use(code: Code) -> bool {
+fn ports(texts: &Texts<'_>, path: &Path, name: &str) -> Ports {
+    let found = texts.look(path, |view| {
+        let id = view.library.find(name)?;
+        let kind = |m: names::Member<'_>, library: &mut Library<'_>| {
+            let class = names::type_of(library, m).filter(|c| names::is_connector(library, *c));
+            class.map_or(Ports::None, |class| {
+                let flows = names::members(library, class).iter().any(|m| m.component.prefix.flow);
+                if flows { Ports::Flows } else { Ports::Signals }
+            })
+        };
+        names::members(view.library, id).into_iter().map(|m| kind(m, view.library)).max()
+    });
+    found.flatten().unwrap_or(Ports::None)
+}
+
+/// What is said only because ports of a component are open: its use decides.
+fn hangs_on_use(code: Code, ports: Ports) -> bool {
     let id = code.id();
-    code == Code::OpenPort
-        || id.starts_with("E3")
-        || id.starts_with("E4")
-        || id.starts_with("W4")
-        || id == "E106"
-        || id == "N025"
+    let structure = code == Code::OpenPort || id.starts_with("E3") || id.starts_with("E4");
+    let start = matches!(code, Code::InitialUnder | Code::IndexReduction | Code::AutomaticInner | Code::NoInput);
+    ports == Ports::Flows && structure || ports >= Ports::Signals && start
 }
 
 fn no_link(_: &Path) -> Option<Uri> {

@@ -41,6 +41,8 @@ pub struct View<'l, 'a> {
     pub file: FileId,
     /// The text.
     pub text: String,
+    /// Its lines.
+    pub lines: lines::Lines,
 }
 
 impl Texts<'_> {
@@ -61,7 +63,8 @@ impl Texts<'_> {
             };
             let found = library.sources.iter().position(|s| s.path == shown);
             let file = FileId(u32::try_from(found?).ok()?);
-            Some(act(View { library, classes, file, text }))
+            let lines = lines::Lines::new(&text);
+            Some(act(View { library, classes, file, text, lines }))
         })
     }
 

@@ -1,6 +1,7 @@
 //! The outline of a file, and what can be folded.
 
-use super::{View, lines, words};
+use super::lines::Lines;
+use super::{View, words};
 use crate::diag::FileId;
 use crate::syntax::ast::{Class, ClassBody, ClassKind, ElementKind, Variability};
 use crate::syntax::lexer::lex;
@@ -62,8 +63,8 @@ fn made(
         kind,
         tags: None,
         deprecated: None,
-        range: lines::range(&view.text, span),
-        selection_range: lines::range(&view.text, name.span),
+        range: view.lines.range(span),
+        selection_range: view.lines.range(name.span),
         children: (!children.is_empty()).then_some(children),
     }
 }
@@ -71,7 +72,8 @@ fn made(
 /// Classes, blocks and brackets of several lines, and comments.
 pub fn folds(text: &str) -> Vec<FoldingRange> {
     let mut found = Vec::new();
-    let line = |offset: u32| lines::position(text, offset).line;
+    let lines = Lines::new(text);
+    let line = |offset: u32| lines.position(offset).line;
     let mut add = |start: u32, end: u32, kind: Option<FoldingRangeKind>| {
         let (start_line, end_line) = (line(start), line(end));
         if end_line > start_line {

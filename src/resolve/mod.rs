@@ -10,6 +10,7 @@ use crate::syntax::symbol::Symbol;
 use crate::world::World;
 use rustc_hash::FxHashMap;
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 use typed_arena::Arena;
 
 /// Owner of all syntax trees of one compilation.
@@ -31,6 +32,8 @@ struct Entry<'a> {
     ast: &'a ast::Class,
     folder: Option<Folder<'a>>,
     children: FxHashMap<Symbol, Option<ClassId>>,
+    /// Direct bases by the text, once they have been asked for ([`names`]).
+    bases: Option<Rc<[ClassId]>>,
 }
 
 /// All classes that can be named, loaded as far as they have been asked for.
@@ -102,7 +105,7 @@ impl<'a> Library<'a> {
             return id;
         }
         let id = ClassId(u32::try_from(self.entries.len()).expect("fewer than 2^32 classes"));
-        self.entries.push(Entry { parent, ast, folder, children: FxHashMap::default() });
+        self.entries.push(Entry { parent, ast, folder, children: FxHashMap::default(), bases: None });
         self.by_ast.insert(std::ptr::from_ref(ast), id);
         id
     }

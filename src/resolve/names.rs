@@ -7,9 +7,7 @@ use crate::syntax::ast::{
     Class, ClassBody, ClassKind, Component, ElementKind, EnumLiteral, Ident, Import, LongBody, Path,
 };
 use crate::syntax::symbol::Symbol;
-
-/// How many classes around and inside each other a name is followed through.
-const DEEPEST: u32 = 60;
+use std::rc::Rc;
 
 /// What a name stands for.
 #[derive(Clone, Copy, Debug)]
@@ -45,12 +43,39 @@ pub fn body(class: &Class) -> Option<&LongBody> {
 
 /// Direct bases of a class.
 pub fn bases(library: &mut Library<'_>, id: ClassId) -> Vec<ClassId> {
-    bases_within(library, id, 0)
+    known_bases(library, id).to_vec()
+}
+
+/// Direct bases of a class. While they are looked for it has none, so that classes that need each other come to an end.
+fn known_bases(library: &mut Library<'_>, id: ClassId) -> Rc<[ClassId]> {
+    if let Some(known) = &library.entries[id.0 as usize].bases {
+        return known.clone();
+    }
+    library.entries[id.0 as usize].bases = Some(Rc::from([]));
+    let class = library.class(id);
+    let paths: Vec<&Path> = match &class.body {
+        ClassBody::Short { base, .. } => vec![base],
+        ClassBody::Long(body) => body.elements.iter().filter_map(|e| base(&e.kind)).collect(),
+        _ => Vec::new(),
+    };
+    let found: Rc<[ClassId]> = paths.into_iter().filter_map(|p| resolve_outside(library, id, p)).collect();
+    library.entries[id.0 as usize].bases = Some(found.clone());
+    found
 }
 
 /// A class and all it inherits, nearest first.
 pub fn lineage(library: &mut Library<'_>, id: ClassId) -> Vec<ClassId> {
-    lineage_within(library, id, 0)
+    let mut found = vec![id];
+    let mut next = 0;
+    while next < found.len() {
+        for &base in &*known_bases(library, found[next]) {
+            if !found.contains(&base) {
+                found.push(base);
+            }
+        }
+        next += 1;
+    }
+    found
 }
 
 /// The components of a class, its own first, then inherited ones.
@@ -83,11 +108,6 @@ pub fn resolve(library: &mut Library<'_>, from: ClassId, path: &Path) -> Option<
     named(library, Some(from), &words(path), path.global)
 }
 
-/// The class that dotted words mean inside a class; from the top without one.
-pub fn named(library: &mut Library<'_>, from: Option<ClassId>, parts: &[Symbol], global: bool) -> Option<ClassId> {
-    named_within(library, from, parts, global, 0)
-}
-
 /// The class of a component; `None` for the built-in types.
 pub fn type_of(library: &mut Library<'_>, member: Member<'_>) -> Option<ClassId> {
     resolve(library, member.owner, &member.component.class)
@@ -100,7 +120,7 @@ pub fn lookup<'a>(library: &mut Library<'a>, from: ClassId, name: Symbol) -> Opt
         if let Some(found) = element(library, id, name) {
             return Some(found);
         }
-        if let Some(found) = imported(library, id, name, 0) {
+        if let Some(found) = imported(library, id, name) {
             return Some(Target::Class(found));
         }
         scope = library.parent(id);
@@ -146,16 +166,6 @@ fn words(path: &Path) -> Vec<Symbol> {
     path.parts.iter().map(|p| p.name).collect()
 }
 
-fn bases_within(library: &mut Library<'_>, id: ClassId, depth: u32) -> Vec<ClassId> {
-    let class = library.class(id);
-    let paths: Vec<&Path> = match &class.body {
-        ClassBody::Short { base, .. } => vec![base],
-        ClassBody::Long(body) => body.elements.iter().filter_map(|e| base(&e.kind)).collect(),
-        _ => Vec::new(),
-    };
-    paths.into_iter().filter_map(|p| resolve_outside(library, id, p, depth + 1)).collect()
-}
-
 fn base(kind: &ElementKind) -> Option<&Path> {
     match kind {
         ElementKind::Extends(x) => Some(&x.base),
@@ -163,62 +173,39 @@ fn base(kind: &ElementKind) -> Option<&Path> {
     }
 }
 
-fn lineage_within(library: &mut Library<'_>, id: ClassId, depth: u32) -> Vec<ClassId> {
-    let mut found = vec![id];
-    let mut next = 0;
-    while next < found.len() && depth < DEEPEST {
-        for base in bases_within(library, found[next], depth) {
-            if !found.contains(&base) {
-                found.push(base);
-            }
-        }
-        next += 1;
-    }
-    found
-}
-
 /// As [`resolve`] for the bases of a class, which are looked up without what is inherited.
-fn resolve_outside(library: &mut Library<'_>, class: ClassId, path: &Path, depth: u32) -> Option<ClassId> {
+fn resolve_outside(library: &mut Library<'_>, class: ClassId, path: &Path) -> Option<ClassId> {
     let parts = words(path);
     if !path.global {
         let own = library.child(class, parts[0]).filter(|f| *f != class);
-        if let Some(found) = own.or_else(|| imported(library, class, parts[0], depth)) {
-            return descend(library, found, &parts[1..], depth);
+        if let Some(found) = own.or_else(|| imported(library, class, parts[0])) {
+            return descend(library, found, &parts[1..]);
         }
     }
     let parent = library.parent(class);
-    named_within(library, parent, &parts, path.global, depth)
+    named(library, parent, &parts, path.global)
 }
 
-fn named_within(
-    library: &mut Library<'_>,
-    from: Option<ClassId>,
-    parts: &[Symbol],
-    global: bool,
-    depth: u32,
-) -> Option<ClassId> {
+/// The class that dotted words mean inside a class; from the top without one.
+pub fn named(library: &mut Library<'_>, from: Option<ClassId>, parts: &[Symbol], global: bool) -> Option<ClassId> {
     let (first, rest) = parts.split_first()?;
-    let mut scope = from.filter(|_| !global && depth < DEEPEST);
+    let mut scope = from.filter(|_| !global);
     while let Some(id) = scope {
-        if let Some(found) = in_scope(library, id, *first, depth) {
-            return descend(library, found, rest, depth);
+        if let Some(found) = member(library, id, *first).or_else(|| imported(library, id, *first)) {
+            return descend(library, found, rest);
         }
         scope = library.parent(id);
     }
     let top = library.top(*first)?;
-    descend(library, top, rest, depth)
+    descend(library, top, rest)
 }
 
-fn in_scope(library: &mut Library<'_>, id: ClassId, name: Symbol, depth: u32) -> Option<ClassId> {
-    for class in lineage_within(library, id, depth + 1) {
-        if let Some(found) = library.child(class, name) {
-            return Some(found);
-        }
-    }
-    imported(library, id, name, depth)
+/// A class in a class, its own or an inherited one.
+fn member(library: &mut Library<'_>, id: ClassId, name: Symbol) -> Option<ClassId> {
+    lineage(library, id).into_iter().find_map(|class| library.child(class, name))
 }
 
-fn imported(library: &mut Library<'_>, id: ClassId, name: Symbol, depth: u32) -> Option<ClassId> {
+fn imported(library: &mut Library<'_>, id: ClassId, name: Symbol) -> Option<ClassId> {
     let body = body(library.class(id))?;
     for element in &body.elements {
         let ElementKind::Import(import) = &element.kind else { continue };
@@ -232,7 +219,7 @@ fn imported(library: &mut Library<'_>, id: ClassId, name: Symbol, depth: u32) ->
         };
         let Some(last) = last else { continue };
         let parts: Vec<Symbol> = words(path).into_iter().chain(last).collect();
-        let found = named_within(library, None, &parts, true, depth + 1);
+        let found = named(library, None, &parts, true);
         if found.is_some() {
             return found;
         }
@@ -240,11 +227,9 @@ fn imported(library: &mut Library<'_>, id: ClassId, name: Symbol, depth: u32) ->
     None
 }
 
-fn descend(library: &mut Library<'_>, mut id: ClassId, parts: &[Symbol], depth: u32) -> Option<ClassId> {
-    for part in parts {
-        id = in_scope(library, id, *part, depth)?;
-    }
-    Some(id)
+/// The class that words mean from a class inwards; what a class imports is not seen from outside.
+fn descend(library: &mut Library<'_>, id: ClassId, parts: &[Symbol]) -> Option<ClassId> {
+    parts.iter().try_fold(id, |id, part| member(library, id, *part))
 }
 
 /// Whether a class is a connector, or a short name for one.

@@ -9,7 +9,7 @@ use crate::instance::modifiers::{Access, Arg, ArgKind, At, Binding, Reached, ext
 use crate::instance::template::{Kind, Template, What};
 use crate::instance::{ClassRef, ElementState, Inherited, Instance, Node, NodeId, ROOT, ScopeId, VarData, View, state};
 use crate::resolve::{ClassId, Library};
-use crate::syntax::ast::{self, ClassKind, Subscript};
+use crate::syntax::ast::{self, ClassKind, Expr, ExprKind, Subscript};
 use crate::syntax::symbol::Symbol;
 use crate::types::{StateSelect, Type, Variability};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -278,7 +278,7 @@ impl<'a> Instance<'a, '_> {
         };
         let subscripts = if component.subscripts.is_empty() { &declared.subscripts } else { &component.subscripts };
         let shape = reached.binding.clone().or_else(|| start_of(&reached.args));
-        let dims = self.dimensions(subscripts, own, shape.as_ref(), 0)?;
+        let dims = self.dimensions(Some(declared.name.name), subscripts, own, shape.as_ref(), 0)?;
         self.build_shaped(&plan, &found, &dims, reached)
     }
 
@@ -309,9 +309,10 @@ impl<'a> Instance<'a, '_> {
         }
     }
 
-    /// Array dimensions; `:` is taken from the value.
+    /// Array dimensions of an element; `:` is taken from the value, `size(A, 1)` of `A` itself from the sizes before it.
     pub(in crate::instance) fn dimensions(
         &mut self,
+        own: Option<Symbol>,
         subscripts: &'a [Subscript],
         view: View,
         binding: Option<&Binding<'a>>,
@@ -319,7 +320,9 @@ impl<'a> Instance<'a, '_> {
     ) -> Option<Vec<Extent>> {
         let mut dims = Vec::with_capacity(subscripts.len());
         for (i, s) in subscripts.iter().enumerate() {
+            let before = own.and_then(|name| own_size(s, name)).and_then(|k| dims.get(k.checked_sub(1)?));
             let extent = match s {
+                Subscript::Expr(_) if before.is_some() => before.copied()?,
                 Subscript::Expr(e) => self.extent(e, view)?,
                 Subscript::All(span) => {
                     let Some(b) = binding else {
@@ -367,7 +370,7 @@ impl<'a> Instance<'a, '_> {
                 let t = self.template(class.class, class.parent);
                 for (subscripts, base) in t.dims.iter().rev() {
                     let view = t.bases[*base as usize].parent;
-                    all.extend(self.dimensions(subscripts, view, reached.binding.as_ref(), dims.len())?);
+                    all.extend(self.dimensions(None, subscripts, view, reached.binding.as_ref(), dims.len())?);
                 }
                 Some(t)
             }
@@ -712,10 +715,23 @@ fn annotated(c: &ast::Component, name: &str) -> Option<bool> {
     arguments.into_iter().find_map(|a| match &a.kind {
         ast::ArgumentKind::Modify { path, modification: Some(m), .. } if path.parts[0].name == name => {
             match m.value.as_ref().map(|v| &v.kind) {
-                Some(ast::ExprKind::Boolean(said)) => Some(*said),
+                Some(ExprKind::Boolean(said)) => Some(*said),
                 _ => None,
             }
         }
         _ => None,
     })
+}
+
+/// `k` of `size(A, k)` in the dimensions of `A`.
+fn own_size(subscript: &Subscript, own: Symbol) -> Option<usize> {
+    let Subscript::Expr(Expr { kind: ExprKind::Call { function, args, .. }, .. }) = subscript else { return None };
+    let named =
+        |e: &Expr| matches!(&e.kind, ExprKind::Reference(r) if r.parts.len() == 1 && r.parts[0].name.name == own);
+    match (function.parts.as_slice(), args.as_slice()) {
+        ([size], [array, Expr { kind: ExprKind::Integer(k), .. }]) if size.name.name == "size" && named(array) => {
+            usize::try_from(*k).ok()
+        }
+        _ => None,
+    }
 }

@@ -90,7 +90,7 @@ impl<'a> Instance<'a, '_> {
         declared: &'a ast::Component,
         view: View,
     ) -> bool {
-        let Some(dims) = self.dimensions(&declared.subscripts, view, None, 0) else { return false };
+        let Some(dims) = self.dimensions(None, &declared.subscripts, view, None, 0) else { return false };
         let dims: Vec<usize> = dims.iter().map(|d| d.size).collect();
         let (have, first) = match self.node(node) {
             Node::Array { dims, elements, .. } => (dims.clone(), elements.first().copied()),
