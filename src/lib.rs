@@ -100,7 +100,7 @@ pub mod lower;
 mod compile;
 
 pub use compile::{
-    Flattened, Model, Outcome, Request, analyze, compile, flatten, flatten_text, inspect, runnable, sort,
+    Flattened, Model, Outcome, Request, analyze, compile, flatten, flatten_text, graph, inspect, runnable, sort,
 };
 
 pub mod solve;

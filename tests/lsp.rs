@@ -181,6 +181,16 @@ fn a_session() {
     assert!(network["svg"].as_str().is_some_and(|svg| svg.starts_with("<svg")), "{network}");
     assert_eq!(network["model"], "Drain");
 
+    // a port that is still open is drawn, too
+    let open = format!(
+        "{}  Hydraulic.Orifice other;\nequation\n  connect(other.port_a, tank.port);\nend Drain;\n",
+        &TEXT.replace("Orifise", "Orifice")[..TEXT.find("equation").expect("a section")]
+    );
+    let document = json!({ "uri": uri(&path), "version": 3 });
+    editor.tell("textDocument/didChange", json!({ "textDocument": document, "contentChanges": [{ "text": open }] }));
+    let network = editor.ask("bramah/network", json!({ "uri": uri(&path) }));
+    assert!(network["svg"].as_str().is_some_and(|svg| svg.contains("other")), "{network}");
+
     for method in ["documentSymbol", "foldingRange", "semanticTokens/full", "formatting"] {
         let answer = editor.ask(
             &format!("textDocument/{method}"),

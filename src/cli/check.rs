@@ -6,10 +6,10 @@ use super::messages::Messages;
 use super::recorder::write_text;
 use super::request::ModelArgs;
 use super::{Ending, Failure, model};
-use crate::Flattened;
 use crate::diag::Code;
 use crate::experiment::Experiment;
 use crate::flat::FlatModel;
+use crate::network::Graph;
 use crate::plot::{network, png};
 use crate::structure::{Block, Dae};
 
@@ -61,9 +61,11 @@ pub(super) fn run(args: &CheckArgs, messages: &mut Messages) -> Result<Ending, F
         return check_all(&experiment, messages);
     }
     // The network can be looked at even when the equations do not fit together.
-    if let Some(emit @ (Emit::Network | Emit::Svg | Emit::Flat)) = args.emit {
-        let flattened = model::flatten(&experiment, &mut Messages::silent())?;
-        write_early(args, emit, &flattened)?;
+    match args.emit {
+        Some(Emit::Network) => write(args, &network_list(&model::graph(&experiment)?.1))?,
+        Some(Emit::Svg) => write_picture(args, &model::graph(&experiment)?)?,
+        Some(Emit::Flat) => write(args, &model::flatten(&experiment, &mut Messages::silent())?.flat.text())?,
+        Some(Emit::Dae | Emit::Blt) | None => {}
     }
     let (flat, _, dae) = model::sort(&experiment, messages)?;
     match args.emit {
@@ -108,10 +110,10 @@ fn write(args: &CheckArgs, text: &str) -> Result<(), Failure> {
 }
 
 /// A picture may also be a PNG.
-fn write_early(args: &CheckArgs, emit: Emit, flattened: &Flattened) -> Result<(), Failure> {
-    let text = early(emit, flattened);
+fn write_picture(args: &CheckArgs, (class, graph): &(String, Graph)) -> Result<(), Failure> {
+    let text = network::write(graph, class);
     match &args.output_file {
-        Some(file) if emit == Emit::Svg && file.to_lowercase().ends_with(".png") => {
+        Some(file) if file.to_lowercase().ends_with(".png") => {
             let pixels = png::write(&text).map_err(|e| Failure::new(Code::BadArgument, e))?;
             super::files::write(std::path::Path::new(file), &pixels)
         }
@@ -128,17 +130,8 @@ fn endings(emit: Option<Emit>) -> &'static [&'static str] {
     }
 }
 
-fn early(emit: Emit, flattened: &Flattened) -> String {
-    match emit {
-        Emit::Svg => network::write(&flattened.graph, &flattened.flat.class),
-        Emit::Network => network_list(flattened),
-        Emit::Flat | Emit::Dae | Emit::Blt => flattened.flat.text(),
-    }
-}
-
 /// One line a component, then one line a connection.
-fn network_list(flattened: &Flattened) -> String {
-    let graph = &flattened.graph;
+fn network_list(graph: &Graph) -> String {
     let mut out = String::new();
     for component in graph.node_weights() {
         out.push_str(&format!("{} {}\n", component.class, component.name));

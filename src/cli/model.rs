@@ -1,6 +1,6 @@
 //! From what the user names to a compiled model, and everything there is to say about it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::messages::Messages;
 use super::request::library_folders;
@@ -18,6 +18,12 @@ use crate::{Flattened, Model, Outcome, Request};
 pub(super) fn flatten(experiment: &Experiment, messages: &mut Messages) -> Result<Flattened, Failure> {
     let outcome = crate::flatten(&DiskWorld, &request(experiment)?);
     pass(outcome, experiment, messages)
+}
+
+/// Name, components and connections, also where ports are open.
+pub(super) fn graph(experiment: &Experiment) -> Result<(String, Graph), Failure> {
+    let outcome = crate::graph(&DiskWorld, &request(experiment)?);
+    pass(outcome, experiment, &mut Messages::silent())
 }
 
 /// Up to the sorted equations, without running.
@@ -39,13 +45,24 @@ pub(super) fn compile(experiment: &Experiment, messages: &mut Messages) -> Resul
 
 fn request(experiment: &Experiment) -> Result<Request, Failure> {
     Ok(Request {
-        source: PathBuf::from(experiment.file.as_deref().unwrap_or_default()),
+        source: source(Path::new(experiment.file.as_deref().unwrap_or_default())),
         model: experiment.model.clone(),
         overrides: overrides(experiment),
         libraries: library_folders(experiment)?,
         beside: Vec::new(),
         varied: false,
     })
+}
+
+/// The file or folder that is named; the whole path of one in a package whose folders lie above where the command runs.
+fn source(named: &Path) -> PathBuf {
+    let whole = || std::path::absolute(named).ok().filter(|p| p.exists());
+    let first = named.components().next().map_or(Path::new(""), |c| Path::new(c.as_os_str()));
+    let below_here = !named.is_absolute() && first != Path::new("..");
+    match below_here && Path::new("package.mo").exists() {
+        true => whole().unwrap_or_else(|| named.to_path_buf()),
+        false => named.to_path_buf(),
+    }
 }
 
 fn overrides(experiment: &Experiment) -> Vec<Override> {

@@ -129,6 +129,28 @@ pub fn inspect<T>(
     request: &Request,
     look: impl FnOnce(&mut Instance<'_, '_>, &Network, FlatModel) -> T,
 ) -> Outcome<T> {
+    with_class(world, request, |library, class, diagnostics| {
+        with_network(library, class, request, diagnostics, |instance, network, diagnostics| {
+            let flat = flat::flatten(instance, network).sink(diagnostics)?;
+            Some(look(instance, network, flat))
+        })
+    })
+}
+
+/// The full name of a model with its components and connections, also where ports are open or equations do not fit together.
+pub fn graph(world: &dyn World, request: &Request) -> Outcome<(String, Graph)> {
+    with_class(world, request, |library, class, diagnostics| {
+        let name = library.full_name(class);
+        with_network(library, class, request, diagnostics, |instance, network, _| Some((name, network.graph(instance))))
+    })
+}
+
+/// Finds the class that is meant, and gathers what is said on the way.
+fn with_class<T>(
+    world: &dyn World,
+    request: &Request,
+    act: impl FnOnce(&mut Library<'_>, ClassId, &mut Vec<Diagnostic>) -> Option<T>,
+) -> Outcome<T> {
     let trees = Trees::new();
     let shipped = Shipped;
     let mut library = Library::new(&trees, roots(world, &shipped, request));
@@ -138,7 +160,7 @@ pub fn inspect<T>(
         .map_err(|d| diagnostics.push(*d))
         .ok()
         .filter(|_| !library.diagnostics.iter().any(Diagnostic::is_error))
-        .and_then(|class| flatten_class(&mut library, class, request, &mut diagnostics, look));
+        .and_then(|class| act(&mut library, class, &mut diagnostics));
     let mut all = std::mem::take(&mut library.diagnostics);
     if all.iter().any(Diagnostic::is_error) {
         // A class may be missing because its text could not be read.
@@ -166,12 +188,12 @@ fn data_folder(world: &dyn World, source: &Path) -> PathBuf {
     folder.unwrap_or(Path::new("")).to_path_buf()
 }
 
-fn flatten_class<T>(
+fn with_network<T>(
     library: &mut Library<'_>,
     class: ClassId,
     request: &Request,
     diagnostics: &mut Vec<Diagnostic>,
-    look: impl FnOnce(&mut Instance<'_, '_>, &Network, FlatModel) -> T,
+    act: impl FnOnce(&mut Instance<'_, '_>, &Network, &mut Vec<Diagnostic>) -> Option<T>,
 ) -> Option<T> {
     let wanted = ModelRequest { class, overrides: request.overrides.clone() };
     let mut instance = instance::instantiate(library, &wanted);
@@ -181,8 +203,7 @@ fn flatten_class<T>(
         diagnostics.append(&mut instance.diagnostics);
         return None;
     }
-    let flat = flat::flatten(&mut instance, &network).sink(diagnostics)?;
-    Some(look(&mut instance, &network, flat))
+    act(&mut instance, &network, diagnostics)
 }
 
 /// The class that the request means.

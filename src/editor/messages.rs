@@ -113,7 +113,7 @@ fn message(sources: &Sources, d: &Diagnostic, asked: &Path, link: &dyn Fn(&Path)
         None => (asked.to_path_buf(), Range::default()),
     };
     let mut text = d.message.clone();
-    if let Some(label) = primary.filter(|l| !l.text.is_empty()) {
+    if let Some(label) = primary.filter(|l| !l.text.is_empty() && !d.message.contains(&l.text)) {
         text.push_str(&format!("\n{}", label.text));
     }
     d.notes.iter().for_each(|n| text.push_str(&format!("\n{n}")));

@@ -6,6 +6,7 @@ use crate::diag::Span;
 use crate::resolve::names::{self, Target};
 use crate::resolve::{ClassId, Library};
 use crate::syntax::ast::Ident;
+use crate::syntax::symbol::Symbol;
 use crate::world::World;
 use lsp_types::Range;
 use std::collections::BTreeSet;
@@ -91,13 +92,27 @@ pub fn declared(view: &mut View<'_, '_>, offset: u32) -> Option<Declared> {
     Some(Declared { place, name, own_file, local: matches!(target, Target::Iterator(_)) })
 }
 
+/// The class in which the name at a byte is declared, where it has an element of another name already.
+pub fn class_with(view: &mut View<'_, '_>, offset: u32, name: &str) -> Option<String> {
+    let owner = match occurrence_at(view, offset)?.target? {
+        Target::Class(id) => view.library.parent(id)?,
+        Target::Component(member) => member.owner,
+        Target::Literal(id, _) => id,
+        Target::Iterator(_) => return None,
+    };
+    names::element(view.library, owner, Symbol::new(name))?;
+    Some(view.library.full_name(owner))
+}
+
 /// All uses of a declaration in some files of the user, and the declaration itself where it is in one of them.
 pub fn references(texts: &Texts<'_>, files: &[PathBuf], wanted: &Declared) -> Vec<Place> {
     let mut found = BTreeSet::new();
     texts.with_library(|library, texts| {
         for id in all_classes(library, texts, files, &wanted.name) {
             let named = |ident: &Ident| ident.name == wanted.name.as_str();
-            for occurrence in occurrences::of_class(library, id, &named) {
+            let mut all = occurrences::of_within(library, id, &named);
+            all.extend(occurrences::of_class(library, id, &named));
+            for occurrence in all {
                 let Some(target) = occurrence.target else { continue };
                 let declared = declared_at(library, target);
                 if declared.name == wanted.name.as_str() && Place::of(library, declared.span) == wanted.place {

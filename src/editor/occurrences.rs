@@ -27,6 +27,21 @@ pub fn of_class<'a>(library: &mut Library<'a>, id: ClassId, wanted: &dyn Fn(&Ide
     walk.found
 }
 
+/// The names behind `within` in the file of a class.
+pub fn of_within<'a>(library: &mut Library<'a>, id: ClassId, wanted: &dyn Fn(&Ident) -> bool) -> Vec<Occurrence<'a>> {
+    let file = library.class(id).span.file;
+    let text = &library.sources.get(file).text;
+    let head = text.find(';').map_or("", |end| &text[..=end]);
+    let Some(path) = crate::syntax::parse(file, head).tree.within else { return Vec::new() };
+    let mut found = Vec::new();
+    for (i, part) in path.parts.iter().enumerate().filter(|(_, part)| wanted(part)) {
+        let parts: Vec<_> = path.parts[..=i].iter().map(|p| p.name).collect();
+        let target = names::named(library, None, &parts, true).map(Target::Class);
+        found.push(Occurrence { ident: *part, target, declares: false, scope: id });
+    }
+    found
+}
+
 /// Whose elements a modifier names; made out only where it is asked for.
 #[derive(Clone, Copy)]
 enum Modified<'a, 'c> {

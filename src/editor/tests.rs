@@ -150,6 +150,16 @@ fn references_and_renaming_reach_other_files_of_a_package() {
     );
     assert!(part.own_file);
     assert_eq!(of("Other.mo", "k = 1").1, "Other.mo:2:8");
+    let (_, package) = of("Plant/package.mo", "Plant\n");
+    assert_eq!(package, "Part.mo:1:8 Use.mo:1:8 package.mo:1:9 package.mo:3:5");
+    let taken = |before: &str, name: &str| {
+        let path = Path::new("/rig/Plant/Use.mo");
+        let at = crate::world::World::read(&world, path).unwrap().find(before).unwrap() as u32;
+        texts.look(path, |mut view| navigate::class_with(&mut view, at, name)).flatten()
+    };
+    assert_eq!(taken("k = 3", "y").as_deref(), Some("Plant.Part"));
+    assert_eq!(taken("k = 3", "z"), None);
+    assert_eq!(taken("Part a", "Use").as_deref(), Some("Plant"));
     assert!(
         navigate::is_name("k_2") && !navigate::is_name("end") && !navigate::is_name("a.b") && !navigate::is_name("2")
     );

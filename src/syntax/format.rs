@@ -17,6 +17,10 @@ pub fn format(file: FileId, text: &str) -> Result<String, Vec<Diagnostic>> {
     if !parsed.diagnostics.is_empty() {
         return Err(parsed.diagnostics);
     }
+    let breaks = text.matches('\n').count();
+    if breaks > 0 && text.matches("\r\n").count() == breaks {
+        return with_line_ends(text, file);
+    }
     let tokens = lex(file, text).tokens;
     let mut layout =
         Layout { text, tokens: &tokens, out: String::with_capacity(text.len()), blocks: Blocks::default() };
@@ -25,6 +29,11 @@ pub fn format(file: FileId, text: &str) -> Result<String, Vec<Diagnostic>> {
     }
     layout.finish();
     Ok(layout.out)
+}
+
+/// Lines of texts from Windows end as they did.
+fn with_line_ends(text: &str, file: FileId) -> Result<String, Vec<Diagnostic>> {
+    Ok(format(file, &text.replace("\r\n", "\n"))?.replace('\n', "\r\n"))
 }
 
 struct Layout<'a> {

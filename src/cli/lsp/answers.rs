@@ -17,7 +17,7 @@ use serde_json::Value;
 
 use super::files::{Cache, Open, below};
 use super::texts;
-use crate::compile::{Request as Wanted, flatten, runnable};
+use crate::compile::{Request as Wanted, graph, runnable};
 use crate::diag::FileId;
 use crate::editor::hints::{Facts, hints};
 use crate::editor::messages::Message;
@@ -105,8 +105,9 @@ impl Answers {
             request::References::METHOD => self.references(params),
             request::DocumentHighlightRequest::METHOD => self.highlights(params),
             request::PrepareRenameRequest::METHOD => self.at_place(params, |_, view, at| {
-                let found = navigate::occurrence_at(view, at).filter(|o| o.target.is_some())?;
-                Some(lines::range(&view.text, found.ident.span))
+                let declared = navigate::declared(view, at).filter(|d| !is_shipped(&d.place.path))?;
+                let found = navigate::occurrence_at(view, at)?;
+                Some(serde_json::json!({ "range": view.lines.range(found.ident.span), "placeholder": declared.name }))
             }),
             request::Rename::METHOD => self.rename(params),
             request::DocumentSymbolRequest::METHOD => {
@@ -240,12 +241,24 @@ impl Answers {
         if !self.own_files(&at.text_document.uri).contains(&declared.place.path) {
             return Err(format!("`{}` is declared in a library", declared.name));
         }
+        if let Some(taken) = self.taken(&at.text_document.uri, at.position, &p.new_name) {
+            return Err(taken);
+        }
         let mut edits: BTreeMap<PathBuf, Vec<TextEdit>> = BTreeMap::new();
         for place in places {
             let edit = TextEdit { range: place.lsp_range(), new_text: p.new_name.clone() };
             edits.entry(place.path).or_default().push(edit);
         }
         write(self.workspace_edit(edits, declared.own_file.then_some((&declared.place.path, &p.new_name))))
+    }
+
+    /// Why a name cannot be given to what is declared under a place: it is there already.
+    fn taken(&self, uri: &Uri, position: Position, name: &str) -> Option<String> {
+        let class = self.look(uri, |view| {
+            let at = lines::offset(&view.text, position);
+            navigate::class_with(view, at, name)
+        })??;
+        Some(format!("there is a `{name}` in `{class}` already"))
     }
 
     /// The edits, and the new name of the file or folder that a class has to itself.
@@ -315,7 +328,7 @@ impl Answers {
         write(actions)
     }
 
-    /// The picture of a model's network, also where its equations do not fit together yet.
+    /// The picture of a model's network, also where ports are open yet.
     fn network(&self, params: &Value) -> Answer {
         let p: NetworkParams = read(params)?;
         let path = self.cache.path(&p.uri).ok_or("the address is not that of a file")?;
@@ -328,11 +341,10 @@ impl Answers {
             None if is_shipped(&path) => None,
             None => runnable(&self.open, &request).ok().and_then(|names| names.into_iter().next()),
         };
-        let outcome = flatten(&self.open, &Wanted { model, ..request });
+        let outcome = graph(&self.open, &Wanted { model, ..request });
         let first = outcome.diagnostics.iter().find(|d| d.is_error()).map(|d| d.message.clone());
-        let flattened = outcome.value.ok_or(first.unwrap_or_else(|| "there is no model here".to_owned()))?;
-        let svg = network::write(&flattened.graph, &flattened.flat.class);
-        Ok(serde_json::json!({ "model": flattened.flat.class, "svg": svg }))
+        let (model, graph) = outcome.value.ok_or(first.unwrap_or_else(|| "there is no model here".to_owned()))?;
+        Ok(serde_json::json!({ "model": model, "svg": network::write(&graph, &model) }))
     }
 }
 

@@ -46,9 +46,9 @@ pub(super) fn run(args: &LspArgs) -> Result<Ending, Failure> {
     drop(connection);
     let joined = threads.join();
     let broken = |why: String| Failure::new(Code::FileAccess, format!("the connection to the editor broke: {why}"));
-    served.map_err(&broken)?;
+    let ending = served.map_err(&broken)?;
     joined.map_err(|e| broken(e.to_string()))?;
-    Ok(Ending::Fine)
+    Ok(ending)
 }
 
 /// What the server knows.
@@ -60,7 +60,8 @@ struct Server<'c> {
     said: std::collections::BTreeMap<PathBuf, Vec<messages::Message>>,
 }
 
-fn serve(connection: &Connection, libraries: Vec<PathBuf>) -> Result<(), String> {
+/// The protocol wants 1 from a server that is ended without having been shut down.
+fn serve(connection: &Connection, libraries: Vec<PathBuf>) -> Result<Ending, String> {
     let (id, params) = connection.initialize_start().map_err(|e| e.to_string())?;
     let answers = Answers::new(&params, libraries);
     let ready = serde_json::json!({
@@ -74,22 +75,23 @@ fn serve(connection: &Connection, libraries: Vec<PathBuf>) -> Result<(), String>
 }
 
 impl Server<'_> {
-    fn listen(&mut self) -> Result<(), String> {
+    fn listen(&mut self) -> Result<Ending, String> {
         let results = self.checker.results.clone();
         loop {
             select! {
                 recv(self.connection.receiver) -> message => match message {
                     Ok(Message::Request(request)) => {
                         if self.connection.handle_shutdown(&request).map_err(|e| e.to_string())? {
-                            return Ok(());
+                            return Ok(Ending::Fine);
                         }
                         let response = self.answer(request);
                         self.connection.sender.send(response.into()).map_err(|e| e.to_string())?;
                     }
+                    Ok(Message::Notification(n)) if n.method == notification::Exit::METHOD => return Ok(Ending::Wrong),
                     Ok(Message::Notification(notification)) => self.notice(&notification),
                     Ok(Message::Response(_)) => {}
                     // the editor has gone
-                    Err(_) => return Ok(()),
+                    Err(_) => return Ok(Ending::Fine),
                 },
                 recv(results) -> checked => if let Ok(checked) = checked {
                     self.learn(checked);

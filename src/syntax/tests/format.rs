@@ -99,6 +99,12 @@ function f external \"C\" y=g(x); end f;
 }
 
 #[test]
+fn lines_end_as_they_did() {
+    let text = "model M \"two\r\nlines\"\r\nReal x=1;\r\nend M;\r\n";
+    assert_eq!(format(FILE, text).expect("Modelica"), "model M \"two\r\nlines\"\r\n  Real x = 1;\r\nend M;\r\n");
+}
+
+#[test]
 fn a_text_with_errors_is_left_alone() {
     let errors = format(FILE, "model M\n  Real x = ;\nend M;").expect_err("not Modelica");
     assert_eq!(errors.len(), 1);
