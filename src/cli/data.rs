@@ -42,8 +42,10 @@ pub(super) fn apply_units(trajectory: &mut Trajectory, assignments: &[String]) -
         let (pattern, units) =
             assignment.rsplit_once('=').ok_or_else(|| wrong("NAME=UNIT or NAME=UNIT:SHOWN is expected".to_owned()))?;
         let (unit, shown) = units.split_once(':').unwrap_or((units, ""));
-        for text in [unit, shown] {
-            Unit::parse(text).map_err(|e| wrong(e.to_string()))?;
+        let parse = |text: &str| Unit::parse(text).map_err(|e| wrong(e.to_string()));
+        let (from, to) = (parse(unit)?, parse(shown)?);
+        if !shown.trim().is_empty() && from.convert(0.0, &to).is_none() {
+            return Err(wrong(format!("`{unit}` cannot be shown in `{shown}`")));
         }
         let globs = crate::results::Globs::new(&[pattern]);
         for signal in trajectory.signals.iter_mut().filter(|s| globs.matches(&s.name)) {

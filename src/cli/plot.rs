@@ -8,7 +8,7 @@ use super::messages::Messages;
 use super::{Ending, Failure, data, files};
 use crate::diag::{Code, Diagnostic};
 use crate::plot::map::{self, map};
-use crate::plot::select::{Choice, Run, figure};
+use crate::plot::select::{Choice, Run, UnitSystem, figure};
 use crate::plot::{Figure, html, png, svg};
 use crate::results::{Globs, Trajectory};
 
@@ -47,6 +47,17 @@ pub(super) struct PlotArgs {
     /// Unit, and unit shown, of variables in a file without units; may be repeated
     #[arg(long, value_name = "GLOB=UNIT[:SHOWN]")]
     unit: Vec<String>,
+    /// Units of variables that name none for people: `engineering` shows bar, l/min, rev/min, mm and degC
+    #[arg(long, value_name = "given|engineering", value_parser = unit_system, default_value = "given")]
+    unit_system: UnitSystem,
+}
+
+fn unit_system(text: &str) -> Result<UnitSystem, String> {
+    match text {
+        "given" => Ok(UnitSystem::AsGiven),
+        "engineering" => Ok(UnitSystem::Engineering),
+        _ => Err("write `given` or `engineering`".to_owned()),
+    }
 }
 
 pub(super) fn run(args: &PlotArgs, messages: &mut Messages) -> Result<Ending, Failure> {
@@ -54,6 +65,7 @@ pub(super) fn run(args: &PlotArgs, messages: &mut Messages) -> Result<Ending, Fa
     for path in &args.results {
         let mut trajectory = data::result(path, args.time_column.as_deref(), messages)?;
         data::apply_units(&mut trajectory, &args.unit)?;
+        args.unit_system.apply(&mut trajectory);
         trajectories.push(trajectory);
     }
     let labels: Vec<String> = args.results.iter().map(|p| stem(p)).collect();

@@ -9,7 +9,7 @@ use super::checkpoint::Written;
 use super::files::{NewFile, access, ending, print};
 use crate::diag::{Code, Diagnostic};
 use crate::results::parquet::ParquetWriter;
-use crate::results::{CsvWriter, Signal, Trajectory, csv_bytes_per_row, mat};
+use crate::results::{CsvUnits, CsvWriter, Signal, Trajectory, csv_bytes_per_row, mat};
 
 /// Rows wait in memory until they take this much, so that writing hardly disturbs the run; in Parquet a group of rows.
 const BUFFER_BYTES: usize = 32 << 20;
@@ -82,17 +82,22 @@ pub(super) struct Recorder {
 
 impl Recorder {
     /// Opens the file at once, so that a run is not lost to a wrong name. `keep`: all rows are wanted after the run.
-    pub fn new(target: Target, signals: Vec<Signal>, keep: bool) -> Result<Self, Failure> {
+    pub fn new(target: Target, signals: Vec<Signal>, units: CsvUnits, keep: bool) -> Result<Self, Failure> {
         let keep = keep || matches!(target, Target::Mat(_));
         let file = match &target {
             Target::Csv(path) | Target::Mat(path) | Target::Parquet(path) => Some(NewFile::create(path)?),
             Target::Stdout => None,
         };
-        Ok(Self::on(target, file, signals, keep, None))
+        Ok(Self::on(target, file, (signals, units), keep, None))
     }
 
     /// Rows into a CSV file that survives a run that is killed; behind those of a checkpoint, if there is one.
-    pub fn lasting(target: Target, signals: Vec<Signal>, written: Option<&Written>) -> Result<Self, Failure> {
+    pub fn lasting(
+        target: Target,
+        signals: Vec<Signal>,
+        units: CsvUnits,
+        written: Option<&Written>,
+    ) -> Result<Self, Failure> {
         let Target::Csv(path) = &target else {
             let text = format!("a run with checkpoints writes a CSV file, and the result is `{}`", target.name());
             return Err(Diagnostic::new(Code::BadArgument, text)
@@ -100,13 +105,13 @@ impl Recorder {
                 .into());
         };
         let file = NewFile::lasting(path, written.map(|w| w.bytes))?;
-        Ok(Self::on(target, Some(file), signals, false, written))
+        Ok(Self::on(target, Some(file), (signals, units), false, written))
     }
 
     fn on(
         target: Target,
         file: Option<NewFile>,
-        signals: Vec<Signal>,
+        (signals, units): (Vec<Signal>, CsvUnits),
         keep: bool,
         written: Option<&Written>,
     ) -> Recorder {
@@ -123,11 +128,11 @@ impl Recorder {
             unread: false,
             writing: Duration::ZERO,
         };
-        recorder.open(written.map(|w| w.bytes));
+        recorder.open(units, written.map(|w| w.bytes));
         recorder
     }
 
-    fn open(&mut self, written: Option<u64>) {
+    fn open(&mut self, units: CsvUnits, written: Option<u64>) {
         let out: Box<dyn Write + Send> = match (&self.target, &self.file) {
             (Target::Csv(_) | Target::Parquet(_), Some(file)) => match file.handle() {
                 Ok(handle) => Box::new(handle),
@@ -148,7 +153,7 @@ impl Recorder {
         }
         let writer = match written {
             Some(bytes) => Ok(CsvWriter::resume(out, &self.rows.signals, bytes)),
-            None => CsvWriter::new(out, &self.rows.signals),
+            None => CsvWriter::with_units(out, &self.rows.signals, units),
         };
         match writer {
             Ok(csv) => self.csv = Some(csv),
@@ -322,7 +327,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("out.csv");
         let target = Target::new(path.to_str().unwrap()).unwrap();
-        let mut recorder = Recorder::new(target, vec![Signal::new("x")], false).unwrap();
+        let mut recorder = Recorder::new(target, vec![Signal::new("x")], CsvUnits::None, false).unwrap();
         assert!(recorder.row(0.0, &[1.0]));
         recorder.flush();
         assert!(recorder.row(0.5, &[2.0]));
@@ -335,7 +340,8 @@ mod tests {
     fn a_mat_file_and_kept_rows() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("out.mat");
-        let mut recorder = Recorder::new(Target::Mat(path.clone()), vec![Signal::new("x")], false).unwrap();
+        let mut recorder =
+            Recorder::new(Target::Mat(path.clone()), vec![Signal::new("x")], CsvUnits::None, false).unwrap();
         recorder.row(0.0, &[1.0]);
         recorder.row(1.0, &[2.0]);
         let rows = recorder.finish().unwrap();
@@ -345,7 +351,8 @@ mod tests {
     #[cfg(target_os = "linux")]
     #[test]
     fn a_full_disk_is_told() {
-        let mut recorder = Recorder::new(Target::Csv("/dev/full".into()), vec![Signal::new("x")], false).unwrap();
+        let mut recorder =
+            Recorder::new(Target::Csv("/dev/full".into()), vec![Signal::new("x")], CsvUnits::None, false).unwrap();
         recorder.row(0.0, &[1.0]);
         let failure = recorder.finish().unwrap_err();
         assert!(failure.diagnostics[0].message.contains("the disk is full"), "{failure:?}");

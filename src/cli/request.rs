@@ -9,6 +9,7 @@ use super::files::access;
 use super::messages::Messages;
 use crate::diag::{Code, Diagnostic};
 use crate::experiment::{self, Experiment, Hold, InputMap, duration, event_rows, seconds, tolerance};
+use crate::results::CsvUnits;
 use crate::results::glob::split_list;
 
 /// What to compile: shared by `check` and `simulate`.
@@ -46,6 +47,9 @@ pub(super) struct RunArgs {
     /// Rows at events (two each): `all`, `none`, or how many at most [default: 100000]
     #[arg(long, value_name = "NUMBER|all|none", value_parser = event_rows)]
     event_rows: Option<u64>,
+    /// Units in a CSV: behind the names (`header`, as in `line.p [Pa]`), in a row below them (`row`), or `none` [default: none]
+    #[arg(long, value_name = "none|header|row")]
+    csv_units: Option<CsvUnits>,
     /// Relative tolerance; the absolute one is this times a variable's nominal value
     #[arg(long, value_name = "NUMBER", value_parser = tolerance)]
     relative_tolerance: Option<f64>,
@@ -118,6 +122,7 @@ impl RunArgs {
             stop_time: self.stop_time,
             output_interval: self.output_interval,
             event_rows: self.event_rows,
+            csv_units: self.csv_units,
             relative_tolerance: self.relative_tolerance,
             variables: self.variables.clone(),
             output_file: self.output_file.clone(),

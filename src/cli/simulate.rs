@@ -20,7 +20,7 @@ use crate::diag::{Code, Diagnostic, Sources};
 use crate::experiment::{Experiment, duration};
 use crate::flat;
 use crate::plot::select::{Choice, Run as Drawn, figure};
-use crate::results::{Signal, Trajectory, number};
+use crate::results::{CsvUnits, Signal, Trajectory, number};
 use crate::solve::{Checkpoint, Control, End, Progress, Run, Settings, Sink, resume, signals, simulate};
 use crate::structure::StateChoice;
 
@@ -94,7 +94,8 @@ fn execute(
         }
         None => None,
     };
-    let (rows, from) = Rows::open(kept, &target, signals, experiment.plot.is_some())?;
+    let (rows, from) =
+        Rows::open(kept, &target, (signals, experiment.csv_units.unwrap_or_default()), experiment.plot.is_some())?;
     if let Some(from) = &from {
         messages.remark(&format!("going on from {} s", number::text(from.state.time)));
     }
@@ -171,11 +172,11 @@ impl Rows {
     fn open(
         kept: Option<Keeper>,
         target: &Target,
-        signals: Vec<Signal>,
+        (signals, units): (Vec<Signal>, CsvUnits),
         plot: bool,
     ) -> Result<(Self, Option<Checkpoint>), Failure> {
         let Some(keeper) = kept else {
-            let recorder = Recorder::new(target.clone(), signals, plot)?;
+            let recorder = Recorder::new(target.clone(), signals, units, plot)?;
             return Ok((Rows { recorder, kept: None }, None));
         };
         if plot {
@@ -183,7 +184,7 @@ impl Rows {
             return Err(diagnostic.help("draw its result with `bramah plot` afterwards").into());
         }
         let (from, written) = keeper.load(target)?.unzip();
-        let recorder = Recorder::lasting(target.clone(), signals, written.as_ref())?;
+        let recorder = Recorder::lasting(target.clone(), signals, units, written.as_ref())?;
         Ok((Rows { recorder, kept: Some((keeper, from.is_some())) }, from))
     }
 

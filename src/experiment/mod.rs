@@ -22,6 +22,8 @@ pub use input::{Hold, InputMap};
 pub use sweep::{Sampling, Spread, Sweep};
 pub use table::parse;
 
+use crate::results::CsvUnits;
+
 /// What is to be run; `None` and empty lists where nothing was said.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Experiment {
@@ -39,6 +41,8 @@ pub struct Experiment {
     pub output_interval: Option<f64>,
     /// Event rows at most: 0 for none, `u64::MAX` for all.
     pub event_rows: Option<u64>,
+    /// Where a CSV says its units.
+    pub csv_units: Option<CsvUnits>,
     /// Relative tolerance of the integration.
     pub relative_tolerance: Option<f64>,
     /// Patterns of variables to write.
@@ -84,6 +88,7 @@ impl Experiment {
             stop_time: self.stop_time.or(other.stop_time),
             output_interval: self.output_interval.or(other.output_interval),
             event_rows: self.event_rows.or(other.event_rows),
+            csv_units: self.csv_units.or(other.csv_units),
             relative_tolerance: self.relative_tolerance.or(other.relative_tolerance),
             variables: or(self.variables, other.variables),
             output_file: self.output_file.or(other.output_file),

@@ -1,6 +1,8 @@
 //! From trajectories to a figure: which signals, in which panel, in which unit.
 
 use indexmap::IndexMap;
+use rustc_hash::FxHasher;
+use std::hash::Hasher;
 
 use super::figure::{Figure, Panel, Series};
 use crate::results::{Globs, Kind, Signal, Trajectory};
@@ -20,6 +22,42 @@ pub struct Choice {
     pub x: Option<String>,
     /// Stands above the picture.
     pub title: String,
+}
+
+/// Units in which values are shown that have no `displayUnit`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum UnitSystem {
+    /// Those that they have.
+    #[default]
+    AsGiven,
+    /// Those of drawings and data sheets: bar, l/min, rev/min, mm, degC.
+    Engineering,
+}
+
+/// What engineers write for units of SI.
+const ENGINEERING: [(&str, &str); 8] = [
+    ("Pa", "bar"),
+    ("m3/s", "l/min"),
+    ("rad/s", "rev/min"),
+    ("m", "mm"),
+    ("m/s", "mm/s"),
+    ("K", "degC"),
+    ("rad", "deg"),
+    ("N", "kN"),
+];
+
+impl UnitSystem {
+    /// Gives signals without a `displayUnit` that of the system.
+    pub fn apply(self, trajectory: &mut Trajectory) {
+        if self == UnitSystem::AsGiven {
+            return;
+        }
+        for signal in trajectory.signals.iter_mut().filter(|s| s.display_unit.is_empty()) {
+            if let Some((_, shown)) = ENGINEERING.iter().find(|(unit, _)| *unit == signal.unit) {
+                signal.display_unit = (*shown).to_owned();
+            }
+        }
+    }
 }
 
 /// A trajectory with the name that tells its curves from those of others.
@@ -46,7 +84,10 @@ pub struct Selected {
 /// # Errors
 /// A sentence when nothing matches or the horizontal signal does not exist.
 pub fn figure(runs: &[Run<'_>], choice: &Choice) -> Result<Selected, String> {
-    let chosen = chosen_names(runs, choice)?;
+    let mut chosen = chosen_names(runs, choice)?;
+    if choice.variables.is_empty() {
+        worth_drawing(runs, &mut chosen);
+    }
     let limit = if choice.variables.is_empty() { UNASKED } else { usize::MAX };
     let left_out = chosen.len().saturating_sub(limit);
     let mut groups: IndexMap<String, Vec<&Signal>> = IndexMap::new();
@@ -78,6 +119,29 @@ fn chosen_names<'a>(runs: &[Run<'a>], choice: &Choice) -> Result<Vec<&'a Signal>
         return Err("no variable matches".to_owned());
     }
     Ok(chosen.into_values().collect())
+}
+
+/// Without a choice of the user: no constants, parameters among them, and what is equal everywhere once, by its shortest
+/// name; all, where nothing changes.
+fn worth_drawing(runs: &[Run<'_>], chosen: &mut Vec<&Signal>) {
+    let mut seen: IndexMap<u64, Vec<&Signal>> = IndexMap::new();
+    for &signal in chosen.iter() {
+        let (mut moves, mut values) = (false, FxHasher::default());
+        for run in runs {
+            let Some(index) = run.trajectory.index(&signal.name) else { continue };
+            let column = &run.trajectory.columns[index];
+            moves |= column.windows(2).any(|w| w[0].to_bits() != w[1].to_bits());
+            column.iter().for_each(|v| values.write_u64(v.to_bits()));
+        }
+        if moves {
+            seen.entry(values.finish()).or_default().push(signal);
+        }
+    }
+    let depth = |s: &&&Signal| (s.name.matches('.').count(), s.name.len());
+    let kept: Vec<&Signal> = seen.values().filter_map(|same| same.iter().min_by_key(depth).copied()).collect();
+    if !kept.is_empty() {
+        *chosen = kept;
+    }
 }
 
 /// Signals of the same group share a panel.
@@ -204,8 +268,33 @@ mod tests {
             Signal { kind: mode, ..Signal::new("mode") },
         ]);
         t.push(0.0, &[1e5, 1e-4, 2e5, 0.0, 1.0]);
-        t.push(1.0, &[3e5, 1e-4, 2e5, 1.0, 2.0]);
+        t.push(1.0, &[3e5, 2e-4, 4e5, 1.0, 2.0]);
         t
+    }
+
+    #[test]
+    fn unasked_constants_and_copies_are_left_out() {
+        let mut t = Trajectory::new(["line.port_a.p", "line.p", "k", "q"].map(Signal::new).to_vec());
+        t.push(0.0, &[1.0, 1.0, 5.0, 0.0]);
+        t.push(1.0, &[2.0, 2.0, 5.0, 1.0]);
+        let run = Run { label: "a", trajectory: &t };
+        let drawn = |variables: &[&str]| {
+            let choice = Choice { variables: Globs::new(variables), ..Choice::default() };
+            let figure = figure(&[run], &choice).unwrap().figure;
+            let names = figure.panels.iter().flat_map(|p| p.series.iter().map(|s| s.name.clone()));
+            names.collect::<Vec<_>>().join(" ")
+        };
+        assert_eq!(drawn(&[]), "line.p q");
+        assert_eq!(drawn(&["*"]), "line.port_a.p line.p k q");
+    }
+
+    #[test]
+    fn engineering_units_are_for_signals_without_their_own() {
+        let mut t =
+            Trajectory::new(vec![Signal::new("p").unit("Pa"), Signal::new("T").unit("K"), Signal::new("x").unit("m2")]);
+        UnitSystem::Engineering.apply(&mut t);
+        let shown: Vec<&str> = t.signals.iter().map(|s| s.display_unit.as_str()).collect();
+        assert_eq!(shown, ["bar", "degC", ""]);
     }
 
     #[test]

@@ -5,6 +5,31 @@ use std::io::{self, Write};
 use super::texts::Texts;
 use super::trajectory::{Kind, Signal};
 
+/// Where a CSV says its units.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CsvUnits {
+    /// Nowhere: names as other Modelica tools write them.
+    #[default]
+    None,
+    /// Behind the names, as in `line.p [Pa]`.
+    Header,
+    /// In a row of their own below the names.
+    Row,
+}
+
+impl std::str::FromStr for CsvUnits {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "none" => Ok(CsvUnits::None),
+            "header" => Ok(CsvUnits::Header),
+            "row" => Ok(CsvUnits::Row),
+            _ => Err(format!("`{text}` is not known; write `none`, `header` or `row`")),
+        }
+    }
+}
+
 /// Writes a head line and then one line a row.
 ///
 /// The first column is `time`. Booleans are `false` and `true`, enumerations their literals, Integers have no decimals,
@@ -24,12 +49,32 @@ impl<W: Write> CsvWriter<W> {
     /// # Errors
     /// What `out` reports.
     pub fn new(out: W, signals: &[Signal]) -> io::Result<Self> {
-        let mut line = String::from("time");
+        Self::with_units(out, signals, CsvUnits::None)
+    }
+
+    /// Writes the head line, and the units.
+    ///
+    /// # Errors
+    /// What `out` reports.
+    pub fn with_units(out: W, signals: &[Signal], units: CsvUnits) -> io::Result<Self> {
+        let behind = |unit: &str| match units {
+            CsvUnits::Header if !unit.is_empty() => format!(" [{unit}]"),
+            _ => String::new(),
+        };
+        let mut line = format!("time{}", behind("s"));
         for signal in signals {
             line.push(',');
-            push_name(&mut line, &signal.name);
+            push_name(&mut line, &format!("{}{}", signal.name, behind(&signal.unit)));
         }
         line.push('\n');
+        if units == CsvUnits::Row {
+            line.push('s');
+            for signal in signals {
+                line.push(',');
+                push_name(&mut line, if signal.unit.is_empty() { "1" } else { &signal.unit });
+            }
+            line.push('\n');
+        }
         let line = line.into_bytes();
         let kinds = signals.iter().map(|s| s.kind.clone()).collect();
         let mut writer = CsvWriter { out, kinds, texts: Texts::default(), line, bytes: 0 };

@@ -15,7 +15,7 @@ pub mod trajectory;
 mod tube;
 
 pub use compare::{Comparison, Tolerance, compare};
-pub use csv::{CsvWriter, csv_bytes_per_row};
+pub use csv::{CsvUnits, CsvWriter, csv_bytes_per_row};
 pub use glob::Globs;
 pub use recording::{Strictness, read_csv};
 pub use trajectory::{Kind, Signal, Trajectory};

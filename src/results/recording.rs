@@ -198,7 +198,8 @@ impl Head {
     /// Takes the row as units when it holds words only, also in the time column.
     fn take_units(&mut self, cells: &[Cell<'_>], time: usize, decimal_comma: bool) -> bool {
         let is_word = |c: &Cell<'_>| !c.text.is_empty() && number::parse(&c.text, decimal_comma).is_none();
-        let words_only = cells.iter().all(|c| c.text.is_empty() || is_word(c));
+        // `1` is the unit of what has none
+        let words_only = cells.iter().all(|c| c.text.is_empty() || is_word(c) || c.text.trim() == "1");
         if cells.len() != self.width || !words_only || !cells.get(time).is_some_and(is_word) {
             return false;
         }

@@ -62,6 +62,7 @@ const TIME: [i16; 7] = [0, 0, 1, 0, 0, 0, 0];
 const TEMPERATURE: [i16; 7] = [0, 0, 0, 0, 1, 0, 0];
 const FREQUENCY: [i16; 7] = [0, 0, -1, 0, 0, 0, 0];
 const VOLUME: [i16; 7] = [0, 3, 0, 0, 0, 0, 0];
+const FLOW: [i16; 7] = [0, 3, -1, 0, 0, 0, 0];
 const FORCE: [i16; 7] = [1, 1, -2, 0, 0, 0, 0];
 const PRESSURE: [i16; 7] = [1, -1, -2, 0, 0, 0, 0];
 const ENERGY: [i16; 7] = [1, 2, -2, 0, 0, 0, 0];
@@ -84,6 +85,8 @@ fn prefixable(name: &str) -> Option<Symbol> {
         "sr" => si(ONE),
         "Hz" | "Bq" => si(FREQUENCY),
         "N" => si(FORCE),
+        // as torque sensors are labelled; Modelica writes N.m
+        "Nm" => si(ENERGY),
         "Pa" => si(PRESSURE),
         "J" => si(ENERGY),
         "W" | "VA" | "var" => si(POWER),
@@ -129,6 +132,10 @@ fn plain(name: &str) -> Option<Symbol> {
         "ha" => decimal(4, [0, 2, 0, 0, 0, 0, 0]),
         "atm" => scaled(101_325.0, 1.0, PRESSURE),
         "psi" => scaled(6_894.757_293_168, 1.0, PRESSURE),
+        "cc" => decimal(-6, VOLUME),
+        "lpm" => Symbol { den: 60.0, ..decimal(-3, FLOW) },
+        // US gallons
+        "gpm" => Symbol { num: 3_785_411_784.0, den: 60.0, ..decimal(-12, FLOW) },
         "mmHg" => scaled(133.322_387_415, 1.0, PRESSURE),
         "kgf" => scaled(9.80665, 1.0, FORCE),
         "lbf" => scaled(4.448_221_615_260_5, 1.0, FORCE),
