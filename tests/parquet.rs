@@ -52,6 +52,28 @@ fn a_run_is_read_back_with_its_types_and_units() {
     assert_eq!(rows, text.lines().skip(1).collect::<Vec<_>>());
 }
 
+#[test]
+fn a_run_is_compared_and_drawn_from_parquet() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("M.mo"), MODEL).expect("written");
+    let run = ["simulate", "M.mo", "--stop-time", "1", "--output-interval", "0.25", "--variables", "x,up,n,mode"];
+    for name in ["run.parquet", "run.csv"] {
+        bramah(folder.path(), &[&run[..], &["-o", name]].concat());
+    }
+    bramah(folder.path(), &["compare", "run.csv", "run.parquet", "--tolerance", "1e-12"]);
+    bramah(folder.path(), &["plot", "run.parquet", "-o", "run.svg"]);
+    let picture = std::fs::read_to_string(folder.path().join("run.svg")).expect("drawn");
+    assert!(picture.contains("x in m") && picture.contains("high"), "units and literals are read");
+    std::fs::write(folder.path().join("torn.parquet"), b"PAR1 torn").expect("written");
+    let torn = Command::new(env!("CARGO_BIN_EXE_bramah"))
+        .args(["plot", "torn.parquet"])
+        .current_dir(folder.path())
+        .output()
+        .expect("starts");
+    assert_eq!(torn.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&torn.stderr).contains("`torn.parquet` cannot be used"));
+}
+
 /// A row as CSV writes it.
 fn cells(row: &parquet::record::Row) -> String {
     let cell = |field: &Field| match field {

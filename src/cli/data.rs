@@ -6,7 +6,7 @@ use super::Failure;
 use super::files::access;
 use super::messages::Messages;
 use crate::diag::{Code, Diagnostic, FileId};
-use crate::results::{Strictness, Trajectory, mat, read_csv};
+use crate::results::{Strictness, Trajectory, mat, parquet, read_csv};
 use crate::units::Unit;
 
 /// Reads a data file as text; letters of old encodings in remarks and units do no harm.
@@ -16,7 +16,7 @@ pub(super) fn text(path: &Path, messages: &mut Messages) -> Result<FileId, Failu
     Ok(messages.sources.add(path.display().to_string(), text))
 }
 
-/// Reads a result or a recording with all its signals: CSV, or Modelica `.mat`.
+/// Reads a result or a recording with all its signals: CSV, Modelica `.mat`, or Parquet.
 pub(super) fn result(path: &Path, time_column: Option<&str>, messages: &mut Messages) -> Result<Trajectory, Failure> {
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
     if extension == "mat" {
@@ -25,10 +25,9 @@ pub(super) fn result(path: &Path, time_column: Option<&str>, messages: &mut Mess
         return mat::read(&bytes).map_err(|e| unusable(e).into());
     }
     if extension == "parquet" {
-        let text = format!("`{}` cannot be used: Parquet is written for other programs, and not read", path.display());
-        return Err(Diagnostic::new(Code::BadData, text)
-            .help("write the result as .csv or .mat to draw or compare it")
-            .into());
+        let file = std::fs::File::open(path).map_err(|e| access(path, "read", &e))?;
+        let unusable = |e| Diagnostic::new(Code::BadData, format!("`{}` cannot be used: {e}", path.display()));
+        return parquet::read(file, time_column).map_err(|e| unusable(e).into());
     }
     let file = text(path, messages)?;
     let checked = read_csv(&messages.sources, file, time_column, Strictness::Result);

@@ -3,7 +3,7 @@
 use crate::resolve::names::{self, Member};
 use crate::resolve::{ClassId, Library, Trees};
 use crate::shipped::Shipped;
-use crate::syntax::ast::{ClassKind, Component, Variability};
+use crate::syntax::ast::{ClassKind, Variability};
 use crate::world::World;
 use std::fmt::Write;
 
@@ -74,11 +74,12 @@ fn members(library: &mut Library<'_>, id: ClassId, page: &mut String) {
 /// Ports, parameters and exchangeable parts, inherited ones too.
 fn offers(library: &mut Library<'_>, id: ClassId, page: &mut String) {
     let (mut ports, mut parameters, mut parts) = (Vec::new(), Vec::new(), Vec::new());
-    for Member { component: c, .. } in names::members(library, id).into_iter().filter(|m| !m.protected) {
+    for member in names::members(library, id).into_iter().filter(|m| !m.protected) {
+        let c = member.component;
         let said = c.description.as_deref().unwrap_or_default().to_owned();
         let class = c.class.dotted();
         if c.prefix.variability == Some(Variability::Parameter) {
-            parameters.push([c.name.name.as_str().to_owned(), value(library, c), said]);
+            parameters.push([c.name.name.as_str().to_owned(), value(library, member), said]);
         } else if class.contains("Interfaces.") {
             let when = c.condition.as_ref().map(|e| format!(" if {}", library.sources.text(e.span)));
             ports.push([c.name.name.as_str().to_owned(), class + &when.unwrap_or_default(), said]);
@@ -94,13 +95,24 @@ fn offers(library: &mut Library<'_>, id: ClassId, page: &mut String) {
     }
 }
 
-/// `= default`, with the type: units of the library's types are those of SI.
-fn value(library: &Library<'_>, c: &Component) -> String {
-    let kind = c.class.parts.last().map_or("", |p| p.name.as_str());
-    let given = c.modification.as_ref().and_then(|m| m.value.as_ref());
-    match given {
-        Some(e) => format!("{kind} = {}", library.sources.text(e.span)),
-        None => kind.to_owned(),
+/// `Area = 1e-6 m2, 1e-12 to 10`: type, default, unit and range as far as they are given.
+fn value<'a>(library: &mut Library<'a>, member: Member<'a>) -> String {
+    let c = member.component;
+    let mut text = c.class.parts.last().map_or("", |p| p.name.as_str()).to_owned();
+    let said = |library: &mut Library<'a>, name: &str| {
+        let value = names::attribute(library, member, name)?;
+        Some(library.sources.text(value.span).trim_matches('"').to_owned())
+    };
+    let (unit, min, max) = (said(library, "unit"), said(library, "min"), said(library, "max"));
+    if let Some(e) = c.modification.as_ref().and_then(|m| m.value.as_ref()) {
+        let _ = write!(text, " = {}", library.sources.text(e.span));
+    }
+    let _ = write!(text, "{}", unit.filter(|u| u != "1").map_or(String::new(), |u| format!(" {u}")));
+    match (min, max) {
+        (Some(min), Some(max)) => text + &format!(", {min} to {max}"),
+        (Some(min), None) => text + &format!(", at least {min}"),
+        (None, Some(max)) => text + &format!(", at most {max}"),
+        (None, None) => text,
     }
 }
 

@@ -391,7 +391,7 @@ fn elements_that(
     found
 }
 
-fn element_item(library: &mut Library<'_>, member: Member<'_>) -> CompletionItem {
+fn element_item<'a>(library: &mut Library<'a>, member: Member<'a>) -> CompletionItem {
     let component = member.component;
     let parameter = component.prefix.variability == Some(Variability::Parameter);
     let kind = match component.prefix.variability {

@@ -3,40 +3,15 @@
 use crate::resolve::names::{self, Member, Target};
 use crate::resolve::{ClassId, Library};
 use crate::syntax::ast::{
-    ArgumentKind, Causality, ClassBody, ClassKind, Component, ExprKind, Modification, Prefixes, TypePrefix, Variability,
+    ArgumentKind, Causality, ClassKind, Component, ExprKind, Modification, Prefixes, TypePrefix, Variability,
 };
 
-/// How many classes a type is followed through.
-const DEEPEST: usize = 20;
-
-/// An attribute such as `unit`, from the component itself or from its type.
-pub(super) fn attribute(library: &mut Library<'_>, member: Member<'_>, name: &str) -> Option<String> {
-    if let Some(given) = given(member.component.modification.as_ref(), name) {
-        return Some(given);
-    }
-    let mut class = names::type_of(library, member)?;
-    for _ in 0..DEEPEST {
-        let ClassBody::Short { base, modification, .. } = &library.class(class).body else { return None };
-        if let Some(given) = given(modification.as_ref(), name) {
-            return Some(given);
-        }
-        class = names::bases(library, class).first().copied().filter(|_| base.parts[0].name != "Real")?;
-    }
-    None
-}
-
-fn given(modification: Option<&Modification>, name: &str) -> Option<String> {
-    modification?.arguments.iter().find_map(|a| match &a.kind {
-        ArgumentKind::Modify { path, modification: Some(m), .. }
-            if path.parts.len() == 1 && path.parts[0].name == name =>
-        {
-            match &m.value.as_ref()?.kind {
-                ExprKind::String(text) => Some(text.to_string()),
-                _ => None,
-            }
-        }
+/// An attribute that is a text, such as `unit`.
+pub(super) fn attribute<'a>(library: &mut Library<'a>, member: Member<'a>, name: &str) -> Option<String> {
+    match &names::attribute(library, member, name)?.kind {
+        ExprKind::String(text) => Some(text.to_string()),
         _ => None,
-    })
+    }
 }
 
 /// `parameter SI.Volume V = 1e-5`, as declared but for brackets.

@@ -4,7 +4,8 @@
 
 use super::{ClassId, Library, nested_classes};
 use crate::syntax::ast::{
-    Class, ClassBody, ClassKind, Component, ElementKind, EnumLiteral, Ident, Import, LongBody, Path,
+    ArgumentKind, Class, ClassBody, ClassKind, Component, ElementKind, EnumLiteral, Expr, Ident, Import, LongBody,
+    Modification, Path,
 };
 use crate::syntax::symbol::Symbol;
 use std::rc::Rc;
@@ -111,6 +112,29 @@ pub fn resolve(library: &mut Library<'_>, from: ClassId, path: &Path) -> Option<
 /// The class of a component; `None` for the built-in types.
 pub fn type_of(library: &mut Library<'_>, member: Member<'_>) -> Option<ClassId> {
     resolve(library, member.owner, &member.component.class)
+}
+
+/// What an attribute such as `unit` is given, by the component itself or by its type.
+pub fn attribute<'a>(library: &mut Library<'a>, member: Member<'a>, name: &str) -> Option<&'a Expr> {
+    if let Some(value) = given(member.component.modification.as_ref(), name) {
+        return Some(value);
+    }
+    let class = type_of(library, member)?;
+    lineage(library, class).into_iter().find_map(|class| match &library.class(class).body {
+        ClassBody::Short { modification, .. } => given(modification.as_ref(), name),
+        _ => None,
+    })
+}
+
+fn given<'a>(modification: Option<&'a Modification>, name: &str) -> Option<&'a Expr> {
+    modification?.arguments.iter().find_map(|argument| match &argument.kind {
+        ArgumentKind::Modify { path, modification: Some(m), .. }
+            if path.parts.len() == 1 && path.parts[0].name == name =>
+        {
+            m.value.as_ref()
+        }
+        _ => None,
+    })
 }
 
 /// What a word means inside a class: its elements, what it inherits and imports, then the classes around it.

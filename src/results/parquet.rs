@@ -3,6 +3,8 @@
 //! not compressed.
 
 #[cfg(feature = "parquet")]
+pub use reader::read;
+#[cfg(feature = "parquet")]
 pub use writer::{ParquetWriter, write_table};
 
 /// The values of one column of a group of rows.
@@ -200,5 +202,101 @@ mod writer {
             },
             other => io::Error::other(other),
         }
+    }
+}
+
+#[cfg(feature = "parquet")]
+mod reader {
+    use crate::results::trajectory::{Kind, Signal, Trajectory};
+    use ::parquet::basic::{ConvertedType, Type as Physical};
+    use ::parquet::errors::ParquetError;
+    use ::parquet::file::reader::{ChunkReader, FileReader, SerializedFileReader};
+    use ::parquet::record::Field;
+    use ::parquet::schema::types::ColumnDescriptor;
+    use std::collections::BTreeMap;
+
+    /// Reads a flat table: a run of bramah, or one that another program wrote. `time_column` is the column of times in
+    /// seconds; `time` or the first one without it.
+    ///
+    /// # Errors
+    /// A sentence: it is no Parquet, a column holds no numbers or texts, or there is no such time column.
+    pub fn read(file: impl ChunkReader + 'static, time_column: Option<&str>) -> Result<Trajectory, String> {
+        let file = SerializedFileReader::new(file).map_err(|e| e.to_string())?;
+        let head = file.metadata().file_metadata();
+        let columns = head.schema_descr().columns();
+        let names: Vec<String> = columns.iter().map(|c| c.path().string()).collect();
+        let time = match time_column {
+            Some(wanted) => {
+                names.iter().position(|n| n == wanted).ok_or_else(|| format!("there is no column `{wanted}`"))?
+            }
+            None => names.iter().position(|n| n == "time").unwrap_or(0),
+        };
+        let units = units(head.key_value_metadata());
+        let mut literals: Vec<Vec<String>> = vec![Vec::new(); names.len()];
+        let mut values: Vec<Vec<f64>> = vec![Vec::new(); names.len()];
+        for row in file.get_row_iter(None).map_err(|e| e.to_string())? {
+            let row = row.map_err(|e: ParquetError| e.to_string())?;
+            for (k, (name, field)) in row.get_column_iter().enumerate() {
+                let value = number(field, &mut literals[k]);
+                values[k].push(value.ok_or_else(|| format!("column `{name}` holds neither numbers nor texts"))?);
+            }
+        }
+        if values.is_empty() {
+            return Err("it has no columns".to_owned());
+        }
+        let mut signals = Vec::new();
+        for (k, name) in names.iter().enumerate() {
+            let kind = kind(&columns[k], std::mem::take(&mut literals[k]));
+            let unit = units.get(name).map_or("", String::as_str);
+            signals.push(Signal { kind, ..Signal::new(name).unit(unit) });
+        }
+        let times = values.remove(time);
+        signals.remove(time);
+        if times.iter().any(|t| !t.is_finite()) || times.windows(2).any(|w| w[1] < w[0]) {
+            return Err(format!("the times in `{}` do not increase", names[time]));
+        }
+        Ok(Trajectory { signals, times, columns: values })
+    }
+
+    /// The JSON below `units` of bramah's own files.
+    fn units(entries: Option<&Vec<::parquet::file::metadata::KeyValue>>) -> BTreeMap<String, String> {
+        let entry = entries.into_iter().flatten().find(|e| e.key == "units");
+        entry.and_then(|e| serde_json::from_str(e.value.as_deref()?).ok()).unwrap_or_default()
+    }
+
+    fn kind(column: &ColumnDescriptor, literals: Vec<String>) -> Kind {
+        match column.physical_type() {
+            Physical::BOOLEAN => Kind::Boolean,
+            Physical::INT32 | Physical::INT64 if column.converted_type() != ConvertedType::DECIMAL => Kind::Integer,
+            Physical::BYTE_ARRAY => Kind::Enumeration(literals),
+            _ => Kind::Real,
+        }
+    }
+
+    /// A cell as a number, texts by the order in which they come; NaN where there is none.
+    fn number(field: &Field, literals: &mut Vec<String>) -> Option<f64> {
+        Some(match field {
+            Field::Null => f64::NAN,
+            Field::Bool(v) => f64::from(u8::from(*v)),
+            Field::Byte(v) => f64::from(*v),
+            Field::Short(v) => f64::from(*v),
+            Field::Int(v) => f64::from(*v),
+            Field::Long(v) => *v as f64,
+            Field::UByte(v) => f64::from(*v),
+            Field::UShort(v) => f64::from(*v),
+            Field::UInt(v) => f64::from(*v),
+            Field::ULong(v) => *v as f64,
+            Field::Float(v) => f64::from(*v),
+            Field::Double(v) => *v,
+            Field::Str(text) => {
+                let known = literals.iter().position(|l| l == text);
+                let place = known.unwrap_or_else(|| {
+                    literals.push(text.clone());
+                    literals.len() - 1
+                });
+                (place + 1) as f64
+            }
+            _ => return None,
+        })
     }
 }

@@ -18,14 +18,16 @@ function absolute(folder, base) {
  */
 function simulateArguments({ file, model, libraries, result }) {
   const chosen = model ? ['--model', model] : [];
-  return ['simulate', file, ...chosen, ...libraries.flatMap((dir) => ['--library', dir]), '-o', result];
+  const folders = libraries.flatMap((dir) => ['--library', dir]);
+  return ['simulate', file, ...chosen, ...folders, '--csv-units', 'header', '-o', result];
 }
 
 /**
  * @param {{ result: string, variables: string, picture: string }} plot
  */
 function plotArguments({ result, variables, picture }) {
-  return ['plot', result, ...(variables ? ['--variables', variables] : []), '-o', picture];
+  const chosen = variables ? ['--variables', variables] : [];
+  return ['plot', result, ...chosen, '--unit-system', 'engineering', '-o', picture];
 }
 
 /**
