@@ -105,3 +105,16 @@ fn parameters_can_be_asked_for() {
     let wrong = simulation.get("x").expect_err("no parameter");
     assert!(code(&wrong) == Code::BadSet && wrong.to_string().contains("`x` is not a parameter"));
 }
+
+#[test]
+fn a_value_outside_its_range_is_refused_as_the_command_does() {
+    let text = "model M parameter Real a(min = 0, max = b, unit = \"m\") = 1; parameter Real b = 2; Real x = a; end M;";
+    let mut simulation = Simulation::from_text(text).unwrap_or_else(|e| panic!("{e}"));
+    for wrong in [-1.0, 3.0, f64::NAN, f64::INFINITY] {
+        let error = simulation.set("a", wrong).map(|_| ()).expect_err("outside");
+        assert_eq!(code(&error), Code::OutOfRange, "{wrong}: {error}");
+    }
+    simulation.set("b", 4.0).expect("a parameter");
+    simulation.set("a", 3.0).expect("within the new limit");
+    assert_eq!(simulation.get("a").expect("a parameter"), 3.0);
+}

@@ -129,7 +129,8 @@ impl Simulation {
     /// Changes a parameter without compiling again; the value is in the parameter's unit.
     ///
     /// # Errors
-    /// `E023` when there is no such parameter, or when the structure of the model depends on it.
+    /// `E023` when there is no such parameter, or when the structure of the model depends on it; `E215` when the value is
+    /// no number or outside `min` and `max`.
     pub fn set(&mut self, name: &str, value: f64) -> Result<&mut Self, Error> {
         let v = self.variable(name)?;
         match self.model.dae.variables[v.index()].variability {
@@ -143,9 +144,44 @@ impl Simulation {
                 return Err(self.error(d.help("only parameters keep a given value during a run")));
             }
         }
+        self.check_range(name, v, value)?;
         self.settings.parameters.retain(|(p, _)| *p != v);
         self.settings.parameters.push((v, value));
         Ok(self)
+    }
+
+    /// Limits that depend on other parameters are those of their present values.
+    fn check_range(&self, name: &str, v: VarId, value: f64) -> Result<(), Error> {
+        let system = &self.model.system;
+        let values = self.parameter_values();
+        let (min, max) = (system.min(v, &values), system.max(v, &values));
+        let unit = self.model.dae.variables[v.index()].unit.as_deref().unwrap_or("");
+        let outside = |limit: f64, side: &str| {
+            let text = format!("`{name}` = {value} is {side} {limit} {unit}");
+            Err(self
+                .error(Diagnostic::new(Code::OutOfRange, text.trim_end()).help("give a value between `min` and `max`")))
+        };
+        match (min, max) {
+            _ if value.is_nan() => {
+                Err(self.error(Diagnostic::new(Code::OutOfRange, format!("the value of `{name}` is not a number"))))
+            }
+            (Some(min), _) if value < min => outside(min, "below"),
+            (_, Some(max)) if value > max => outside(max, "above"),
+            _ => Ok(()),
+        }
+    }
+
+    /// Values of parameters and constants in the next run.
+    fn parameter_values(&self) -> Vec<f64> {
+        let system = &self.model.system;
+        let mut values = system.layout.values();
+        let mut given = vec![false; self.model.dae.variables.len()];
+        for &(p, value) in &self.settings.parameters {
+            values[system.layout.var(p)] = value;
+            given[p.index()] = true;
+        }
+        system.evaluate_parameters(&mut values, &given);
+        values
     }
 
     /// The value that a parameter or constant will have in the next run, in its unit; those that follow others follow
@@ -160,15 +196,7 @@ impl Simulation {
             let d = Diagnostic::new(Code::BadSet, format!("`{name}` is not a parameter"));
             return Err(self.error(d.help("its values are in the trajectory of a run")));
         }
-        let system = &self.model.system;
-        let mut values = system.layout.values();
-        let mut given = vec![false; self.model.dae.variables.len()];
-        for &(p, value) in &self.settings.parameters {
-            values[system.layout.var(p)] = value;
-            given[p.index()] = true;
-        }
-        system.evaluate_parameters(&mut values, &given);
-        Ok(values[system.layout.var(v)])
+        Ok(self.parameter_values()[self.model.system.layout.var(v)])
     }
 
     /// Gives a top-level input its trajectory: samples held, or joined by straight lines.

@@ -65,6 +65,13 @@ pub(super) fn run(args: &GapArgs, messages: &mut Messages) -> Result<Ending, Fai
     if args.list {
         let (all, warnings) = proposed(&DiskWorld, &study).map_err(|why| unusable(why, messages))?;
         files::print(&listed(&messages.value(Checked::new(all, warnings))?))?;
+        let folder = args.data.as_deref().unwrap_or(&study.folder);
+        let there = |file: &str| folder.join(file).is_file();
+        let missing = study.recordings.iter().filter(|r| !r.optional && !there(&r.file)).map(|r| r.file.as_str());
+        let missing: Vec<&str> = missing.collect();
+        if !missing.is_empty() {
+            messages.remark(&format!("recordings of the study that are not there yet: {}", missing.join(", ")));
+        }
         return Ok(Ending::Fine);
     }
     let outputs = [

@@ -80,6 +80,13 @@ fn execute(
     let sources = if args.checkpoint.is_some() { messages.sources.clone() } else { Sources::default() };
     let recorded = prepare(experiment, dae, messages)?;
     let mut settings = settings(experiment, &dae.experiment, &recorded)?;
+    if let Some(covered) = recorded.covered.filter(|c| experiment.stop_time.is_none() && c.stop > settings.stop_time) {
+        messages.remark(&format!(
+            "the run ends at {} s as the model says; the recording goes on to {} s (`--stop-time`)",
+            number::text(settings.stop_time),
+            number::text(covered.stop)
+        ));
+    }
     let target = Target::new(&output_name(experiment, &dae.class))?;
     settings.wanted = columns::choose(dae, &experiment.variables, &target)?;
     let signals = signals(dae, &settings.wanted);
