@@ -135,6 +135,9 @@ fn gaps(text: &str) -> Vec<Gap<'_>> {
             rest.find("*/").map_or(rest.len(), |end| end + 2)
         } else {
             let blank = rest.find(|c: char| !c.is_whitespace()).unwrap_or(rest.len());
+            if blank == 0 {
+                break;
+            }
             found.push(Gap::Lines(rest[..blank].matches('\n').count()));
             rest = &rest[blank..];
             continue;
