@@ -32,14 +32,20 @@ const MODEL: &str = "model M type Mode = enumeration(low, high);
   parameter Real k(min = 0) = 1; Real x(unit = \"m\", start = 1, fixed = true); Boolean up; Integer n; Mode mode;
   equation der(x) = -k*x; up = time < 0.5; n = if up then 3 else 4; mode = if up then Mode.low else Mode.high; end M;";
 
-#[test]
-fn a_run_is_read_back_with_its_types_and_units() {
+/// A folder with a run of the model as Parquet and as CSV.
+fn written_twice() -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     std::fs::write(folder.path().join("M.mo"), MODEL).expect("written");
     let run = ["simulate", "M.mo", "--stop-time", "1", "--output-interval", "0.25", "--variables", "x,up,n,mode"];
     for name in ["run.parquet", "run.csv"] {
         bramah(folder.path(), &[&run[..], &["-o", name]].concat());
     }
+    folder
+}
+
+#[test]
+fn a_run_is_read_back_with_its_types_and_units() {
+    let folder = written_twice();
     let file = std::fs::File::open(folder.path().join("run.parquet")).expect("written");
     let reader = SerializedFileReader::new(file).expect("a Parquet file");
     let head = reader.metadata().file_metadata();
@@ -54,12 +60,7 @@ fn a_run_is_read_back_with_its_types_and_units() {
 
 #[test]
 fn a_run_is_compared_and_drawn_from_parquet() {
-    let folder = tempfile::tempdir().expect("a folder");
-    std::fs::write(folder.path().join("M.mo"), MODEL).expect("written");
-    let run = ["simulate", "M.mo", "--stop-time", "1", "--output-interval", "0.25", "--variables", "x,up,n,mode"];
-    for name in ["run.parquet", "run.csv"] {
-        bramah(folder.path(), &[&run[..], &["-o", name]].concat());
-    }
+    let folder = written_twice();
     bramah(folder.path(), &["compare", "run.csv", "run.parquet", "--tolerance", "1e-12"]);
     bramah(folder.path(), &["plot", "run.parquet", "-o", "run.svg"]);
     let picture = std::fs::read_to_string(folder.path().join("run.svg")).expect("drawn");

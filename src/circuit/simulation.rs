@@ -11,6 +11,7 @@ use crate::lower;
 use crate::results::{Signal, Trajectory};
 use crate::solve::{self, Control, End, Input, Interpolation, Progress, Run, Settings, Sink, State, Statistics};
 use crate::structure::StateChoice;
+use crate::structure::parameters::out_of_range;
 use crate::world::{MemoryWorld, World};
 use std::fmt;
 use std::ops::ControlFlow;
@@ -152,23 +153,13 @@ impl Simulation {
 
     /// Limits that depend on other parameters are those of their present values.
     fn check_range(&self, name: &str, v: VarId, value: f64) -> Result<(), Error> {
-        let system = &self.model.system;
-        let values = self.parameter_values();
-        let (min, max) = (system.min(v, &values), system.max(v, &values));
-        let unit = self.model.dae.variables[v.index()].unit.as_deref().unwrap_or("");
-        let outside = |limit: f64, side: &str| {
-            let text = format!("`{name}` = {value} is {side} {limit} {unit}");
-            Err(self
-                .error(Diagnostic::new(Code::OutOfRange, text.trim_end()).help("give a value between `min` and `max`")))
-        };
-        match (min, max) {
-            _ if value.is_nan() => {
-                Err(self.error(Diagnostic::new(Code::OutOfRange, format!("the value of `{name}` is not a number"))))
-            }
-            (Some(min), _) if value < min => outside(min, "below"),
-            (_, Some(max)) if value > max => outside(max, "above"),
-            _ => Ok(()),
+        if value.is_nan() {
+            return Err(self.error(Diagnostic::new(Code::OutOfRange, format!("the value of `{name}` is not a number"))));
         }
+        let (system, values) = (&self.model.system, self.parameter_values());
+        let variable = &self.model.dae.variables[v.index()];
+        let outside = out_of_range(variable, value, system.min(v, &values), system.max(v, &values));
+        outside.map_or(Ok(()), |d| Err(self.error(d.help("give a value between `min` and `max`"))))
     }
 
     /// Values of parameters and constants in the next run.

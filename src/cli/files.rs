@@ -4,8 +4,9 @@ use std::fs::File;
 use std::io::{self, BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 
-use super::Failure;
+use super::{DiskWorld, Failure};
 use crate::diag::{Code, Diagnostic};
+use crate::world::World;
 
 /// Why a file operation failed, as people say it.
 pub(super) fn reason(error: &io::Error) -> String {
@@ -194,6 +195,21 @@ pub(super) fn ready(path: &Path) -> Result<(), Failure> {
 pub(super) fn ready_as(path: &Path, what: &str, known: &[&'static str]) -> Result<(), Failure> {
     ending(path, what, known)?;
     ready(path)
+}
+
+/// All Modelica files below a folder, in the order of their names; folders whose name begins with a dot, links and those
+/// that `skipped` names are left out.
+pub(super) fn modelica_below(folder: &Path, skipped: &dyn Fn(&str) -> bool) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for (name, is_folder) in DiskWorld.list(folder).unwrap_or_default() {
+        let path = folder.join(&name);
+        if is_folder && !name.starts_with('.') && !skipped(&name) && !path.is_symlink() {
+            found.extend(modelica_below(&path, skipped));
+        } else if !is_folder && name.ends_with(".mo") {
+            found.push(path);
+        }
+    }
+    found
 }
 
 /// Writes to stdout. A reader that has gone away (`| head`) is no mistake.

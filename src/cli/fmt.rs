@@ -30,10 +30,11 @@ pub(super) struct FmtArgs {
 }
 
 pub(super) fn run(args: &FmtArgs, messages: &mut Messages) -> Result<Ending, Failure> {
-    let mut all = Vec::new();
-    for path in &args.paths {
-        collect(path, &mut all)?;
-    }
+    let within = |path: &PathBuf| match path.is_dir() {
+        true => files::modelica_below(path, &|_| false),
+        false => vec![path.clone()],
+    };
+    let all: Vec<PathBuf> = args.paths.iter().flat_map(within).collect();
     let mut ending = Ending::Fine;
     for path in &all {
         match one(path, args.check, messages) {
@@ -48,23 +49,6 @@ pub(super) fn run(args: &FmtArgs, messages: &mut Messages) -> Result<Ending, Fai
         }
     }
     Ok(ending)
-}
-
-/// The path itself, or all `.mo` files below it; folders whose name begins with a dot are left out.
-fn collect(path: &Path, all: &mut Vec<PathBuf>) -> Result<(), Failure> {
-    let Some(entries) = DiskWorld.list(path) else {
-        all.push(path.to_owned());
-        return Ok(());
-    };
-    for (name, is_folder) in entries {
-        let inner = path.join(&name);
-        if is_folder && !name.starts_with('.') && !inner.is_symlink() {
-            collect(&inner, all)?;
-        } else if !is_folder && name.ends_with(".mo") {
-            all.push(inner);
-        }
-    }
-    Ok(())
 }
 
 fn one(path: &Path, check: bool, messages: &mut Messages) -> Result<Ending, Failure> {

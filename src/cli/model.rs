@@ -56,13 +56,9 @@ fn request(experiment: &Experiment) -> Result<Request, Failure> {
 
 /// The file or folder that is named; the whole path of one in a package whose folders lie above where the command runs.
 fn source(named: &Path) -> PathBuf {
-    let whole = || std::path::absolute(named).ok().filter(|p| p.exists());
-    let first = named.components().next().map_or(Path::new(""), |c| Path::new(c.as_os_str()));
-    let below_here = !named.is_absolute() && first != Path::new("..");
-    match below_here && Path::new("package.mo").exists() {
-        true => whole().unwrap_or_else(|| named.to_path_buf()),
-        false => named.to_path_buf(),
-    }
+    let in_package = named.is_relative() && !named.starts_with("..") && Path::new("package.mo").exists();
+    let whole = if in_package && named.exists() { std::path::absolute(named).ok() } else { None };
+    whole.unwrap_or_else(|| named.to_path_buf())
 }
 
 fn overrides(experiment: &Experiment) -> Vec<Override> {

@@ -192,13 +192,13 @@ impl Context {
                 TokenKind::End if i == start && tokens.get(i + 1).is_some_and(|t| t.kind == TokenKind::Ident) => {
                     self.section = Section::Elements;
                 }
-                _ if i == start && is_class_word(token.kind) => self.section = Section::Elements,
+                _ if i == start && token.kind.is_class_word() => self.section = Section::Elements,
                 _ => {}
             }
         }
         let rest = &tokens[start..];
-        let header = matches!(rest, [class, name] if is_class_word(class.kind) && name.kind == TokenKind::Ident)
-            || matches!(rest, [class, name, said] if is_class_word(class.kind) && name.kind == TokenKind::Ident && said.kind == TokenKind::String);
+        let header = matches!(rest, [class, name] if class.kind.is_class_word() && name.kind == TokenKind::Ident)
+            || matches!(rest, [class, name, said] if class.kind.is_class_word() && name.kind == TokenKind::Ident && said.kind == TokenKind::String);
         self.begins = header || rest.iter().all(|t| is_prefix(t.kind));
         self.begins_argument =
             tokens[argument.min(tokens.len())..].iter().all(|t| matches!(t.kind, TokenKind::Each | TokenKind::Final));
@@ -506,7 +506,7 @@ fn head(text: &str, tokens: &[Token], around: Option<&Head>) -> Head {
         Some(TokenKind::Ident | TokenKind::RightBracket) if path.len() == 1 => {
             Head::Element(chain_before(text, before).0, path.into_iter().next().unwrap_or_default())
         }
-        Some(TokenKind::Equal) if matches!(before, [.., class, _, _] if is_class_word(class.kind)) => Head::Type(path),
+        Some(TokenKind::Equal) if matches!(before, [.., class, _, _] if class.kind.is_class_word()) => Head::Type(path),
         Some(TokenKind::LeftParen | TokenKind::Comma | TokenKind::Each | TokenKind::Final) if modifies => {
             Head::Inner(path)
         }
@@ -524,28 +524,8 @@ fn head(text: &str, tokens: &[Token], around: Option<&Head>) -> Head {
     }
 }
 
-fn is_class_word(kind: TokenKind) -> bool {
-    use TokenKind as T;
-    matches!(kind, T::Class | T::Model | T::Block | T::Record | T::Connector | T::Type | T::Package | T::Function)
-}
-
 fn is_prefix(kind: TokenKind) -> bool {
     use TokenKind as T;
-    matches!(
-        kind,
-        T::Final
-            | T::Inner
-            | T::Outer
-            | T::Replaceable
-            | T::Redeclare
-            | T::Parameter
-            | T::Constant
-            | T::Input
-            | T::Output
-            | T::Discrete
-            | T::Flow
-            | T::Stream
-            | T::Encapsulated
-            | T::Partial
-    )
+    let of_type = matches!(kind, T::Parameter | T::Constant | T::Discrete | T::Input | T::Output | T::Flow | T::Stream);
+    of_type || kind.is_element_prefix()
 }

@@ -130,7 +130,7 @@ fn hint(view: &View<'_, '_>, value: &Value, written: &Expr, found: &mut Vec<Inla
         (false, _) => format!("= {}", value.shown(false)),
     };
     found.push(InlayHint {
-        position: view.lines.position(written.span.end),
+        position: view.position(written.span.end),
         label: InlayHintLabel::String(label),
         kind: None,
         text_edits: None,

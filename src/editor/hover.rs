@@ -36,7 +36,7 @@ pub fn hover(view: &mut View<'_, '_>, offset: u32, facts: &Facts) -> Option<Hove
         text.push_str(&format!("\n{}\n", words::markdown(html)));
     }
     let contents = HoverContents::Markup(MarkupContent { kind: MarkupKind::Markdown, value: text });
-    Some(Hover { contents, range: Some(view.lines.range(occurrence.ident.span)) })
+    Some(Hover { contents, range: Some(view.range(occurrence.ident.span)) })
 }
 
 fn code(line: &str) -> String {

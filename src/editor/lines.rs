@@ -3,42 +3,37 @@
 use crate::diag::Span;
 use lsp_types::{Position, Range};
 
-/// The lines of a text, for many places in it.
+/// First byte of each line of a text, for many places in it.
 #[derive(Clone, Debug)]
-pub struct Lines {
-    text: String,
-    /// First byte of each line.
-    starts: Vec<u32>,
-}
+pub struct Lines(Vec<u32>);
 
 impl Lines {
     /// Finds the lines of a text.
     pub fn new(text: &str) -> Lines {
         let breaks = text.bytes().enumerate().filter(|(_, b)| *b == b'\n');
-        let starts = std::iter::once(0).chain(breaks.map(|(i, _)| i as u32 + 1)).collect();
-        Lines { text: text.to_owned(), starts }
+        Lines(std::iter::once(0).chain(breaks.map(|(i, _)| i as u32 + 1)).collect())
     }
 
-    /// Where a byte stands; one beyond the end stands at the end.
-    pub fn position(&self, offset: u32) -> Position {
-        let mut at = (offset as usize).min(self.text.len());
-        while !self.text.is_char_boundary(at) {
+    /// Where a byte of the same text stands; one beyond the end stands at the end.
+    pub fn position(&self, text: &str, offset: u32) -> Position {
+        let mut at = (offset as usize).min(text.len());
+        while !text.is_char_boundary(at) {
             at -= 1;
         }
-        let line = self.starts.partition_point(|&s| s as usize <= at) - 1;
-        let column: usize = self.text[self.starts[line] as usize..at].chars().map(char::len_utf16).sum();
+        let line = self.0.partition_point(|&s| s as usize <= at) - 1;
+        let column: usize = text[self.0[line] as usize..at].chars().map(char::len_utf16).sum();
         Position::new(line as u32, column as u32)
     }
 
-    /// The range of a span.
-    pub fn range(&self, span: Span) -> Range {
-        Range::new(self.position(span.start), self.position(span.end))
+    /// The range of a span of the same text.
+    pub fn range(&self, text: &str, span: Span) -> Range {
+        Range::new(self.position(text, span.start), self.position(text, span.end))
     }
 }
 
 /// Where a byte stands; one beyond the end stands at the end.
 pub fn position(text: &str, offset: u32) -> Position {
-    Lines::new(text).position(offset)
+    Lines::new(text).position(text, offset)
 }
 
 /// The byte at a place; one beyond the end of a line stands at its end.
@@ -64,7 +59,7 @@ pub fn offset(text: &str, position: Position) -> u32 {
 
 /// The range of a span.
 pub fn range(text: &str, span: Span) -> Range {
-    Lines::new(text).range(span)
+    Lines::new(text).range(text, span)
 }
 
 #[cfg(test)]

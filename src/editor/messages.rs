@@ -20,7 +20,7 @@ pub struct Message {
     pub path: PathBuf,
     /// As editors know it.
     pub diagnostic: lsp_types::Diagnostic,
-    /// What would mend it.
+    /// The change of the text that it proposes.
     pub correction: Option<Correction>,
 }
 
@@ -52,7 +52,8 @@ pub fn of_models(
         if let Some(model) = &outcome.value {
             facts.learn(model);
         }
-        let ports = ports(texts, path, &name);
+        let unsure = outcome.diagnostics.iter().any(|d| hangs_on_use(d.code, Ports::Flows));
+        let ports = if unsure { ports(texts, path, &name) } else { Ports::None };
         for diagnostic in outcome.diagnostics.iter().filter(|d| !hangs_on_use(d.code, ports)) {
             let Some(message) = message(&outcome.sources, diagnostic, path, link) else { continue };
             let same = |m: &Message| m.path == message.path && m.diagnostic == message.diagnostic;

@@ -17,7 +17,7 @@ mod tests;
 pub mod tokens;
 mod words;
 
-use crate::diag::FileId;
+use crate::diag::{FileId, Span};
 use crate::resolve::{ClassId, Library, Trees, nested_classes};
 use crate::shipped::Shipped;
 use crate::world::World;
@@ -41,8 +41,7 @@ pub struct View<'l, 'a> {
     pub file: FileId,
     /// The text.
     pub text: String,
-    /// Its lines.
-    pub lines: lines::Lines,
+    lines: lines::Lines,
 }
 
 impl Texts<'_> {
@@ -83,6 +82,16 @@ impl Texts<'_> {
 }
 
 impl View<'_, '_> {
+    /// Where a byte stands.
+    pub fn position(&self, offset: u32) -> lsp_types::Position {
+        self.lines.position(&self.text, offset)
+    }
+
+    /// The range of a span of the file.
+    pub fn range(&self, span: Span) -> lsp_types::Range {
+        self.lines.range(&self.text, span)
+    }
+
     /// The innermost class around a byte; the first one of the file where it stands in none.
     pub fn class_at(&mut self, offset: u32) -> Option<ClassId> {
         let own = self.classes.clone().into_iter();

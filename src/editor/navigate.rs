@@ -71,6 +71,8 @@ pub fn type_definition(view: &mut View<'_, '_>, offset: u32) -> Option<Place> {
 pub struct Declared {
     /// Where it is declared.
     pub place: Place,
+    /// The same as a byte of the file.
+    start: u32,
     /// The word.
     pub name: String,
     /// Whether the class has a file of its own name.
@@ -84,12 +86,19 @@ pub fn declared(view: &mut View<'_, '_>, offset: u32) -> Option<Declared> {
     let target = occurrence_at(view, offset)?.target?;
     let ident = declared_at(view.library, target);
     let place = Place::of(view.library, ident.span);
-    let stem = place.path.file_stem().map(|s| s.to_string_lossy().into_owned());
     let name = ident.name.as_str().to_owned();
-    let package = stem.as_deref() == Some("package");
-    let top = matches!(target, Target::Class(id) if view.library.class(id).span.start < 400 || package);
-    let own_file = matches!(target, Target::Class(_)) && (stem.as_deref() == Some(&name) || package && top);
-    Some(Declared { place, name, own_file, local: matches!(target, Target::Iterator(_)) })
+    let own_file = matches!(target, Target::Class(id) if has_own_file(view.library, id, &place.path));
+    let local = matches!(target, Target::Iterator(_));
+    Some(Declared { place, start: ident.span.start, name, own_file, local })
+}
+
+/// Whether a class stands in no other one of its file, and the file, or the folder of a package, has its name.
+fn has_own_file(library: &Library<'_>, id: ClassId, path: &Path) -> bool {
+    let file = library.class(id).span.file;
+    let outermost = library.parent(id).is_none_or(|around| library.class(around).span.file != file);
+    let folder = path.file_name().is_some_and(|f| f == "package.mo");
+    let named = if folder { path.parent().and_then(Path::file_name) } else { path.file_stem() };
+    outermost && named.is_some_and(|n| n == library.class(id).name.name.as_str())
 }
 
 /// The class in which the name at a byte is declared, where it has an element of another name already.
@@ -115,7 +124,8 @@ pub fn references(texts: &Texts<'_>, files: &[PathBuf], wanted: &Declared) -> Ve
             for occurrence in all {
                 let Some(target) = occurrence.target else { continue };
                 let declared = declared_at(library, target);
-                if declared.name == wanted.name.as_str() && Place::of(library, declared.span) == wanted.place {
+                let path = &library.sources.get(declared.span.file).path;
+                if declared.span.start == wanted.start && Path::new(path) == wanted.place.path {
                     found.insert(Place::of(library, occurrence.ident.span));
                 }
             }

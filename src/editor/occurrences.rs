@@ -273,31 +273,12 @@ impl<'a> Walk<'_, 'a> {
         Some(target)
     }
 
-    fn expressions<'e>(&mut self, scope: ClassId, all: impl IntoIterator<Item = &'e Expr>)
-    where
-        'a: 'e,
-        'e: 'a,
-    {
-        all.into_iter().for_each(|e| self.expression(scope, e));
-    }
-
     fn expression(&mut self, scope: ClassId, e: &'a Expr) {
         match &e.kind {
             ExprKind::Reference(reference) => self.reference(scope, reference),
-            ExprKind::Unary(_, a) => self.expression(scope, a),
-            ExprKind::Binary(_, a, b) => self.expressions(scope, [&**a, &**b]),
-            ExprKind::If { branches, otherwise } => {
-                branches.iter().for_each(|(condition, value)| self.expressions(scope, [condition, value]));
-                self.expression(scope, otherwise);
-            }
-            ExprKind::Range { from, step, to } => {
-                self.expression(scope, from);
-                step.iter().for_each(|s| self.expression(scope, s));
-                self.expression(scope, to);
-            }
             ExprKind::Call { function, args, named } => {
                 self.reference(scope, function);
-                self.expressions(scope, args);
+                args.iter().for_each(|a| self.expression(scope, a));
                 self.named(scope, |w| w.meant(scope, function, function.parts.len() - 1), named);
             }
             ExprKind::Comprehension { function, body, iterators } => {
@@ -309,19 +290,7 @@ impl<'a> Walk<'_, 'a> {
                 let of = |w: &mut Self| names::resolve(w.library, scope, function).map(Target::Class);
                 self.named(scope, of, named);
             }
-            ExprKind::Array(items) => self.expressions(scope, items),
-            ExprKind::Matrix(rows) => self.expressions(scope, rows.iter().flatten()),
-            ExprKind::Tuple(items) => self.expressions(scope, items.iter().flatten()),
-            ExprKind::Index(inner, subscripts) => {
-                self.expression(scope, inner);
-                self.subscripts(scope, subscripts);
-            }
-            ExprKind::Integer(_)
-            | ExprKind::Real(_)
-            | ExprKind::String(_)
-            | ExprKind::Boolean(_)
-            | ExprKind::End
-            | ExprKind::Error => {}
+            _ => e.each_child(&mut |inner| self.expression(scope, inner)),
         }
     }
 
@@ -356,23 +325,18 @@ impl<'a> Walk<'_, 'a> {
     fn equations(&mut self, scope: ClassId, equations: &'a [Equation]) {
         for equation in equations {
             match &equation.kind {
-                EquationKind::Equal(a, b) | EquationKind::Connect(a, b) => self.expressions(scope, [a, b]),
+                EquationKind::Equal(a, b) | EquationKind::Connect(a, b) => {
+                    self.expression(scope, a);
+                    self.expression(scope, b);
+                }
                 EquationKind::If { branches, otherwise } => {
-                    for (condition, body) in branches {
-                        self.expression(scope, condition);
-                        self.equations(scope, body);
-                    }
+                    self.branches(scope, branches, Self::equations);
                     self.equations(scope, otherwise);
                 }
                 EquationKind::For { iterators, body } => {
                     self.within(scope, iterators, |w| w.equations(scope, body));
                 }
-                EquationKind::When(branches) => {
-                    for (condition, body) in branches {
-                        self.expression(scope, condition);
-                        self.equations(scope, body);
-                    }
-                }
+                EquationKind::When(branches) => self.branches(scope, branches, Self::equations),
                 EquationKind::Call(e) => self.expression(scope, e),
             }
         }
@@ -381,17 +345,17 @@ impl<'a> Walk<'_, 'a> {
     fn statements(&mut self, scope: ClassId, statements: &'a [Statement]) {
         for statement in statements {
             match &statement.kind {
-                StatementKind::Assign(a, b) => self.expressions(scope, [a, b]),
+                StatementKind::Assign(a, b) => {
+                    self.expression(scope, a);
+                    self.expression(scope, b);
+                }
                 StatementKind::AssignTuple(left, right) => {
-                    self.expressions(scope, left.iter().flatten());
+                    left.iter().flatten().for_each(|e| self.expression(scope, e));
                     self.expression(scope, right);
                 }
                 StatementKind::Call(e) => self.expression(scope, e),
                 StatementKind::If { branches, otherwise } => {
-                    for (condition, body) in branches {
-                        self.expression(scope, condition);
-                        self.statements(scope, body);
-                    }
+                    self.branches(scope, branches, Self::statements);
                     self.statements(scope, otherwise);
                 }
                 StatementKind::For { iterators, body } => {
@@ -401,14 +365,22 @@ impl<'a> Walk<'_, 'a> {
                     self.expression(scope, condition);
                     self.statements(scope, body);
                 }
-                StatementKind::When(branches) => {
-                    for (condition, body) in branches {
-                        self.expression(scope, condition);
-                        self.statements(scope, body);
-                    }
-                }
+                StatementKind::When(branches) => self.branches(scope, branches, Self::statements),
                 StatementKind::Break | StatementKind::Return => {}
             }
+        }
+    }
+
+    /// Conditions with what they guard.
+    fn branches<T>(
+        &mut self,
+        scope: ClassId,
+        branches: &'a [(Expr, Vec<T>)],
+        body: impl Fn(&mut Self, ClassId, &'a [T]),
+    ) {
+        for (condition, guarded) in branches {
+            self.expression(scope, condition);
+            body(self, scope, guarded);
         }
     }
 }

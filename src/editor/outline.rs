@@ -4,9 +4,10 @@ use super::lines::Lines;
 use super::{View, words};
 use crate::diag::FileId;
 use crate::syntax::ast::{Class, ClassBody, ClassKind, ElementKind, Variability};
+use crate::syntax::format::Blocks;
 use crate::syntax::lexer::lex;
 use crate::syntax::token::TokenKind;
-use lsp_types::{DocumentSymbol, FoldingRange, FoldingRangeKind, SymbolKind};
+use lsp_types::{DocumentSymbol, FoldingRange, SymbolKind};
 
 /// Classes and components of a file, inside each other.
 pub fn symbols(view: &View<'_, '_>) -> Vec<DocumentSymbol> {
@@ -63,76 +64,41 @@ fn made(
         kind,
         tags: None,
         deprecated: None,
-        range: view.lines.range(span),
-        selection_range: view.lines.range(name.span),
+        range: view.range(span),
+        selection_range: view.range(name.span),
         children: (!children.is_empty()).then_some(children),
     }
 }
 
-/// Classes, blocks and brackets of several lines, and comments.
+/// Classes, blocks and brackets of several lines.
 pub fn folds(text: &str) -> Vec<FoldingRange> {
-    let mut found = Vec::new();
     let lines = Lines::new(text);
-    let line = |offset: u32| lines.position(offset).line;
-    let mut add = |start: u32, end: u32, kind: Option<FoldingRangeKind>| {
-        let (start_line, end_line) = (line(start), line(end));
+    let mut found = Vec::new();
+    let mut add = |start: u32, end: u32| {
+        let (start_line, end_line) = (lines.position(text, start).line, lines.position(text, end).line);
         if end_line > start_line {
-            found.push(FoldingRange { start_line, end_line, kind, ..FoldingRange::default() });
+            found.push(FoldingRange { start_line, end_line, ..FoldingRange::default() });
         }
     };
-    let mut open: Vec<u32> = Vec::new();
-    let mut blocks: Vec<u32> = Vec::new();
     let tokens = lex(FileId(0), text).tokens;
-    let mut between = true;
-    for (i, token) in tokens.iter().enumerate() {
+    let mut blocks = Blocks::default();
+    let (mut brackets, mut levels) = (Vec::new(), Vec::new());
+    let mut statement = 0;
+    for (i, token) in tokens.iter().enumerate().take_while(|(_, t)| t.kind != TokenKind::Eof) {
+        if blocks.is_between() {
+            statement = token.start;
+        }
+        let before = blocks.depth;
+        blocks.pass(&tokens, i);
         match token.kind {
-            TokenKind::LeftParen | TokenKind::LeftBracket | TokenKind::LeftBrace => open.push(token.start),
+            TokenKind::LeftParen | TokenKind::LeftBracket | TokenKind::LeftBrace => brackets.push(token.start),
             TokenKind::RightParen | TokenKind::RightBracket | TokenKind::RightBrace => {
-                open.pop().into_iter().for_each(|start| add(start, token.start, None));
+                brackets.pop().into_iter().for_each(|start| add(start, token.start));
             }
-            TokenKind::End if between => {
-                blocks.pop().into_iter().for_each(|start| add(start, token.start, None));
-            }
-            TokenKind::If | TokenKind::For | TokenKind::When | TokenKind::While if between => blocks.push(token.start),
-            kind if between && is_class(kind) && tokens.get(i + 2).is_some_and(|t| t.kind != TokenKind::Equal) => {
-                blocks.push(token.start);
-            }
+            _ if blocks.depth > before => levels.push(statement),
+            _ if blocks.depth < before => levels.pop().into_iter().for_each(|start| add(start, token.start)),
             _ => {}
         }
-        between = open.is_empty()
-            && (matches!(token.kind, TokenKind::Semicolon | TokenKind::Then | TokenKind::Loop | TokenKind::Else)
-                || matches!(token.kind, TokenKind::Equation | TokenKind::Algorithm | TokenKind::Protected)
-                || between && (token.kind == TokenKind::Public || is_prefix(token.kind)));
-        // the description of a class ends its header without a semicolon
-        let header = i >= 1 && is_class(tokens[i - 1].kind) && token.kind == TokenKind::Ident;
-        let described = i >= 2 && is_class(tokens[i - 2].kind) && token.kind == TokenKind::String;
-        between |= (header && tokens.get(i + 1).is_some_and(|t| t.kind != TokenKind::String)) || described;
     }
     found
-}
-
-fn is_class(kind: TokenKind) -> bool {
-    use TokenKind as T;
-    matches!(
-        kind,
-        T::Class | T::Model | T::Block | T::Record | T::Connector | T::Type | T::Package | T::Function | T::Operator
-    )
-}
-
-fn is_prefix(kind: TokenKind) -> bool {
-    use TokenKind as T;
-    matches!(
-        kind,
-        T::Final
-            | T::Inner
-            | T::Outer
-            | T::Replaceable
-            | T::Redeclare
-            | T::Encapsulated
-            | T::Partial
-            | T::Pure
-            | T::Impure
-            | T::Expandable
-            | T::Initial
-    )
 }

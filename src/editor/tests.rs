@@ -40,6 +40,14 @@ fn look<T>(world: &MemoryWorld, path: &str, act: impl FnOnce(&mut View<'_, '_>) 
     Texts { world, libraries: &[] }.look(Path::new(path), |mut view| act(&mut view)).expect("it is there")
 }
 
+/// What is said of the models of a file, and what is learnt of their parameters.
+fn checked(world: &MemoryWorld) -> (Vec<messages::Message>, Facts) {
+    let mut facts = Facts::default();
+    let texts = Texts { world, libraries: &[] };
+    let said = messages::of_models(&texts, Path::new(FILE), &|_| None, &mut facts, &|| true);
+    (said, facts)
+}
+
 /// Looks at `PRESS` with a mark before the first or a later occurrence of a word.
 fn in_press<T>(before: &str, act: impl FnOnce(&mut View<'_, '_>, u32) -> T) -> T {
     let at = PRESS.find(before).expect("the words") as u32;
@@ -105,8 +113,7 @@ fn hover_shows_declaration_unit_value_and_text() {
 #[test]
 fn hints_show_values_in_their_units() {
     let world = MemoryWorld::single(FILE, PRESS);
-    let mut facts = Facts::default();
-    messages::of_models(&Texts { world: &world, libraries: &[] }, Path::new(FILE), &|_| None, &mut facts, &|| true);
+    let (_, facts) = checked(&world);
     let all = look(&world, FILE, |view| hints(view, &facts));
     let mut shown = String::new();
     for hint in all {
@@ -216,9 +223,7 @@ fn signatures_name_inputs_and_parameters() {
 #[test]
 fn messages_come_with_corrections() {
     let text = "model M\n  Hydraulic.Orifise o(A = 1e-6);\n  Real y\n  = 1;\nend M;\n";
-    let world = MemoryWorld::single(FILE, text);
-    let texts = Texts { world: &world, libraries: &[] };
-    let found = messages::of_models(&texts, Path::new(FILE), &|_| None, &mut Facts::default(), &|| true);
+    let (found, _) = checked(&MemoryWorld::single(FILE, text));
     let first = &found[0];
     assert_eq!(first.diagnostic.range.start, lsp_types::Position::new(1, 12));
     let correction = first.correction.clone().expect("the name that was meant");
@@ -234,9 +239,7 @@ fn messages_come_with_corrections() {
 #[test]
 fn a_component_with_open_ports_is_no_fault_of_its_own() {
     let text = "model Leak\n  Interfaces.HydraulicPort port;\n  parameter Real G(unit = \"m3/(s.Pa)\") = 1e-12;\nequation\n  port.q = G*port.p;\nend Leak;\n";
-    let world = MemoryWorld::single(FILE, text);
-    let texts = Texts { world: &world, libraries: &[] };
-    let found = messages::of_models(&texts, Path::new(FILE), &|_| None, &mut Facts::default(), &|| true);
+    let (found, _) = checked(&MemoryWorld::single(FILE, text));
     assert!(found.is_empty(), "{found:#?}");
 }
 

@@ -34,7 +34,7 @@ pub fn tokens(view: &mut View<'_, '_>) -> Vec<SemanticToken> {
     let mut out = Vec::new();
     for occurrence in found {
         let Some((token_type, readonly)) = occurrence.target.and_then(|t| kind(view.library, t)) else { continue };
-        let range = view.lines.range(occurrence.ident.span);
+        let range = view.range(occurrence.ident.span);
         let delta_line = range.start.line - before.line;
         let start = range.start.character;
         out.push(SemanticToken {

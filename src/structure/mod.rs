@@ -22,7 +22,7 @@ mod initial;
 mod matching;
 mod messages;
 mod pantelides;
-mod parameters;
+pub(crate) mod parameters;
 pub(crate) mod places;
 mod print;
 mod regularity;

@@ -5,7 +5,7 @@ use super::{ActionKind, blt, messages};
 use crate::diag::{Code, Diagnostic};
 use crate::expr::{ExprId, Exprs, Node, VarId};
 use crate::flat::Equation;
-use crate::flat::{OriginKind, Type, Variability};
+use crate::flat::{OriginKind, Type, Variability, Variable};
 
 /// Sorts the parameters so that each binding refers to earlier ones only, after moving those that depend on free
 /// parameters to the free ones: their bindings become initial equations. The error is a circle of bindings that no
@@ -184,6 +184,17 @@ pub(super) fn check(draft: &Draft, order: &[VarId], values: &[f64]) -> Vec<Diagn
     reported
 }
 
+/// A value below `min` or above `max`, without its place.
+pub(crate) fn out_of_range(variable: &Variable, value: f64, low: Option<f64>, high: Option<f64>) -> Option<Diagnostic> {
+    let bound = match (low, high) {
+        (Some(low), _) if value < low => format!("less than its `min`, {low}"),
+        (_, Some(high)) if value > high => format!("more than its `max`, {high}"),
+        _ => return None,
+    };
+    let unit = variable.unit.as_deref().filter(|u| *u != "1").map(|u| format!(" {u}")).unwrap_or_default();
+    Some(Diagnostic::new(Code::OutOfRange, format!("`{}` is {value}{unit}, {bound}{unit}", variable.name)))
+}
+
 fn check_one(draft: &Draft, v: VarId, values: &[f64]) -> Option<Diagnostic> {
     let variable = &draft.variables[v.index()];
     let value = values[v.index()];
@@ -219,14 +230,7 @@ fn check_one(draft: &Draft, v: VarId, values: &[f64]) -> Option<Diagnostic> {
     }
     let bound = |e: Option<ExprId>| e.and_then(known);
     let (low, high) = (bound(variable.min), bound(variable.max));
-    let bound = match (low, high) {
-        (Some(low), _) if value < low => format!("less than its `min`, {low}"),
-        (_, Some(high)) if value > high => format!("more than its `max`, {high}"),
-        _ => return None,
-    };
-    let unit = variable.unit.as_deref().filter(|u| *u != "1").map(|u| format!(" {u}")).unwrap_or_default();
-    let message = format!("`{}` is {value}{unit}, {bound}{unit}", variable.name);
-    let mut made = Diagnostic::new(Code::OutOfRange, message);
+    let mut made = out_of_range(variable, value, low, high)?;
     let holder = &draft.instances[variable.origin.instance as usize];
     if variable.origin.instance != 0 {
         // the component of the model that was given: what holds the value may stand in the library

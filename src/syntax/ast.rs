@@ -451,6 +451,47 @@ impl Expr {
     }
 }
 
+impl Expr {
+    /// Shows the expressions directly inside this one, in their order; not the ranges of iterators, which have a scope of
+    /// their own, nor indices in the name of a function.
+    pub fn each_child<'a>(&'a self, see: &mut dyn FnMut(&'a Expr)) {
+        let indices = |subscripts: &'a [Subscript]| {
+            subscripts.iter().filter_map(|s| match s {
+                Subscript::Expr(e) => Some(e),
+                Subscript::All(_) => None,
+            })
+        };
+        match &self.kind {
+            ExprKind::Reference(r) => r.parts.iter().flat_map(|p| indices(&p.subscripts)).for_each(see),
+            ExprKind::Unary(_, a) => see(a),
+            ExprKind::Binary(_, a, b) => [&**a, &**b].into_iter().for_each(see),
+            ExprKind::If { branches, otherwise } => {
+                branches.iter().flat_map(|(c, value)| [c, value]).for_each(&mut *see);
+                see(otherwise);
+            }
+            ExprKind::Range { from, step, to } => {
+                [Some(from), step.as_ref(), Some(to)].into_iter().flatten().for_each(|e| see(e));
+            }
+            ExprKind::Call { args, named, .. } => args.iter().chain(named.iter().map(|(_, e)| e)).for_each(see),
+            ExprKind::Comprehension { body, .. } => see(body),
+            ExprKind::PartialApplication { named, .. } => named.iter().for_each(|(_, e)| see(e)),
+            ExprKind::Array(items) => items.iter().for_each(see),
+            ExprKind::Matrix(rows) => rows.iter().flatten().for_each(see),
+            ExprKind::Tuple(items) => items.iter().flatten().for_each(see),
+            ExprKind::Index(inner, subscripts) => {
+                see(inner);
+                indices(subscripts).for_each(see);
+            }
+            ExprKind::Integer(_)
+            | ExprKind::Real(_)
+            | ExprKind::String(_)
+            | ExprKind::Boolean(_)
+            | ExprKind::End
+            | ExprKind::Error => {}
+        }
+    }
+}
+
 /// The kinds of expressions.
 #[derive(Clone, Debug)]
 pub enum ExprKind {

@@ -150,9 +150,9 @@ fn gaps(text: &str) -> Vec<Gap<'_>> {
 
 /// Where in the nesting of classes, sections and blocks a token stands.
 #[derive(Default)]
-struct Blocks {
+pub(crate) struct Blocks {
     /// Levels around statements.
-    depth: usize,
+    pub depth: usize,
     /// The lines in which the open brackets of the present statement stand: those of one line indent once.
     brackets: Vec<u32>,
     line: u32,
@@ -194,7 +194,8 @@ impl Blocks {
         self.level_of(rest)
     }
 
-    fn is_between(&self) -> bool {
+    /// Whether the next token begins a statement.
+    pub fn is_between(&self) -> bool {
         self.between || !self.started
     }
 
@@ -203,7 +204,8 @@ impl Blocks {
         matches!(rest[0].kind, T::End | T::Else | T::Elseif | T::Elsewhen | T::External) || is_section(rest)
     }
 
-    fn pass(&mut self, tokens: &[Token], i: usize) {
+    /// Goes past a token.
+    pub fn pass(&mut self, tokens: &[Token], i: usize) {
         let (kind, begins) = (tokens[i].kind, self.is_between());
         self.started = true;
         if begins {
@@ -249,8 +251,8 @@ impl Blocks {
                 self.opens = Some(Opening::Block);
             }
             TokenKind::If | TokenKind::For | TokenKind::When | TokenKind::While => self.opens = Some(Opening::Block),
-            kind if is_prefix(kind) => self.between = true,
-            kind if is_class(kind) => self.begin_class(tokens, i),
+            kind if kind.is_element_prefix() => self.between = true,
+            kind if kind.is_class_word() => self.begin_class(tokens, i),
             _ => {}
         }
     }
@@ -258,7 +260,7 @@ impl Blocks {
     /// `model M`, `operator record R`, `class extends M(...)`, but not `type T = Real`.
     fn begin_class(&mut self, tokens: &[Token], i: usize) {
         let mut at = i + 1;
-        while is_class(tokens[at].kind) || tokens[at].kind == TokenKind::Extends {
+        while tokens[at].kind.is_class_word() || tokens[at].kind == TokenKind::Extends {
             at += 1;
         }
         let short = tokens.get(at + 1).is_some_and(|t| t.kind == TokenKind::Equal);
@@ -279,38 +281,6 @@ fn is_section(rest: &[Token]) -> bool {
         TokenKind::Initial => rest.get(1).is_some_and(|t| matches!(t.kind, TokenKind::Equation | TokenKind::Algorithm)),
         _ => false,
     }
-}
-
-/// Words before the one that says what an element is.
-fn is_prefix(kind: TokenKind) -> bool {
-    matches!(
-        kind,
-        TokenKind::Final
-            | TokenKind::Inner
-            | TokenKind::Outer
-            | TokenKind::Replaceable
-            | TokenKind::Redeclare
-            | TokenKind::Encapsulated
-            | TokenKind::Partial
-            | TokenKind::Pure
-            | TokenKind::Impure
-            | TokenKind::Expandable
-    )
-}
-
-fn is_class(kind: TokenKind) -> bool {
-    matches!(
-        kind,
-        TokenKind::Class
-            | TokenKind::Model
-            | TokenKind::Block
-            | TokenKind::Record
-            | TokenKind::Connector
-            | TokenKind::Type
-            | TokenKind::Package
-            | TokenKind::Function
-            | TokenKind::Operator
-    )
 }
 
 /// Whether a blank stands between the token before and token `i`.

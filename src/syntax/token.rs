@@ -39,6 +39,26 @@ macro_rules! tokens {
             pub fn is_keyword(self) -> bool {
                 matches!(self, $(TokenKind::$keyword)|*)
             }
+
+            /// True for words that say what kind of class follows.
+            pub fn is_class_word(self) -> bool {
+                use TokenKind as T;
+                matches!(
+                    self,
+                    T::Class | T::Model | T::Block | T::Record | T::Connector | T::Type | T::Package | T::Function
+                        | T::Operator
+                )
+            }
+
+            /// True for words before the one that says what an element is.
+            pub fn is_element_prefix(self) -> bool {
+                use TokenKind as T;
+                matches!(
+                    self,
+                    T::Final | T::Inner | T::Outer | T::Replaceable | T::Redeclare | T::Encapsulated | T::Partial
+                        | T::Pure | T::Impure | T::Expandable
+                )
+            }
         }
     };
 }

@@ -15,7 +15,8 @@ use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
-use super::files::{Cache, Open, below};
+use super::super::files::modelica_below;
+use super::files::{Cache, Open};
 use super::texts;
 use crate::compile::{Request as Wanted, graph, runnable};
 use crate::diag::FileId;
@@ -60,7 +61,6 @@ pub(super) fn capabilities() -> Value {
             "legend": { "tokenTypes": tokens::TYPES, "tokenModifiers": tokens::MODIFIERS },
             "full": true,
         },
-        "executeCommandProvider": { "commands": [] },
         "experimental": { "networkProvider": true },
     })
 }
@@ -107,7 +107,7 @@ impl Answers {
             request::PrepareRenameRequest::METHOD => self.at_place(params, |_, view, at| {
                 let declared = navigate::declared(view, at).filter(|d| !is_shipped(&d.place.path))?;
                 let found = navigate::occurrence_at(view, at)?;
-                Some(serde_json::json!({ "range": view.lines.range(found.ident.span), "placeholder": declared.name }))
+                Some(serde_json::json!({ "range": view.range(found.ident.span), "placeholder": declared.name }))
             }),
             request::Rename::METHOD => self.rename(params),
             request::DocumentSymbolRequest::METHOD => {
@@ -190,7 +190,9 @@ impl Answers {
 
     /// The files of the editor's folders, and those that are open.
     fn own_files(&self, uri: &Uri) -> Vec<PathBuf> {
-        let mut files = below(&self.roots);
+        // copies that builds and packages of Node make are not the user's text
+        let skipped = |name: &str| name == "target" || name == "node_modules";
+        let mut files: Vec<PathBuf> = self.roots.iter().flat_map(|root| modelica_below(root, &skipped)).collect();
         files.extend(self.open.paths().filter(|p| !is_shipped(p)).cloned());
         files.extend(self.cache.path(uri).filter(|p| !is_shipped(p)));
         files.sort();
@@ -269,9 +271,7 @@ impl Answers {
     ) -> WorkspaceEdit {
         let Some((path, name)) = file else {
             let changes = edits.into_iter().filter_map(|(path, edits)| Some((self.cache.uri(&path)?, edits)));
-            #[allow(clippy::mutable_key_type, reason = "the protocol's type")]
-            let changes: HashMap<Uri, Vec<TextEdit>> = changes.collect();
-            return WorkspaceEdit { changes: Some(changes), ..WorkspaceEdit::default() };
+            return edit_of(changes);
         };
         let mut all: Vec<lsp_types::DocumentChangeOperation> = Vec::new();
         for (path, edits) in edits {
@@ -314,13 +314,12 @@ impl Answers {
             let range = message.diagnostic.range;
             let touched = range.start <= p.range.end && p.range.start <= range.end;
             let Some(correction) = message.correction.as_ref().filter(|_| touched) else { continue };
-            #[allow(clippy::mutable_key_type, reason = "the protocol's type")]
-            let changes = HashMap::from([(p.text_document.uri.clone(), vec![correction.edit.clone()])]);
+            let change = (p.text_document.uri.clone(), vec![correction.edit.clone()]);
             actions.push(CodeActionOrCommand::CodeAction(CodeAction {
                 title: correction.title.clone(),
                 kind: Some(lsp_types::CodeActionKind::QUICKFIX),
                 diagnostics: Some(vec![message.diagnostic.clone()]),
-                edit: Some(WorkspaceEdit { changes: Some(changes), ..WorkspaceEdit::default() }),
+                edit: Some(edit_of(std::iter::once(change))),
                 is_preferred: Some(true),
                 ..CodeAction::default()
             }));
@@ -346,6 +345,12 @@ impl Answers {
         let (model, graph) = outcome.value.ok_or(first.unwrap_or_else(|| "there is no model here".to_owned()))?;
         Ok(serde_json::json!({ "model": model, "svg": network::write(&graph, &model) }))
     }
+}
+
+#[allow(clippy::mutable_key_type, reason = "the protocol keeps edits in a map by address; nothing changes its keys")]
+fn edit_of(changes: impl Iterator<Item = (Uri, Vec<TextEdit>)>) -> WorkspaceEdit {
+    let changes: HashMap<Uri, Vec<TextEdit>> = changes.collect();
+    WorkspaceEdit { changes: Some(changes), ..WorkspaceEdit::default() }
 }
 
 fn read<P: DeserializeOwned>(params: &Value) -> Result<P, String> {

@@ -109,24 +109,6 @@ fn to_path(uri: &Uri) -> Option<PathBuf> {
     String::from_utf8(bytes).ok().map(PathBuf::from)
 }
 
-/// All Modelica files below some folders, those of version control and builds left out.
-pub(super) fn below(folders: &[PathBuf]) -> Vec<PathBuf> {
-    let mut found = Vec::new();
-    let mut open: Vec<PathBuf> = folders.to_vec();
-    while let Some(folder) = open.pop() {
-        for (name, is_folder) in DiskWorld.list(&folder).unwrap_or_default() {
-            let path = folder.join(&name);
-            if is_folder && !name.starts_with('.') && name != "target" && name != "node_modules" && !path.is_symlink() {
-                open.push(path);
-            } else if !is_folder && name.ends_with(".mo") {
-                found.push(path);
-            }
-        }
-    }
-    found.sort();
-    found
-}
-
 #[cfg(test)]
 mod tests {
     use super::{to_path, to_uri};

@@ -157,8 +157,7 @@ impl Server<'_> {
         if crate::editor::is_shipped(path) {
             return;
         }
-        let text = self.answers.open.get(path).unwrap_or_default().to_owned();
-        let found = messages::of_syntax(path, &text);
+        let found = messages::of_syntax(path, self.answers.open.get(path).unwrap_or_default());
         if found.is_empty() {
             self.checker.ask(path.to_path_buf(), self.answers.open.clone());
         } else {

@@ -142,39 +142,10 @@ fn statement<'a>(s: &'a Statement, see: &mut dyn FnMut(&'a Reference)) {
 }
 
 fn expression<'a>(e: &'a Expr, see: &mut dyn FnMut(&'a Reference)) {
-    match &e.kind {
-        ExprKind::Reference(r) => {
-            see(r);
-            r.parts.iter().flat_map(|p| &p.subscripts).for_each(|s| subscript(s, see));
-        }
-        ExprKind::Unary(_, a) => expression(a, see),
-        ExprKind::Binary(_, a, b) => [a, b].into_iter().for_each(|e| expression(e, see)),
-        ExprKind::If { branches, otherwise } => {
-            branches.iter().for_each(|(c, value)| [c, value].into_iter().for_each(|e| expression(e, see)));
-            expression(otherwise, see);
-        }
-        ExprKind::Range { from, step, to } => {
-            [Some(from), step.as_ref(), Some(to)].into_iter().flatten().for_each(|e| expression(e, see));
-        }
-        ExprKind::Call { args, named, .. } => {
-            args.iter().chain(named.iter().map(|(_, e)| e)).for_each(|e| expression(e, see));
-        }
-        ExprKind::Comprehension { body, .. } => expression(body, see),
-        ExprKind::PartialApplication { named, .. } => named.iter().for_each(|(_, e)| expression(e, see)),
-        ExprKind::Array(items) => items.iter().for_each(|e| expression(e, see)),
-        ExprKind::Matrix(rows) => rows.iter().flatten().for_each(|e| expression(e, see)),
-        ExprKind::Tuple(items) => items.iter().flatten().for_each(|e| expression(e, see)),
-        ExprKind::Index(inner, subscripts) => {
-            expression(inner, see);
-            subscripts.iter().for_each(|s| subscript(s, see));
-        }
-        ExprKind::Integer(_)
-        | ExprKind::Real(_)
-        | ExprKind::String(_)
-        | ExprKind::Boolean(_)
-        | ExprKind::End
-        | ExprKind::Error => {}
+    if let ExprKind::Reference(r) = &e.kind {
+        see(r);
     }
+    e.each_child(&mut |inner| expression(inner, see));
 }
 
 fn subscript<'a>(s: &'a Subscript, see: &mut dyn FnMut(&'a Reference)) {
