@@ -3,13 +3,8 @@
 
 #![allow(clippy::print_stdout, reason = "an example shows what it found")]
 
-use bramah::diag::Sources;
-use bramah::gap::select::search::search;
-use bramah::gap::study::question;
-use bramah::gap::verdict::conclude;
-use bramah::gap::words::words;
+use bramah::gap::diagnose;
 use bramah::solve::Interpolation;
-use bramah::study::Study;
 use bramah::world::MemoryWorld;
 use bramah::{Request, Simulation};
 use std::fmt::Write;
@@ -91,11 +86,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     world.add("train.csv", train);
     world.add("held.csv", held);
     world.add("study.toml", STUDY);
-    let mut sources = Sources::default();
-    let study = Study::read(&world, Path::new("study.toml"), &mut sources).value.ok_or("the study is wrong")?;
-    let question = question(&world, &study, None, &mut sources).map_err(|_| "the study does not fit its model")?;
-    let held = question.held(None, &mut sources).map_err(|_| "the held recordings cannot be read")?.recordings;
-    let found = search(&question.problem, &held, &mut |_| ()).map_err(|_| "the model cannot follow the recordings")?;
-    println!("{}", words(&conclude(&question.problem, &found, &held, 0.0)));
+    println!("{}", diagnose(&world, Path::new("study.toml"))?.words());
     Ok(())
 }

@@ -100,7 +100,7 @@ pub mod lower;
 mod compile;
 
 pub use compile::{
-    Flattened, Model, Outcome, Request, analyze, compile, flatten, flatten_text, graph, inspect, runnable, sort,
+    Flattened, Model, Outcome, Request, Runnable, analyze, compile, flatten, flatten_text, graph, inspect, runnable, sort,
 };
 
 pub mod solve;
@@ -110,7 +110,8 @@ pub mod circuit;
 #[cfg(feature = "analysis")]
 pub mod analysis;
 
-pub use circuit::{Circuit, Error, Simulation, Stepping};
+pub use circuit::{Circuit, Simulation, Stepping};
+pub use diag::Error;
 
 pub mod plot;
 

@@ -18,6 +18,7 @@ use bramah::study::Study;
 use bramah::world::MemoryWorld;
 use bramah::{Request, Simulation};
 use rig::{Numbers, ORIFICE};
+use std::ops::ControlFlow;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -182,10 +183,10 @@ fn judged(mut world: MemoryWorld, study: &str, train: String, held: String, aske
     let held = question.held(None, &mut sources).unwrap().recordings;
     let problem = &question.problem;
     let found = match asked {
-        None => search(problem, &held, &mut |_| ()),
+        None => search(problem, &held, &mut |_| ControlFlow::Continue(())),
         Some(class) => {
             let hypothesis = problem.hypotheses.iter().position(|h| h.effect == class).unwrap();
-            explained(problem, &held, hypothesis, &mut |_| ()).map(Option::unwrap)
+            explained(problem, &held, hypothesis, &mut |_| ControlFlow::Continue(())).map(Option::unwrap)
         }
     };
     conclude(problem, &found.unwrap_or_else(|trouble| panic!("{trouble:?}")), &held, 0.0)
@@ -438,7 +439,7 @@ fn a_plan_says_what_would_be_seen_and_what_could_not_be_told_apart() {
     let mut sources = Sources::default();
     let study = Study::read(&world, Path::new("study.toml"), &mut sources).value.unwrap();
     let mut question = planned(&world, &study, None, &mut sources).ok().unwrap();
-    let plan = plan(&mut question.problem, &mut |_| ()).unwrap();
+    let plan = plan(&mut question.problem, &mut |_| ControlFlow::Continue(())).unwrap();
     let of = |family: &str| plan.hypotheses.iter().position(|h| h.family == family).unwrap();
     assert!(plan.hypotheses[of("dry_friction")].nats > 8.0);
     let drift = |i: usize| plan.hypotheses[i].places == ["mass.m"];
@@ -471,7 +472,7 @@ fn the_corrected_model_stands_alone_and_so_does_the_page() {
     let problem = &question.problem;
     let others = question.held(None, &mut sources).unwrap();
     let held = &others.recordings;
-    let found = search(problem, held, &mut |_| ()).ok().unwrap();
+    let found = search(problem, held, &mut |_| ControlFlow::Continue(())).ok().unwrap();
     let verdict = conclude(problem, &found, held, 0.0);
 
     let text = corrected(problem, &found.last.fit).value.unwrap();

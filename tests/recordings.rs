@@ -19,6 +19,7 @@ use bramah::world::MemoryWorld;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use rig::{Numbers, ORIFICE};
+use std::ops::ControlFlow;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -232,7 +233,7 @@ fn diagnosed(case: &Case) -> bool {
     let Some(study) = Study::read(&world, Path::new("study.toml"), &mut sources).value else { return false };
     let Ok(question) = question(&world, &study, None, &mut sources) else { return false };
     let Ok(held) = question.held(None, &mut sources) else { return false };
-    let Ok(found) = search(&question.problem, &held.recordings, &mut |_| ()) else { return false };
+    let Ok(found) = search(&question.problem, &held.recordings, &mut |_| ControlFlow::Continue(())) else { return false };
     let verdict = conclude(&question.problem, &found, &held.recordings, 0.0);
     assert!(!words(&verdict).contains("NaN"), "{}", words(&verdict));
     serde_json::to_string(&verdict).expect("a verdict is JSON");

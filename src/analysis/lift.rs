@@ -2,7 +2,7 @@
 //! made holds every derivative of the original one.
 
 use crate::expr::visit::Substitution;
-use crate::expr::{ExprId, Exprs, Node, VarId};
+use crate::expr::{ExprId, Exprs, VarId};
 use crate::flat::{
     Equation, FlatModel, Origin, OriginKind, StateSelect, Type, Variability, Variable, When, WhenAction,
 };
@@ -210,15 +210,4 @@ fn change_when(when: &mut When, change: &mut impl FnMut(&mut ExprId)) {
             }
         }
     }
-}
-
-/// Whether a parameter's binding reads no other parameter: the roots of all parameter values.
-pub fn is_root(flat: &FlatModel, v: VarId) -> bool {
-    let variable = &flat.variables[v.index()];
-    let reads = |e: ExprId| {
-        let variables = flat.exprs.variables(e);
-        variables.iter().any(|w| flat.variables[w.index()].variability == Variability::Parameter)
-            || matches!(flat.exprs.node(e), Node::Time)
-    };
-    variable.variability == Variability::Parameter && variable.ty == Type::Real && !variable.binding.is_some_and(reads)
 }

@@ -4,13 +4,16 @@
 //! the same instance. [`Simulation`] is a compiled model with the settings of a run; clones share the compiled code.
 
 mod callback;
+mod parameters;
 mod simulation;
 mod stepping;
 
-pub use simulation::{Error, Outcome, Simulation};
+pub use parameters::Parameter;
+pub use simulation::{Outcome, Simulation};
 pub use stepping::{InputPort, Probe, Stepping};
 
 use crate::compile::Request;
+use crate::diag::Error;
 use crate::instance::Override;
 use crate::world::MemoryWorld;
 use std::fmt::Write;

@@ -3,8 +3,7 @@
 use super::callback::{Conduct, Rows};
 use super::stepping::Stepping;
 use crate::compile::{Model, Request, compile};
-use crate::diag::render::{Format, render};
-use crate::diag::{Code, Diagnostic, Sources};
+use crate::diag::{Code, Diagnostic, Error, Sources};
 use crate::expr::VarId;
 use crate::flat::Variability;
 use crate::lower;
@@ -13,33 +12,8 @@ use crate::solve::{self, Control, End, Input, Interpolation, Progress, Run, Sett
 use crate::structure::StateChoice;
 use crate::structure::parameters::out_of_range;
 use crate::world::{MemoryWorld, World};
-use std::fmt;
 use std::ops::ControlFlow;
 use std::sync::Arc;
-
-/// What went wrong, with the texts that its places point into. Prints as short messages, one a line, in `Debug` too: a
-/// test's `unwrap` shows what a user reads, not the texts of the library.
-#[derive(Clone)]
-pub struct Error {
-    /// The diagnostics, errors among them.
-    pub diagnostics: Vec<Diagnostic>,
-    /// The texts.
-    pub sources: Arc<Sources>,
-}
-
-impl fmt::Display for Error {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(render(&self.sources, &self.diagnostics, Format::Short, 120, false).trim_end())
-    }
-}
-
-impl fmt::Debug for Error {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "Error(\n{self}\n)")
-    }
-}
-
-impl std::error::Error for Error {}
 
 /// What a run gave.
 #[derive(Clone, Debug)]
@@ -52,7 +26,7 @@ pub struct Outcome {
     pub state: State,
     /// The work done.
     pub statistics: Statistics,
-    /// Warnings.
+    /// Warnings; of [`Simulation::run_kept`] also why the run did not reach its end.
     pub diagnostics: Vec<Diagnostic>,
 }
 
@@ -115,6 +89,11 @@ impl Simulation {
         &self.model
     }
 
+    /// The texts that places in diagnostics point into.
+    pub fn sources(&self) -> &Sources {
+        &self.sources
+    }
+
     /// The settings of the next run.
     pub fn settings(&mut self) -> &mut Settings {
         &mut self.settings
@@ -134,8 +113,14 @@ impl Simulation {
     /// no number or outside `min` and `max`.
     pub fn set(&mut self, name: &str, value: f64) -> Result<&mut Self, Error> {
         let v = self.variable(name)?;
-        match self.model.dae.variables[v.index()].variability {
-            Variability::Parameter => {}
+        let variable = &self.model.dae.variables[v.index()];
+        match variable.variability {
+            Variability::Parameter if variable.settable => {}
+            Variability::Parameter => {
+                let why = if variable.hidden { "protected" } else { "final" };
+                let d = Diagnostic::new(Code::BadSet, format!("`{name}` is {why}, so it keeps its own value"));
+                return Err(self.error(d));
+            }
             Variability::Constant => {
                 let d = Diagnostic::new(Code::BadSet, format!("the structure of the model depends on `{name}`"));
                 return Err(self.error(d.help("give its value when the model is compiled")));
@@ -163,7 +148,7 @@ impl Simulation {
     }
 
     /// Values of parameters and constants in the next run.
-    fn parameter_values(&self) -> Vec<f64> {
+    pub(super) fn parameter_values(&self) -> Vec<f64> {
         let system = &self.model.system;
         let mut values = system.layout.values();
         let mut given = vec![false; self.model.dae.variables.len()];
@@ -258,6 +243,16 @@ impl Simulation {
         Ok(Outcome::new(run, trajectory))
     }
 
+    /// The same, and keeps what is there however the run ends: [`Outcome::end`] and [`Outcome::diagnostics`] say how.
+    ///
+    /// # Errors
+    /// `E508` when the callback panicked.
+    pub fn run_kept(&self, from: Option<&State>, control: &mut Control<'_>) -> Result<Outcome, Error> {
+        let mut trajectory = Trajectory::new(self.columns());
+        let run = self.run_into(from, control, &mut trajectory)?;
+        Ok(Outcome::new(run, trajectory))
+    }
+
     /// Runs, and hands each row to a function as it comes: the time in seconds and the values of
     /// [`Simulation::columns`]. Nothing is kept, so that memory does not grow with the run. `Break` ends the run, which
     /// then counts as fine; [`Outcome::state`] is where it stood.
@@ -331,7 +326,7 @@ impl Simulation {
         &self.settings
     }
 
-    pub(super) fn inputs(&self) -> &[Input] {
+    pub(super) fn driven(&self) -> &[Input] {
         &self.inputs
     }
 

@@ -1,6 +1,7 @@
 //! Co-simulation: a run that the caller takes from step to step, setting inputs and reading variables in between.
 
-use super::simulation::{Error, Simulation};
+use super::simulation::Simulation;
+use crate::diag::Error;
 use crate::diag::Diagnostic;
 use crate::solve::driver::{self, Driver, Stop};
 use crate::solve::{End, State, Statistics};
@@ -63,7 +64,7 @@ pub struct Stepping<'a> {
 impl<'a> Stepping<'a> {
     pub(super) fn new(simulation: &'a Simulation, from: Option<&State>) -> Result<Self, Error> {
         let (system, settings) = (&simulation.model().system, simulation.asked());
-        let driver = driver::start(system, settings, simulation.inputs(), from);
+        let driver = driver::start(system, settings, simulation.driven(), from);
         let mut driver = driver.map_err(|stop| simulation.errors(stop.diagnostics))?;
         driver.observe();
         Ok(Stepping { simulation, driver, changes: Vec::new(), terminated: None })

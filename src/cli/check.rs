@@ -18,7 +18,7 @@ use crate::structure::{Block, Dae};
 #[command(after_help = "\
 Examples:
   bramah check Press.mo
-  bramah check Press.mo --set N=100 --deny-warnings
+  bramah check Press.mo --set load.A='3 mm2' --deny-warnings
   bramah check Press.mo --emit svg -o press.svg       the network as a picture, also .png
   bramah check Press.mo --emit blt                    the sorted equations
   bramah check Library --all                          every model that can run, a row each
@@ -62,9 +62,9 @@ pub(super) fn run(args: &CheckArgs, messages: &mut Messages) -> Result<Ending, F
     }
     // The network can be looked at even when the equations do not fit together.
     match args.emit {
-        Some(Emit::Network) => write(args, &network_list(&model::graph(&experiment)?.1))?,
-        Some(Emit::Svg) => write_picture(args, &model::graph(&experiment)?)?,
-        Some(Emit::Flat) => write(args, &model::flatten(&experiment, &mut Messages::silent())?.flat.text())?,
+        Some(Emit::Network) => write(args, &network_list(&messages.quietly(|quiet| model::graph(&experiment, quiet))?.1))?,
+        Some(Emit::Svg) => write_picture(args, &messages.quietly(|quiet| model::graph(&experiment, quiet))?)?,
+        Some(Emit::Flat) => write(args, &messages.quietly(|quiet| model::flatten(&experiment, quiet))?.flat.text())?,
         Some(Emit::Dae | Emit::Blt) | None => {}
     }
     let (flat, _, dae) = model::sort(&experiment, messages)?;

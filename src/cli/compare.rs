@@ -21,16 +21,16 @@ The first file is the reference: around each of its signals lies a tube, and the
 The tube reaches --tolerance times the signal's range up and down, and --time-tolerance to both sides.
 
 Examples:
-  bramah compare bench.csv press.csv --map 'pump.b.p=p_bench' --tolerance 0.02
-  bramah compare old.csv new.csv --variables 'cyl.*' --format json
+  bramah compare bench.csv press.csv --map 'line.p=p_bench' --tolerance 0.02
+  bramah compare old.csv new.csv --variables 'pump.*' --format json
   bramah compare old.csv new.csv -o difference.svg --start-time '50 ms'
 
 Exit status: 0 all signals within tolerance, 1 a violation, 2 the files cannot be compared.")]
 pub(super) struct CompareArgs {
-    /// The reference: CSV or Modelica .mat
+    /// The reference: CSV, Modelica .mat or .parquet
     #[arg(value_name = "A")]
     reference: PathBuf,
-    /// The result: CSV or Modelica .mat
+    /// The result: CSV, Modelica .mat or .parquet
     #[arg(value_name = "B")]
     result: PathBuf,
     /// Signals to compare [default: those in both files]; may be repeated
@@ -39,8 +39,8 @@ pub(super) struct CompareArgs {
     /// Pairs of different name: signal of B = column of A, with its unit if it is another; may be repeated
     #[arg(long, value_name = "B=A[UNIT],...")]
     map: Vec<String>,
-    /// Height of the tube as part of a signal's range
-    #[arg(long, visible_alias = "relative-tolerance", default_value_t = 0.002, value_name = "PART", value_parser = positive)]
+    /// Height of the tube as a fraction of a signal's range
+    #[arg(long, visible_alias = "relative-tolerance", default_value_t = 0.002, value_name = "FRACTION", value_parser = positive)]
     tolerance: f64,
     /// Height of the tube in the signal's unit, added to the relative one
     #[arg(long, default_value_t = 0.0, value_name = "VALUE", value_parser = positive)]

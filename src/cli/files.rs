@@ -4,21 +4,9 @@ use std::fs::File;
 use std::io::{self, BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 
-use super::{DiskWorld, Failure};
+use super::Failure;
 use crate::diag::{Code, Diagnostic};
-use crate::world::World;
-
-/// Why a file operation failed, as people say it.
-pub(super) fn reason(error: &io::Error) -> String {
-    match error.kind() {
-        io::ErrorKind::NotFound => "there is no such file".to_owned(),
-        io::ErrorKind::PermissionDenied => "access is not permitted".to_owned(),
-        io::ErrorKind::IsADirectory => "it is a folder".to_owned(),
-        io::ErrorKind::StorageFull => "the disk is full".to_owned(),
-        io::ErrorKind::ReadOnlyFilesystem => "the disk can only be read".to_owned(),
-        _ => error.to_string(),
-    }
-}
+use crate::world::{DiskWorld, World, reason};
 
 /// A file that cannot be read or written.
 pub(super) fn access(path: &Path, verb: &str, error: &io::Error) -> Failure {

@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::messages::Messages;
-use super::{DiskWorld, Ending, Failure, files};
+use super::{Ending, Failure, files};
+use crate::world::DiskWorld;
 use crate::diag::Code;
 use crate::syntax::format::format;
 use crate::world::World;

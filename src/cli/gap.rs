@@ -1,33 +1,32 @@
 //! `bramah gap`
 
 use clap::Args;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use super::messages::Messages;
 use super::recorder::write_text;
-use super::{DiskWorld, Ending, Failure, files};
+use super::{Ending, Failure, files};
 use crate::diag::{Checked, Code, Diagnostic};
-use crate::gap::fixed::corrected;
-use crate::gap::hypotheses::{Hypothesis, Place};
+use crate::gap::Diagnosis;
+use crate::gap::hypotheses::Hypothesis;
 use crate::gap::plan::plan;
-use crate::gap::report::report;
-use crate::gap::select::search::{Stage, Trouble, explained, search};
+use crate::gap::select::search::Stage;
 use crate::gap::study::{Unusable, planned, proposed, question};
-use crate::gap::verdict::conclude;
-use crate::gap::words::words;
 use crate::study::Study;
+use crate::world::DiskWorld;
 
 /// Find where model and machine differ, and which missing effect explains it
 #[derive(Args, Debug)]
 #[command(after_help = "\
-The verdict goes to stdout as JSON (or into the file given), the words to stderr. Recordings of role `held` take no part
-in fitting and ranking: they confirm what was found, and say how far the gap shrinks.
+The verdict goes to stdout as JSON (or into the file given), the summary to stderr. Recordings of role `held` are not
+used for fitting and ranking: they confirm what was found, and show how far the gap shrinks.
 
 Examples:
   bramah gap study.toml --data bench/                       the diagnosis
   bramah gap study.toml --data bench/ -o verdict.json
   bramah gap study.toml --data bench/ --write-model fixed.mo --report report.html
-  bramah gap study.toml --plan      before measuring: what the planned inputs would show, and what they could not tell apart
+  bramah gap study.toml --plan      before measuring: what the planned inputs would show, and what they could not distinguish
   bramah gap study.toml --explain-rejected 'Effects.SensorLag@p' --report lag.html    what a refused effect would do
   bramah gap study.toml --list      what the network of the study's model could lack, and where
 
@@ -110,62 +109,28 @@ fn diagnose(args: &GapArgs, study: &Study, messages: &mut Messages) -> Result<En
     let question = question(&DiskWorld, study, data, &mut messages.sources).map_err(|why| unusable(why, messages))?;
     messages.say(&question.diagnostics);
     let held = question.held(data, &mut messages.sources).map_err(|diagnostics| Failure { diagnostics })?;
-    let problem = &question.problem;
-    let stages = Stages::new();
-    let mut show = |stage| stages.show(stage);
-    let found = match &args.explain_rejected {
-        None => search(problem, &held.recordings, &mut show).map_err(trouble)?,
-        Some(asked) => {
-            let hypothesis = at(&problem.hypotheses, asked)?;
-            let found = explained(problem, &held.recordings, hypothesis, &mut show).map_err(trouble)?;
-            found.ok_or_else(|| Diagnostic::new(Code::BadData, format!("the model has no values with `{asked}`")))?
-        }
-    };
-    stages.show(Stage::Figures);
-    let verdict = conclude(problem, &found, &held.recordings, begun.elapsed().as_secs_f64());
-    stages.clear();
     if held.recordings.is_empty() {
         messages.remark("There are no held recordings: the gap is that on the recordings that were used.");
     }
-    messages.remark(words(&verdict).trim_end());
-    let text = serde_json::to_string_pretty(&verdict).expect("numbers and texts always serialize");
+    let stages = Stages::new();
+    let mut show = |stage: Stage| {
+        stages.say(&stage.to_string());
+        ControlFlow::Continue(())
+    };
+    let diagnosis = Diagnosis::new(question, held, args.explain_rejected.as_deref(), &mut show);
+    stages.clear();
+    let mut diagnosis = diagnosis.map_err(|diagnostics| Failure { diagnostics })?;
+    diagnosis.took(begun.elapsed().as_secs_f64());
+    messages.remark(diagnosis.words().trim_end());
+    let text = serde_json::to_string_pretty(diagnosis.verdict()).expect("numbers and texts always serialize");
     write_text(&args.output, &format!("{text}\n"))?;
     if let Some(file) = &args.write_model {
-        write_text(file, &messages.value(corrected(problem, &found.last.fit))?)?;
+        write_text(file, &messages.value(diagnosis.corrected())?)?;
     }
     if let Some(file) = &args.report {
-        write_text(file, &report(problem, &found, &verdict, &held))?;
+        write_text(file, &diagnosis.report())?;
     }
     Ok(Ending::Fine)
-}
-
-/// The hypothesis `EFFECT@PLACE`; a mistake of a recording is none.
-fn at(all: &[Hypothesis], asked: &str) -> Result<usize, Failure> {
-    let is_asked = |h: &Hypothesis| {
-        let (effect, place) = asked.split_once('@').unwrap_or((asked, ""));
-        let of_effect = h.effect == effect || h.effect.strip_prefix("Effects.") == Some(effect);
-        let here = |p: &&Place| p.place == place || p.node.iter().any(|n| n == place);
-        of_effect && !h.is_recording_error() && h.places().iter().any(here)
-    };
-    let found = all.iter().position(is_asked);
-    found.ok_or_else(|| {
-        let text = format!("there is no effect at a place that is called `{asked}`");
-        let help = "`--list` shows all: `Effects.SensorOffset@p`, for example";
-        Diagnostic::new(Code::BadStudy, text).help(help).into()
-    })
-}
-
-/// What stops a diagnosis: the nominal model does not compile, or cannot follow the recordings.
-fn trouble(trouble: Trouble) -> Failure {
-    match trouble {
-        Trouble::Model(diagnostics) => Failure { diagnostics },
-        Trouble::Stops(file, time) => {
-            let text = format!("the nominal model cannot follow `{file}`: its simulation stops at {time} s");
-            Diagnostic::new(Code::BadData, text)
-                .help("check the units and signs of the inputs in the study, and the model's start values")
-                .into()
-        }
-    }
 }
 
 /// The stages of a diagnosis as a line on a terminal.
@@ -181,16 +146,6 @@ impl Stages {
             bar.enable_steady_tick(std::time::Duration::from_millis(200));
         }
         Stages { bar }
-    }
-
-    fn show(&self, stage: Stage) {
-        self.say(&match stage {
-            Stage::Tolerances => "parameters within their tolerances".to_string(),
-            Stage::Screen(n) => format!("all hypotheses for effect {n}"),
-            Stage::Fit(n) => format!("the best of them for effect {n}"),
-            Stage::Shapes => "shapes of what is left".to_string(),
-            Stage::Figures => "figures".to_string(),
-        });
     }
 
     fn say(&self, stage: &str) {

@@ -129,7 +129,8 @@ fn convert(values: &mut [f64], unit: &str, target: &Variable, entry: &InputMap) 
 }
 
 /// Every input is driven, or has a value of its own.
-fn all_driven(dae: &Dae, inputs: &[Input]) -> Result<(), Failure> {
+/// Says which inputs have neither a recording nor a value of their own.
+pub(super) fn all_driven(dae: &Dae, inputs: &[Input]) -> Result<(), Failure> {
     let own = |v: &Variable| v.binding.is_some() || v.start.is_some();
     let missing = dae.inputs.iter().filter(|v| !inputs.iter().any(|i| i.variable == **v));
     let missing: Vec<&Variable> = missing.map(|v| &dae.variables[v.index()]).filter(|v| !own(v)).collect();

@@ -28,7 +28,7 @@ Inputs are top-level inputs or parameters. With --schedule the model becomes x' 
 scheduling quantities, each a multiple of one state or input: exact where the model is affine in the rest, and said so.
 
 Examples:
-  bramah linearize Axis.mo --at 0.5 --inputs u --outputs cyl.x --bode bode.svg
+  bramah linearize Rig.mo --at 0.5 --inputs w_ref --outputs p --bode bode.svg
   bramah linearize Press.mo --steady -o press.json
   bramah linearize ClosedCircuit.Reduced --inputs f,u --schedule p,n_p,n_m,f --grid p=10:150:8bar --grid f=10,20,30
 
@@ -39,7 +39,7 @@ pub(super) struct LinearizeArgs {
     /// The operating point: a time of the run, as `2`, `t=2` or `500 ms` [default: the start]
     #[arg(long, value_name = "TIME", value_parser = time, conflicts_with = "steady", allow_hyphen_values = true)]
     at: Option<f64>,
-    /// The operating point: the steady state reached from the start, or from --at
+    /// The operating point: the steady state reached from the start
     #[arg(long)]
     steady: bool,
     /// Inputs: top-level inputs or parameters [default: all top-level inputs]; may be repeated

@@ -48,6 +48,19 @@ impl Messages {
         Messages { silent: true, ..Messages::new(MessageFormat::Human) }
     }
 
+    /// Does something of which only what stops it is said: a stage that is run a second time.
+    ///
+    /// # Errors
+    /// Those of `act`, whose texts are then known here.
+    pub fn quietly<T>(&mut self, act: impl FnOnce(&mut Messages) -> Result<T, Failure>) -> Result<T, Failure> {
+        let mut silent = Messages::silent();
+        let result = act(&mut silent);
+        if result.is_err() {
+            self.sources = silent.sources;
+        }
+        result
+    }
+
     /// Writes diagnostics, errors last so that they stand where the eye is.
     pub fn say(&self, diagnostics: &[Diagnostic]) {
         let mut ordered: Vec<Diagnostic> = diagnostics.to_vec();

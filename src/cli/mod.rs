@@ -31,18 +31,16 @@ mod progress;
 mod recorder;
 mod request;
 mod sensitivity;
+mod serve;
 mod simulate;
 mod statistics;
 mod steady;
 mod study;
 mod sweep;
-mod world;
 
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-
-pub use world::DiskWorld;
 
 use crate::diag::{Code, Diagnostic, Sources};
 use crate::instance::GIVEN;
@@ -87,6 +85,7 @@ enum Command {
     Sensitivity(sensitivity::SensitivityArgs),
     Fmt(fmt::FmtArgs),
     Lsp(lsp::LspArgs),
+    Serve(serve::ServeArgs),
     Explain(explain::ExplainArgs),
     Completions(completions::CompletionsArgs),
 }
@@ -170,6 +169,7 @@ fn dispatch(command: Command, messages: &mut Messages) -> Result<Ending, Failure
         Command::Sensitivity(args) => sensitivity::run(&args, messages),
         Command::Fmt(args) => fmt::run(&args, messages),
         Command::Lsp(args) => lsp::run(&args),
+        Command::Serve(args) => serve::run(&args),
         Command::Explain(args) => explain::run(&args),
         Command::Completions(args) => completions::run(&args),
     }

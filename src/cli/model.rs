@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::messages::Messages;
 use super::request::library_folders;
-use super::{DiskWorld, Failure};
+use super::Failure;
 use crate::diag::{Diagnostic, Severity};
 use crate::experiment::Experiment;
 use crate::flat::FlatModel;
@@ -12,6 +12,7 @@ use crate::instance::Override;
 use crate::lower::Options;
 use crate::network::Graph;
 use crate::structure::Dae;
+use crate::world::DiskWorld;
 use crate::{Flattened, Model, Outcome, Request};
 
 /// Up to the flat model, which exists also where the equations do not fit together.
@@ -21,9 +22,9 @@ pub(super) fn flatten(experiment: &Experiment, messages: &mut Messages) -> Resul
 }
 
 /// Name, components and connections, also where ports are open.
-pub(super) fn graph(experiment: &Experiment) -> Result<(String, Graph), Failure> {
+pub(super) fn graph(experiment: &Experiment, messages: &mut Messages) -> Result<(String, Graph), Failure> {
     let outcome = crate::graph(&DiskWorld, &request(experiment)?);
-    pass(outcome, experiment, &mut Messages::silent())
+    pass(outcome, experiment, messages)
 }
 
 /// Up to the sorted equations, without running.
@@ -34,7 +35,8 @@ pub(super) fn sort(experiment: &Experiment, messages: &mut Messages) -> Result<(
 
 /// Names of all models of a source that can run.
 pub(super) fn runnable(experiment: &Experiment) -> Result<Vec<String>, Failure> {
-    crate::runnable(&DiskWorld, &request(experiment)?).map_err(|diagnostics| Failure { diagnostics })
+    let found = crate::runnable(&DiskWorld, &request(experiment)?).map_err(|diagnostics| Failure { diagnostics })?;
+    Ok(found.into_iter().map(|r| r.class).collect())
 }
 
 /// The whole way to a system that can run.
@@ -55,7 +57,7 @@ fn request(experiment: &Experiment) -> Result<Request, Failure> {
 }
 
 /// The file or folder that is named; the whole path of one in a package whose folders lie above where the command runs.
-fn source(named: &Path) -> PathBuf {
+pub(super) fn source(named: &Path) -> PathBuf {
     let in_package = named.is_relative() && !named.starts_with("..") && Path::new("package.mo").exists();
     let whole = if in_package && named.exists() { std::path::absolute(named).ok() } else { None };
     whole.unwrap_or_else(|| named.to_path_buf())

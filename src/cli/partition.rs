@@ -26,10 +26,10 @@ use crate::solve::signals;
 #[command(after_help = "\
 For each load the operating point is followed over the speeds, and the flow over the speed is taken apart: the straight line of
 the load zone, the speed at which it has no flow (the end of the dead zone, where the pump just covers its leakage), and the speed
-at which it reaches the flow that is not exceeded (the begin of the saturation zone). Both directions, if the speeds have both signs.
+at which it reaches the flow that is not exceeded (the beginning of the saturation zone). Both directions, if the speeds have both signs.
 
 Examples:
-  bramah partition Press.mo --speed N=0:3000:61 --load p_load=20,100,210bar --flow pump.Q_A
+  bramah partition Press.mo --set speed.height=0 --speed speed.offset=0:300:61 --load load.A=1,2mm2 --flow load.q
   bramah partition ServoPump.FlowZones --set command.height=0 --speed command.offset=-3600:3600:145 \\
       --load p_load=2,10,21MPa --flow Q --plot zones.svg
 

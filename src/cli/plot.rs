@@ -17,16 +17,16 @@ use crate::results::{Globs, Trajectory};
 #[command(after_help = "\
 Examples:
   bramah plot press.csv -o press.svg
-  bramah plot press.mat --variables 'cyl.*,pump.b.p' -o press.png
+  bramah plot press.mat --variables 'pump.*,line.p' -o press.png
   bramah plot run1.csv run2.csv -o report.html       the same variables of both, together
-  bramah plot press.csv --x cyl.x --variables cyl.v  a phase plot
+  bramah plot press.csv --x line.p --variables relief.q    flow over pressure
   bramah plot p*.csv --x N --y dp --variables eta    a map: each file is a row, at its value of dp
   bramah plot press.csv --unit '*.p=Pa:bar'          units for a file that carries none")]
 pub(super) struct PlotArgs {
-    /// Result files: CSV or Modelica .mat
+    /// Result files: CSV, Modelica .mat or .parquet
     #[arg(required = true, value_name = "RESULT")]
     results: Vec<PathBuf>,
-    /// Variables to draw, such as 'cyl.*,pump.b.p'; may be repeated
+    /// Variables to draw, such as 'pump.*,line.p'; may be repeated
     #[arg(long, value_name = "GLOB,...")]
     variables: Vec<String>,
     /// Where to write: .svg, .png or .html; `-` writes SVG to stdout [default: RESULT.svg]

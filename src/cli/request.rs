@@ -53,7 +53,7 @@ pub(super) struct RunArgs {
     /// Relative tolerance; the absolute one is this times a variable's nominal value
     #[arg(long, value_name = "NUMBER", value_parser = tolerance)]
     relative_tolerance: Option<f64>,
-    /// Variables to write, such as 'cyl.*,v[1].p'; brackets are literal; may be repeated
+    /// Variables to write, such as 'pump.*,v[1].p'; brackets are literal; may be repeated
     #[arg(long, value_name = "GLOB,...")]
     variables: Vec<String>,
     /// The result: .csv, Modelica .mat, .parquet, or `-` for CSV on stdout [default: CLASS.csv]

@@ -8,7 +8,6 @@ use super::messages::Messages;
 use super::recorder::{Target, write_text};
 use super::request::ModelArgs;
 use super::{Ending, Failure, columns, files, interrupt, model, plot};
-use crate::analysis::lift::is_root;
 use crate::analysis::sensitivity::{Moved, Sensitivity, sensitivity};
 use crate::compile::Model;
 use crate::diag::{Code, Diagnostic};
@@ -23,12 +22,12 @@ use crate::solve::Settings;
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Each number belongs to a relative change: the variable's change over the parameter's, times the parameter's own size. The
-ranking on stdout tells by how many per cent of its range a variable moves (root mean square) when a parameter moves by
+ranking on stdout shows by how many per cent of its range a variable moves (root mean square) when a parameter moves by
 1 %. Exact derivatives in one run, across events too; where they do not hold central differences of runs, which is then said.
 
 Examples:
-  bramah sensitivity Press.mo --variables cyl.v,pump.b.p
-  bramah sensitivity Press.mo --parameters 'pump.*' --variables cyl.x --plot cyl.svg -o cyl.csv
+  bramah sensitivity Press.mo --variables line.p,pump.Q_A
+  bramah sensitivity Press.mo --parameters 'pump.*' --variables line.p --plot line.svg -o line.csv
 
 Exit status: 0 fine; 1 the model is wrong or a run failed; 2 bad arguments or files.")]
 pub(super) struct SensitivityArgs {
@@ -37,7 +36,7 @@ pub(super) struct SensitivityArgs {
     /// Parameters, such as 'pump.*' [default: all that no other parameter decides]; may be repeated
     #[arg(short, long, value_name = "GLOB,...")]
     parameters: Vec<String>,
-    /// Variables, such as 'cyl.*' [default: top-level outputs, else states]; may be repeated
+    /// Variables, such as 'pump.*' [default: top-level outputs, else states]; may be repeated
     #[arg(long, value_name = "GLOB,...")]
     variables: Vec<String>,
     /// Seconds, or a time with a unit
@@ -107,7 +106,7 @@ fn parameters(args: &SensitivityArgs, model: &Model) -> Result<Vec<Moved>, Failu
     let fits = |v: VarId| {
         let variable = &flat.variables[v.index()];
         let real = variable.variability == Variability::Parameter && variable.ty == Type::Real;
-        let named = if globs.is_empty() { !variable.hidden && is_root(flat, v) } else { globs.matches(&variable.name) };
+        let named = if globs.is_empty() { !variable.hidden && flat.is_root(v) } else { globs.matches(&variable.name) };
         real && named
     };
     let all = (0..u32::try_from(flat.variables.len()).expect("fewer than 2^32 variables")).map(VarId);

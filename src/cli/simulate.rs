@@ -29,7 +29,7 @@ use crate::structure::StateChoice;
 #[command(after_help = "\
 Examples:
   bramah simulate Press.mo --stop-time 2 -o press.csv
-  bramah simulate Press.mo --set relief.p_set='180 bar' --set N=20 --variables 'cyl.*,line.p'
+  bramah simulate Press.mo --set relief.p_set='180 bar' --set pump.V='12 ml' --variables 'pump.*,line.p'
   bramah simulate press.toml --stop-time 5          an experiment file; flags go before what stands in it
   bramah simulate ServoPump.DeadZone --plot dead.png          a model that ships with bramah
   bramah simulate Line.mo --stop-time 1000 --checkpoint line.checkpoint       may be killed and repeated

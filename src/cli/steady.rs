@@ -28,10 +28,10 @@ way to points that cannot be reached from the start at once. Power balances coun
 through its ports: positive is lost (or stored), negative comes from a source.
 
 Examples:
-  bramah steady Press.mo --variables 'pump.*,relief.q'
+  bramah steady Press.mo --from 1 --variables 'pump.*,relief.q'
   bramah steady ClosedCircuit.Reduced --over u=0:8:17 -o points.csv
-  bramah steady Press.mo --balance --sankey power.svg
-  bramah steady Press.mo --transient --balance         mean powers over the whole run instead
+  bramah steady Press.mo --from 1 --balance --sankey power.svg
+  bramah steady Press.mo --transient --balance         mean powers over the entire run instead
 
 Exit status: 0 fine; 1 the model is wrong or has no steady state there (points found are written); 2 bad arguments or
 files.")]
@@ -44,19 +44,19 @@ pub(super) struct SteadyArgs {
     /// Follow the point over values of an input or parameter, in its unit or with one: `u=0:8:17`
     #[arg(long, value_name = "NAME=VALUES", conflicts_with = "transient")]
     over: Option<String>,
-    /// Variables to tell, such as 'cyl.*' [default: states and top-level outputs]; may be repeated
+    /// Variables to show, such as 'pump.*' [default: states and top-level outputs]; may be repeated
     #[arg(long, value_name = "GLOB,...")]
     variables: Vec<String>,
     /// Where to write the points as CSV, `-` for stdout [default: a table on stdout]
     #[arg(short, long, value_name = "CSV")]
     output_file: Option<PathBuf>,
-    /// Tell the power into each component
+    /// Show the power into each component
     #[arg(long)]
     balance: bool,
     /// A picture of the power from component to component: .svg or .png
     #[arg(long, value_name = "FILE")]
     sankey: Option<PathBuf>,
-    /// Power over the whole run instead of at a steady state
+    /// Power over the entire run instead of at a steady state
     #[arg(long)]
     transient: bool,
 }

@@ -3,11 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use super::messages::Messages;
-use super::{DiskWorld, Failure};
+use super::Failure;
 use crate::Model;
 use crate::diag::{Checked, Diagnostic, Sources};
 use crate::lower::Options;
 use crate::study::{Bound, Recording, Role, Study};
+use crate::world::DiskWorld;
 
 /// A study tied to its model.
 pub(super) struct Opened {

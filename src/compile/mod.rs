@@ -289,12 +289,23 @@ fn listed(intro: &str, names: &[String]) -> String {
     format!("{intro} {}{more}", shown.join(", "))
 }
 
-/// Names of the models of a request's source that can run: those with an `experiment` annotation, or all where none has
+/// A model that can run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Runnable {
+    /// Its full name.
+    pub class: String,
+    /// Its description, or empty.
+    pub description: String,
+    /// It has an `experiment` annotation.
+    pub experiment: bool,
+}
+
+/// The models of a request's source that can run: those with an `experiment` annotation, or all where none has
 /// one; of the request's class alone and what stands in it, where one is named.
 ///
 /// # Errors
 /// The source cannot be read, or there is no such class.
-pub fn runnable(world: &dyn World, request: &Request) -> Result<Vec<String>, Vec<Diagnostic>> {
+pub fn runnable(world: &dyn World, request: &Request) -> Result<Vec<Runnable>, Vec<Diagnostic>> {
     let trees = Trees::new();
     let shipped = Shipped;
     let mut library = Library::new(&trees, roots(world, &shipped, request));
@@ -307,7 +318,12 @@ pub fn runnable(world: &dyn World, request: &Request) -> Result<Vec<String>, Vec
     given.iter().for_each(|&id| collect_runnable(&mut library, id, &mut all));
     let with_experiment: Vec<ClassId> = all.iter().copied().filter(|&id| has_experiment(library.class(id))).collect();
     let chosen = if with_experiment.is_empty() { all } else { with_experiment };
-    Ok(chosen.into_iter().map(|id| library.full_name(id)).collect())
+    let described = |id| Runnable {
+        class: library.full_name(id),
+        description: library.class(id).description.as_deref().unwrap_or("").to_owned(),
+        experiment: has_experiment(library.class(id)),
+    };
+    Ok(chosen.into_iter().map(described).collect())
 }
 
 /// Without a name: the one class with an `experiment`, or the one model there is.

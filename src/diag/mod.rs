@@ -4,10 +4,12 @@
 //! Rendering (human, short, JSON) lives in [`render`]; the list of codes in [`codes`].
 
 pub mod codes;
+mod error;
 mod nearest;
 pub mod render;
 
 pub use codes::{Code, Severity};
+pub use error::Error;
 pub use nearest::nearest;
 
 /// Index of a text in [`Sources`].

@@ -43,7 +43,7 @@ pub fn of_models(
     let request = Request { source: path.to_path_buf(), libraries: texts.libraries.to_vec(), ..Request::default() };
     let names = runnable(texts.world, &request).unwrap_or_default();
     let mut found: Vec<Message> = Vec::new();
-    for name in names.into_iter().take(MOST_MODELS) {
+    for name in names.into_iter().take(MOST_MODELS).map(|r| r.class) {
         if !go_on() {
             return found;
         }

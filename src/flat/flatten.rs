@@ -88,6 +88,7 @@ fn variable(instance: &mut Instance<'_, '_>, i: u32, numbers: &Numbers, flat: &m
         input,
         output,
         flow: data.flow,
+        settable: data.variability == Variability::Parameter && !data.final_ && !data.hidden,
         hidden: data.hidden,
         unwanted: data.unwanted,
         fixed: data.variability <= Variability::Parameter,

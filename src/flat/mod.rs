@@ -19,7 +19,7 @@ pub use flatten::flatten;
 pub use crate::types::{MessagePart, StateSelect, Type, Variability};
 
 use crate::diag::{Diagnostic, Span};
-use crate::expr::{ExprId, Exprs, VarId};
+use crate::expr::{ExprId, Exprs, Node, VarId};
 
 /// The flattened circuit.
 #[derive(Clone, Debug, Default)]
@@ -49,6 +49,19 @@ pub struct FlatModel {
     pub experiment: Experiment,
     /// Parameters get other values without compiling again: none that is 0 may be fixed with the structure for that.
     pub varied: bool,
+}
+
+impl FlatModel {
+    /// Whether a parameter's binding reads no other parameter: the roots of all parameter values.
+    pub fn is_root(&self, v: VarId) -> bool {
+        let variable = &self.variables[v.index()];
+        let reads = |e: ExprId| {
+            let variables = self.exprs.variables(e);
+            variables.iter().any(|w| self.variables[w.index()].variability == Variability::Parameter)
+                || matches!(self.exprs.node(e), Node::Time)
+        };
+        variable.variability == Variability::Parameter && variable.ty == Type::Real && !variable.binding.is_some_and(reads)
+    }
 }
 
 /// `annotation(experiment(...))`; `None` where nothing is said.
@@ -127,6 +140,8 @@ pub struct Variable {
     pub output: bool,
     /// Declared `flow`.
     pub flow: bool,
+    /// A parameter that may be given from outside: neither `final` nor protected.
+    pub settable: bool,
     /// `protected`, or annotated `HideResult`: left out of results but for protected states.
     pub hidden: bool,
     /// Annotated `HideResult`.
@@ -204,6 +219,7 @@ impl Variable {
             input: false,
             output: false,
             flow: false,
+            settable: false,
             hidden: false,
             unwanted: false,
             binding: None,

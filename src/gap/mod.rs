@@ -1,4 +1,4 @@
-//! The gap between model and machine: where it lies, which effect causes it, how far it shrinks.
+//! The gap between model and machine: where it lies, which effect causes it, how far it shrinks. [`diagnose`] does it all.
 //!
 //! Data goes one way. [`study`] reads the question into a [`problem`]: [`effects`] reads the effect models, [`circuit`] the
 //! places of the nominal model, [`hypotheses`] puts every effect at every place where it fits, [`shapes`] fits their grids
@@ -12,6 +12,7 @@ pub mod augment;
 mod capacity;
 pub mod circuit;
 pub mod data;
+mod diagnose;
 pub mod effects;
 pub mod estimate;
 pub mod figures;
@@ -29,3 +30,7 @@ pub mod study;
 pub mod verdict;
 pub mod whiteness;
 pub mod words;
+
+pub use diagnose::{Diagnosis, diagnose};
+pub use select::search::Stage;
+pub use verdict::Verdict;

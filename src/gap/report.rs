@@ -3,7 +3,7 @@
 //! The page needs no network and no other file; the curves can be zoomed like those of `bramah plot`.
 
 use super::data::Recording;
-use super::estimate::candidate::Errors;
+use super::estimate::candidate::{Candidate, Errors};
 use super::hypotheses::Signal;
 use super::problem::Problem;
 use super::select::search::Found;
@@ -263,6 +263,23 @@ fn spectrum(problem: &Problem<'_>, (stage, left): &Left) -> Panel {
     }
 }
 
+/// The nominal model against every recording used, without a diagnosis.
+///
+/// # Errors
+/// The recording that the model cannot follow, and when its simulation stops, s.
+pub fn compared(problem: &Problem<'_>, nominal: &Candidate) -> Result<Figure, (String, f64)> {
+    let x = nominal.present();
+    let mut panels = Vec::new();
+    for (i, (file, recording)) in problem.files.iter().zip(&problem.train).enumerate() {
+        if let Some(time) = nominal.stops(&x, recording) {
+            return Err((file.clone(), time));
+        }
+        let simulated = [("simulated", 1, nominal.errors(&x, recording, Some(i)))];
+        panels.extend(beside(problem, recording, &simulated, file));
+    }
+    Ok(Figure { title: format!("{} and its recordings", problem.circuit.class), panels, shared_x: false })
+}
+
 /// A recording, signal by signal, against the nominal model and the corrected one. `number`: among the recordings used.
 fn curves(
     problem: &Problem<'_>,
@@ -274,16 +291,26 @@ fn curves(
     let (base, last) = (&found.base.fit, &found.last.fit);
     let of_nominal = base.candidate.errors(&at_nominal(problem, &base.candidate, &base.x), recording, number);
     let of_last = last.candidate.errors(&last.x, recording, number);
+    beside(problem, recording, &[("nominal", 1, of_nominal), ("corrected", 0, of_last)], what)
+}
+
+/// A recording, signal by signal, with what models make of it: name, colour, what each leaves.
+fn beside(
+    problem: &Problem<'_>,
+    recording: &Recording,
+    models: &[(&str, usize, Option<Errors>)],
+    what: &str,
+) -> Vec<Panel> {
     let behind = |errors: &Errors| recording.len() - errors.first().map_or(0, Vec::len);
     let panel = |(i, signal): (usize, &Signal)| {
         let measured = &recording.signals[i];
         let unit = problem.circuit.units.get(&signal.variable).map_or("", String::as_str);
         let mut series = vec![curve("measured", &recording.times, measured, 6)];
-        for ((name, colour), errors) in [("nominal", 1), ("corrected", 0)].into_iter().zip([&of_nominal, &of_last]) {
+        for (name, colour, errors) in models {
             let Some(errors) = errors else { continue };
             let from = behind(errors);
             let simulated: Vec<f64> = measured[from..].iter().zip(&errors[i]).map(|(y, e)| y - e).collect();
-            series.push(curve(name, &recording.times[from..], &simulated, colour));
+            series.push(curve(name, &recording.times[from..], &simulated, *colour));
         }
         Panel {
             x_label: format!("time in s, {what}"),

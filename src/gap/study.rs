@@ -8,7 +8,7 @@ use super::hypotheses::{self, Free, Hypothesis, Signal};
 use super::mistakes::mistakes;
 use super::problem::{Problem, Shown, Tolerance};
 use super::shapes;
-use crate::analysis::{lift::is_root, noise};
+use crate::analysis::noise;
 use crate::diag::{Code, Diagnostic, Sources};
 use crate::expr::VarId;
 use crate::flat::{FlatModel, Variability};
@@ -358,7 +358,7 @@ fn tolerances(flat: &FlatModel, bound: &Bound, value: &impl Fn(VarId) -> f64) ->
     let mut all = Vec::new();
     for (v, variable) in (0..).map(VarId).zip(&flat.variables) {
         let physical = variable.unit.as_deref().is_some_and(|u| !u.is_empty() && u != "1");
-        if variable.hidden || !physical || variable.variability != Variability::Parameter || !is_root(flat, v) {
+        if variable.hidden || !physical || variable.variability != Variability::Parameter || !flat.is_root(v) {
             continue;
         }
         let nominal = value(v);

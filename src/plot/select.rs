@@ -162,7 +162,7 @@ fn last_name(name: &str) -> &str {
 }
 
 /// The unit for people, where the values can be converted to it.
-fn shown_unit(signal: &Signal) -> &str {
+pub fn shown_unit(signal: &Signal) -> &str {
     if conversion(signal).is_some() { &signal.display_unit } else { &signal.unit }
 }
 

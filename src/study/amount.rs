@@ -1,6 +1,8 @@
 //! Amounts as data sheets state them: `3 %`, `0.5 bar`, or a plain number.
 
+use crate::results::number;
 use crate::units::{Unit, quantity};
+use std::fmt;
 
 /// An amount of a quantity whose unit is known elsewhere.
 #[derive(Clone, Debug, PartialEq)]
@@ -9,6 +11,16 @@ pub enum Amount {
     Part(f64),
     /// A value, in a unit of its own or in that of the quantity.
     Value(f64, Option<String>),
+}
+
+impl fmt::Display for Amount {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Amount::Part(part) => write!(f, "{} %", number::rounded(100.0 * part, 12)),
+            Amount::Value(value, Some(unit)) => write!(f, "{} {unit}", number::text(*value)),
+            Amount::Value(value, None) => f.write_str(&number::text(*value)),
+        }
+    }
 }
 
 impl Amount {

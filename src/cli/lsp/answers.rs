@@ -338,7 +338,7 @@ impl Answers {
         let model = match p.model {
             Some(model) => Some(model),
             None if is_shipped(&path) => None,
-            None => runnable(&self.open, &request).ok().and_then(|names| names.into_iter().next()),
+            None => runnable(&self.open, &request).ok().and_then(|all| all.into_iter().next()).map(|r| r.class),
         };
         let outcome = graph(&self.open, &Wanted { model, ..request });
         let first = outcome.diagnostics.iter().find(|d| d.is_error()).map(|d| d.message.clone());

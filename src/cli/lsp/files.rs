@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use lsp_types::Uri;
 
-use super::super::DiskWorld;
+use crate::world::DiskWorld;
 use crate::editor::is_shipped;
 use crate::shipped::Shipped;
 use crate::world::World;

@@ -14,8 +14,10 @@ use super::rivals::fitted;
 use super::screen::{Ground, Screened, screened};
 use super::weighed::{Weighed, ahead, left_by, settled, weighed};
 use crate::diag::Diagnostic;
+use std::fmt;
+use std::ops::ControlFlow;
 
-/// A stage of the search, for progress bars.
+/// A stage of the diagnosis, for progress bars.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
     /// The model within its tolerances.
@@ -30,6 +32,18 @@ pub enum Stage {
     Figures,
 }
 
+impl fmt::Display for Stage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Stage::Tolerances => f.write_str("parameters within their tolerances"),
+            Stage::Screen(n) => write!(f, "all hypotheses for effect {n}"),
+            Stage::Fit(n) => write!(f, "the best of them for effect {n}"),
+            Stage::Shapes => f.write_str("shapes of what is left"),
+            Stage::Figures => f.write_str("figures"),
+        }
+    }
+}
+
 /// Why there is no verdict.
 #[derive(Clone, Debug)]
 pub enum Trouble {
@@ -37,6 +51,24 @@ pub enum Trouble {
     Model(Vec<Diagnostic>),
     /// It does not reach the end of a recording: the file, and when it stops, s.
     Stops(String, f64),
+    /// Whoever watches did not want to go on.
+    Stopped,
+}
+
+/// Hears of each stage as it begins, and may end the search there.
+pub type Progress<'a> = &'a mut dyn FnMut(Stage) -> ControlFlow<()>;
+
+/// Passes stages on; once it was asked to stop, no stage begins.
+struct Watch<'a> {
+    progress: Progress<'a>,
+    stopped: bool,
+}
+
+impl Watch<'_> {
+    fn begin(&mut self, stage: Stage) -> Option<()> {
+        self.stopped = self.stopped || (self.progress)(stage).is_break();
+        (!self.stopped).then_some(())
+    }
 }
 
 /// What a search came to.
@@ -76,14 +108,15 @@ struct Search<'a> {
 ///
 /// # Errors
 /// [`Trouble`].
-pub fn search(problem: &Problem<'_>, held: &[Recording], progress: &mut dyn FnMut(Stage)) -> Result<Found, Trouble> {
-    let (mut search, base) = begun(problem, held, progress)?;
+pub fn search(problem: &Problem<'_>, held: &[Recording], progress: Progress<'_>) -> Result<Found, Trouble> {
+    let mut watch = Watch { progress, stopped: false };
+    let (mut search, base) = begun(problem, held, &mut watch)?;
     let (mut last, mut taken) = (base.clone(), Vec::new());
     let mut shape = None;
     for step in 1..=EFFECTS + 1 {
-        let found = if step <= EFFECTS { search.step(step, &last, progress) } else { None };
+        let found = if step <= EFFECTS { search.step(step, &last, &mut watch) } else { None };
         let found = found.or_else(|| {
-            progress(Stage::Shapes);
+            watch.begin(Stage::Shapes)?;
             search.shape(step, &last)
         });
         let Some((chosen, effect)) = found else { break };
@@ -100,10 +133,13 @@ pub fn search(problem: &Problem<'_>, held: &[Recording], progress: &mut dyn FnMu
     }
     if let [only] = taken.as_slice()
         && !search.h(only.hypothesis).is_recording_error()
-        && let Some(instead) = search.shape_instead(&base, &last)
+        && let Some(instead) = search.shape_instead(&base, &last, &mut watch)
     {
         (shape, last) = (Some(instead), base.clone());
         taken.clear();
+    }
+    if watch.stopped {
+        return Err(Trouble::Stopped);
     }
     let visible = search.visible.unwrap_or(0.0);
     Ok(Found { base, last, taken, shape, visible, asked: None, trials: search.trials })
@@ -118,10 +154,11 @@ pub fn explained(
     problem: &Problem<'_>,
     held: &[Recording],
     hypothesis: usize,
-    progress: &mut dyn FnMut(Stage),
+    progress: Progress<'_>,
 ) -> Result<Option<Found>, Trouble> {
-    let (search, base) = begun(problem, held, progress)?;
-    progress(Stage::Fit(1));
+    let mut watch = Watch { progress, stopped: false };
+    let (search, base) = begun(problem, held, &mut watch)?;
+    watch.begin(Stage::Fit(1)).ok_or(Trouble::Stopped)?;
     let sensors = &search.chooser.criteria.sensors;
     let ground = Ground { problem, sensors, before: &base.fit, may_be_worth: &|_, _| true };
     let rivals = fitted(problem, sensors, &base.fit, screened(&ground, &[hypothesis]).best);
@@ -140,9 +177,9 @@ pub fn explained(
 fn begun<'a>(
     problem: &'a Problem<'a>,
     held: &'a [Recording],
-    progress: &mut dyn FnMut(Stage),
+    watch: &mut Watch<'_>,
 ) -> Result<(Search<'a>, Weighed), Trouble> {
-    progress(Stage::Tolerances);
+    watch.begin(Stage::Tolerances).ok_or(Trouble::Stopped)?;
     let sensors = models::sensors(problem);
     let nominal = models::nominal(problem).map_err(Trouble::Model)?;
     let x = nominal.present();
@@ -185,9 +222,9 @@ impl Search<'_> {
     }
 
     /// Looks for one more effect.
-    fn step(&mut self, step: usize, before: &Weighed, progress: &mut dyn FnMut(Stage)) -> Option<(Weighed, Taken)> {
+    fn step(&mut self, step: usize, before: &Weighed, watch: &mut Watch<'_>) -> Option<(Weighed, Taken)> {
         let open = self.open(&before.fit);
-        self.beside(step, before, &open, progress)
+        self.beside(step, before, &open, watch)
     }
 
     /// The best of some hypotheses beside a model.
@@ -196,11 +233,11 @@ impl Search<'_> {
         step: usize,
         before: &Weighed,
         open: &[usize],
-        progress: &mut dyn FnMut(Stage),
+        watch: &mut Watch<'_>,
     ) -> Option<(Weighed, Taken)> {
-        progress(Stage::Screen(step));
+        watch.begin(Stage::Screen(step))?;
         let screened = self.screened(step, before, open);
-        progress(Stage::Fit(step));
+        watch.begin(Stage::Fit(step))?;
         let rivals = self.fitted(&before.fit, screened);
         self.choose(step, before, rivals)
     }
@@ -232,12 +269,12 @@ impl Search<'_> {
 
     /// A shape in the place of the only effect, where one may say something beside it, if it surely leaves less: then the
     /// effect is named for want of a better one.
-    fn shape_instead(&mut self, base: &Weighed, last: &Weighed) -> Option<Taken> {
+    fn shape_instead(&mut self, base: &Weighed, last: &Weighed, watch: &mut Watch<'_>) -> Option<Taken> {
         if !self.shape_says_more {
             return None;
         }
         self.undecided.clear();
-        let (model, shape) = self.beside(2, base, &self.shapes(), &mut |_| ())?;
+        let (model, shape) = self.beside(2, base, &self.shapes(), watch)?;
         self.chooser.criteria.worse(&model, last).then_some(shape)
     }
 

@@ -1,8 +1,11 @@
-//! The disk as a [`World`].
+//! The disk as a [`World`]: the one place below the command that reads files.
 
+#![allow(clippy::disallowed_methods, reason = "what a World is for")]
+
+use std::io;
 use std::path::Path;
 
-use crate::world::World;
+use super::World;
 
 /// Reads files and folders of this machine.
 #[derive(Clone, Copy, Debug, Default)]
@@ -10,7 +13,7 @@ pub struct DiskWorld;
 
 impl World for DiskWorld {
     fn read(&self, path: &Path) -> Result<String, String> {
-        let bytes = std::fs::read(path).map_err(|e| super::files::reason(&e))?;
+        let bytes = std::fs::read(path).map_err(|e| reason(&e))?;
         String::from_utf8(bytes).map_err(|e| {
             let valid = e.utf8_error().valid_up_to();
             let line = 1 + e.as_bytes()[..valid].iter().filter(|b| **b == b'\n').count();
@@ -26,5 +29,17 @@ impl World for DiskWorld {
             .collect();
         entries.sort();
         Some(entries)
+    }
+}
+
+/// Why a file operation failed, as people say it.
+pub(crate) fn reason(error: &io::Error) -> String {
+    match error.kind() {
+        io::ErrorKind::NotFound => "there is no such file".to_owned(),
+        io::ErrorKind::PermissionDenied => "access is not permitted".to_owned(),
+        io::ErrorKind::IsADirectory => "it is a folder".to_owned(),
+        io::ErrorKind::StorageFull => "the disk is full".to_owned(),
+        io::ErrorKind::ReadOnlyFilesystem => "the disk can only be read".to_owned(),
+        _ => error.to_string(),
     }
 }

@@ -1,9 +1,15 @@
 //! The only door to files: stages below `cli` see the outside through a [`World`].
 
+mod disk;
+
+pub use disk::DiskWorld;
+#[cfg(feature = "cli")]
+pub(crate) use disk::reason;
+
 use std::path::{Path, PathBuf};
 
-/// Where texts come from. The command reads the disk; tests and the library use [`MemoryWorld`]; classes that ship
-/// with bramah are packed into the binary and need no world.
+/// Where texts come from: [`DiskWorld`] reads the disk, [`MemoryWorld`] holds texts. Classes that ship with bramah are
+/// packed into the binary and need no world.
 pub trait World: Sync {
     /// The text of a file.
     ///

@@ -1,0 +1,223 @@
+//! Circuits: what they offer, and runs of them.
+
+use serde::{Deserialize, Serialize};
+
+use super::super::inputs::all_driven;
+use super::folder::Folder;
+use super::http::{Answer, Ask, Refusal, said};
+use super::jobs::{Job, Jobs, Made};
+use crate::circuit::Parameter;
+use crate::diag::{Code, Diagnostic, nearest};
+use crate::experiment::seconds;
+use crate::instance::Override;
+use crate::plot::select::{Choice, Run, UnitSystem, figure, shown_unit, shown_values};
+use crate::plot::{html, network};
+use crate::results::{Globs, Kind, Signal, number};
+use crate::solve::{Control, Progress};
+use crate::world::DiskWorld;
+use crate::{Request, Simulation, graph, runnable};
+
+/// Digits of values that the page shows: as many as the reader of a data sheet needs, and the text is what is sent back.
+const DIGITS: usize = 9;
+
+#[derive(Serialize)]
+struct Circuit {
+    source: String,
+    class: String,
+    description: String,
+    picture: String,
+    messages: String,
+    start: f64,
+    stop: f64,
+    parameters: Vec<Offered>,
+    variables: Vec<Named>,
+    inputs: Vec<Named>,
+}
+
+#[derive(Serialize)]
+struct Named {
+    name: String,
+    unit: String,
+    shown_unit: String,
+    description: String,
+}
+
+#[derive(Serialize)]
+struct Offered {
+    #[serde(flatten)]
+    named: Named,
+    kind: &'static str,
+    literals: Vec<String>,
+    value: String,
+    shown: String,
+    min: String,
+    max: String,
+    structural: bool,
+    /// No other parameter decides it: a study without parameters takes it to be uncertain.
+    root: bool,
+}
+
+/// What a circuit offers; its network also where it is wrong.
+pub(super) fn open(folder: &Folder, ask: &Ask) -> Result<Answer, Refusal> {
+    let request = folder.request(ask.value("source"), ask.value("class"))?;
+    let (picture, class) = drawn(&request);
+    let simulation = match Simulation::compile(&DiskWorld, &request) {
+        Ok(simulation) => simulation,
+        Err(error) => {
+            let messages = said(&error.diagnostics, &error.sources);
+            let wrong = serde_json::json!({ "messages": messages, "picture": picture });
+            return Ok(Answer::json(&wrong).with_status(422));
+        }
+    };
+    let settings = simulation.clone().settings().clone();
+    Ok(Answer::json(&Circuit {
+        source: ask.value("source").to_owned(),
+        class: class.clone(),
+        description: described(&request, &class),
+        picture,
+        messages: said(&simulation.diagnostics, simulation.sources()),
+        start: settings.start_time,
+        stop: settings.stop_time,
+        parameters: simulation.parameters().iter().map(offered).collect(),
+        variables: simulation.variables().iter().map(named).collect(),
+        inputs: simulation.inputs().iter().map(named).collect(),
+    }))
+}
+
+fn drawn(request: &Request) -> (String, String) {
+    match graph(&DiskWorld, request).value {
+        Some((class, graph)) => (network::write(&graph, &class), class),
+        None => (String::new(), request.model.clone().unwrap_or_default()),
+    }
+}
+
+fn described(request: &Request, class: &str) -> String {
+    let all = runnable(&DiskWorld, request).unwrap_or_default();
+    all.into_iter().find(|r| r.class == class).map(|r| r.description).unwrap_or_default()
+}
+
+fn named(signal: &Signal) -> Named {
+    Named {
+        name: signal.name.clone(),
+        unit: signal.unit.clone(),
+        shown_unit: shown_unit(signal).to_owned(),
+        description: signal.description.clone(),
+    }
+}
+
+fn offered(parameter: &Parameter) -> Offered {
+    let signal = &parameter.signal;
+    let shown = |value: f64| match &signal.kind {
+        Kind::Boolean => (value != 0.0).to_string(),
+        Kind::Enumeration(literals) => literals.get(value as usize - 1).cloned().unwrap_or_default(),
+        Kind::Real | Kind::Integer => number::rounded(shown_values(signal, &[value])[0], DIGITS),
+    };
+    let limit = |limit: Option<f64>| limit.filter(|l| l.is_finite()).map_or_else(String::new, shown);
+    let (kind, literals) = match &signal.kind {
+        Kind::Real => ("real", Vec::new()),
+        Kind::Integer => ("integer", Vec::new()),
+        Kind::Boolean => ("boolean", Vec::new()),
+        Kind::Enumeration(literals) => ("enumeration", literals.clone()),
+    };
+    Offered {
+        named: named(signal),
+        kind,
+        literals,
+        value: number::text(parameter.value),
+        shown: shown(parameter.value),
+        min: limit(parameter.min),
+        max: limit(parameter.max),
+        structural: parameter.structural,
+        root: parameter.root,
+    }
+}
+
+#[derive(Deserialize)]
+struct Wanted {
+    #[serde(default)]
+    source: String,
+    class: String,
+    #[serde(default)]
+    set: std::collections::BTreeMap<String, String>,
+    #[serde(default)]
+    stop: String,
+    #[serde(default)]
+    variables: Vec<String>,
+    #[serde(default)]
+    units: String,
+}
+
+/// Runs a circuit with values of its parameters.
+pub(super) fn run(folder: &Folder, ask: &Ask, jobs: &Jobs) -> Result<Answer, Refusal> {
+    let wanted: Wanted = ask.json()?;
+    let stop = match wanted.stop.trim() {
+        "" => None,
+        text => Some(seconds(text).map_err(|why| Refusal::new(422, why))?),
+    };
+    let given = |(name, value): (&String, &String)| Override { name: name.clone(), value: value.clone() };
+    let overrides = wanted.set.iter().map(given).collect();
+    let request = Request { overrides, ..folder.request(&wanted.source, &wanted.class)? };
+    jobs.start(move |job| simulated(&request, &wanted, stop, job))
+}
+
+fn simulated(request: &Request, wanted: &Wanted, stop: Option<f64>, job: &Job) -> Result<Made, String> {
+    job.at("compiling", None);
+    let compiled = Simulation::compile(&DiskWorld, request);
+    let mut simulation = compiled.map_err(|error| said(&error.diagnostics, &error.sources))?;
+    if let Some(stop) = stop {
+        simulation.stop_time(stop);
+    }
+    let patterns = Globs::new(&wanted.variables);
+    all_driven(&simulation.model().dae, &[]).map_err(|f| said(&f.diagnostics, simulation.sources()))?;
+    record(&mut simulation, &patterns)?;
+    let settings = simulation.settings().clone();
+    let length = settings.stop_time - settings.start_time;
+    let mut progress = |now: &Progress| {
+        job.at("simulating", Some((now.time - settings.start_time) / length));
+        true
+    };
+    let mut control = Control { interrupt: Some(job.stop()), progress: Some(&mut progress), ..Control::default() };
+    let mut outcome = simulation.run_kept(None, &mut control).map_err(|error| error.to_string())?;
+    job.at("drawing", None);
+    let messages = said(&outcome.diagnostics, simulation.sources());
+    let trajectory = &mut outcome.trajectory;
+    let units = if wanted.units == "engineering" { UnitSystem::Engineering } else { UnitSystem::AsGiven };
+    units.apply(trajectory);
+    let label = simulation.model().flat.class.clone();
+    let choice = Choice { variables: patterns, title: label.clone(), ..Choice::default() };
+    let drawn = figure(&[Run { label: &label, trajectory }], &choice);
+    let drawn = drawn.map_err(|why| format!("{messages}\nnothing to draw: {why}").trim().to_owned())?;
+    let left = match drawn.left_out {
+        0 => String::new(),
+        n => format!("{n} more variables are not drawn: name those to draw"),
+    };
+    let s = &outcome.statistics;
+    let work = format!(
+        "until {} s: {} steps, {} events, {} s",
+        number::text(outcome.state.time),
+        s.steps,
+        s.events,
+        number::rounded(s.solve_s, 3)
+    );
+    let messages = [messages, left, work].into_iter().filter(|m| !m.is_empty()).collect::<Vec<_>>().join("\n\n");
+    let facts = wanted.set.iter().map(|(name, value)| (name.clone(), value.clone())).collect::<Vec<_>>();
+    Ok(Made { messages, page: html::write(&drawn.figure, &facts), files: Vec::new() })
+}
+
+/// Records what matches the patterns; without any, what the simulation records by itself.
+fn record(simulation: &mut Simulation, patterns: &Globs) -> Result<(), String> {
+    if patterns.is_empty() {
+        return Ok(());
+    }
+    let all: Vec<String> = simulation.variables().into_iter().map(|s| s.name).collect();
+    if let Some(pattern) = patterns.unused(all.iter().map(String::as_str)).first() {
+        let d = Diagnostic::new(Code::BadArgument, format!("`{pattern}` matches no variable"));
+        let d = match nearest(pattern, all.iter().map(String::as_str)) {
+            Some(near) => d.help(format!("did you mean `{near}`?")),
+            None => d.help("`*` stands for any text: `cyl.*`"),
+        };
+        return Err(said(&[d], simulation.sources()));
+    }
+    let chosen: Vec<&str> = all.iter().map(String::as_str).filter(|n| patterns.matches(n)).collect();
+    simulation.record(&chosen).map(drop).map_err(|error| error.to_string())
+}

@@ -1,0 +1,134 @@
+//! `bramah serve`: circuits and studies of a folder in a browser.
+//!
+//! `guard` decides who may ask for what, `jobs` holds what takes time, `circuits` and `studies` answer. The page
+//! (`page.html`, `page.css`, `page.js`) talks to them in JSON; nothing is kept in the server but uploaded recordings.
+
+mod circuits;
+mod folder;
+mod guard;
+mod http;
+mod jobs;
+mod studies;
+
+use std::net::{Ipv4Addr, SocketAddr};
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+use std::sync::Arc;
+
+use clap::Args;
+use tiny_http::Server;
+
+use super::{Ending, Failure, files};
+use crate::diag::{Code, Diagnostic};
+use folder::Folder;
+use http::{Answer, Ask, Refusal};
+use jobs::Jobs;
+use studies::Uploads;
+
+/// The port where it is free and none is asked for.
+const PORT: u16 = 8737;
+/// Requests that are answered at the same time; what takes long is a job with a thread of its own.
+const THREADS: usize = 4;
+/// Deeply nested models recurse.
+const STACK: usize = 1 << 28;
+
+/// Open circuits and studies in a browser: networks, sliders, plots, diagnosis
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  bramah serve press/                  the circuits, studies and recordings of a folder
+  bramah serve press/ --open           and show them in the browser
+  bramah serve --port 9000
+
+The page is for this machine only: the server listens at 127.0.0.1, answers no other site, reads and writes nothing
+outside the folder, and needs no network. Ctrl-C ends it.")]
+pub(super) struct ServeArgs {
+    /// The folder with circuits (.mo), studies (.toml) and recordings (.csv)
+    #[arg(value_name = "FOLDER", default_value = ".")]
+    folder: PathBuf,
+    /// The port [default: 8737, or another where that is taken]
+    #[arg(long, value_name = "PORT")]
+    port: Option<u16>,
+    /// Show the page in the browser
+    #[arg(long)]
+    open: bool,
+}
+
+/// What all requests share.
+struct Shared {
+    folder: Folder,
+    port: u16,
+    jobs: Jobs,
+    uploads: Uploads,
+}
+
+pub(super) fn run(args: &ServeArgs) -> Result<Ending, Failure> {
+    let folder = Folder::new(&args.folder)?;
+    let server = listen(args.port)?;
+    let port = server.server_addr().to_ip().map_or(0, |a| a.port());
+    let address = format!("http://127.0.0.1:{port}/");
+    files::print(&format!("{address}  (the page of {}; Ctrl-C ends it)\n", folder.root().display()))?;
+    if args.open {
+        open(&address);
+    }
+    let shared = Arc::new(Shared { folder, port, jobs: Jobs::default(), uploads: Uploads::default() });
+    let server = Arc::new(server);
+    let workers: Vec<_> = (0..THREADS).filter_map(|_| worker(&server, &shared)).collect();
+    if workers.is_empty() {
+        return Err(Failure::new(Code::FileAccess, "no thread can be started"));
+    }
+    workers.into_iter().for_each(|w| drop(w.join()));
+    Ok(Ending::Fine)
+}
+
+fn worker(server: &Arc<Server>, shared: &Arc<Shared>) -> Option<std::thread::JoinHandle<()>> {
+    let (server, shared) = (server.clone(), shared.clone());
+    let serve = move || {
+        while let Ok(request) = server.recv() {
+            http::answer(request, |ask| answer(&shared, ask), shared.port);
+        }
+    };
+    std::thread::Builder::new().stack_size(STACK).spawn(serve).ok()
+}
+
+fn listen(port: Option<u16>) -> Result<Server, Failure> {
+    let at = |port| Server::http(SocketAddr::from((Ipv4Addr::LOCALHOST, port)));
+    let tried = match port {
+        Some(port) => at(port),
+        None => at(PORT).or_else(|_| at(0)),
+    };
+    tried.map_err(|why| {
+        let port = port.unwrap_or(PORT);
+        let d = Diagnostic::new(Code::FileAccess, format!("the port {port} cannot be used: {why}"));
+        d.help("leave out `--port`, and a free one is taken").into()
+    })
+}
+
+/// Shows an address in the browser; where there is none, the user has the address.
+fn open(address: &str) {
+    let program = if cfg!(target_os = "macos") { "open" } else { "xdg-open" };
+    let _ = Command::new(program).arg(address).stdout(Stdio::null()).stderr(Stdio::null()).spawn();
+}
+
+fn answer(shared: &Arc<Shared>, ask: &Ask) -> Result<Answer, Refusal> {
+    let Shared { folder, jobs, uploads, .. } = &**shared;
+    match (ask.post, ask.path.as_str()) {
+        (false, "/") => Ok(Answer::page(include_str!("page.html"))),
+        (false, "/page.css") => Ok(Answer::style(include_str!("page.css"))),
+        (false, "/page.js") => Ok(Answer::script(include_str!("page.js"))),
+        (false, "/api/folder") => Ok(Answer::json(&folder.contents())),
+        (false, "/api/circuit") => circuits::open(folder, ask),
+        (true, "/api/run") => circuits::run(folder, ask, jobs),
+        (false, "/api/job") => jobs.seen(ask),
+        (false, "/api/job/page") => jobs.page(ask),
+        (true, "/api/job/stop") => jobs.stop(ask),
+        (false, "/api/study") => studies::text(folder, ask),
+        (true, "/api/study/read") => studies::read(folder, ask),
+        (true, "/api/study/compare") => studies::compare(folder, ask, uploads, jobs),
+        (true, "/api/study/diagnose") => studies::diagnose(folder, ask, uploads, jobs),
+        (true, "/api/study/save") => studies::save(folder, ask, uploads),
+        (true, "/api/recordings") => uploads.take(ask),
+        (false, "/api/recording") => uploads.columns(folder, ask),
+        _ => Err(Refusal::new(404, format!("there is nothing at `{}`", ask.path))),
+    }
+}

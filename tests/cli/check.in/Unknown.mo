@@ -1,0 +1,3 @@
+model Unknown
+  Hydraulic.NoSuch x;
+end Unknown;
