@@ -8,7 +8,7 @@
 #[path = "../tests/disk/mod.rs"]
 mod disk;
 
-use bramah::instance::Override;
+use bramah::Override;
 use bramah::{Request, Simulation};
 use disk::Disk;
 use std::path::{Path, PathBuf};
@@ -54,7 +54,7 @@ fn line(model: &Path, n: usize) -> (Simulation, f64) {
     let seconds = clock.elapsed().as_secs_f64();
     let first = simulation.model().dae.variables.iter().position(|v| v.name == "v[1].p").expect("the first volume");
     let settings = simulation.settings();
-    settings.wanted = vec![bramah::expr::VarId(u32::try_from(first).expect("few variables"))];
+    settings.wanted = vec![bramah::internals::expr::VarId(u32::try_from(first).expect("few variables"))];
     (settings.stop_time, settings.interval, settings.tolerance) = (1.0, 0.002, 1e-6);
     (simulation, seconds)
 }

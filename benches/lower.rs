@@ -2,10 +2,11 @@
 
 #![allow(missing_docs, reason = "criterion_group makes a public function")]
 
-use bramah::lower::{Options, System, lower};
-use bramah::structure::Dae;
+use bramah::Request;
+use bramah::internals::compile::sort;
+use bramah::internals::lower::{Options, System, lower};
+use bramah::internals::structure::Dae;
 use bramah::world::MemoryWorld;
-use bramah::{Request, sort};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;
 use std::sync::Arc;

@@ -3,7 +3,6 @@
 #![allow(clippy::print_stdout, reason = "an example shows what it found")]
 
 use bramah::Circuit;
-use bramah::diag::render::{Format, render};
 
 fn press() -> Circuit {
     let mut circuit = Circuit::new("Press");
@@ -23,7 +22,7 @@ fn press() -> Circuit {
 fn main() -> Result<(), bramah::Error> {
     // the outlet of the relief valve is left open: an error with its place in the text
     if let Err(error) = press().compile() {
-        println!("{}", render(&error.sources, &error.diagnostics, Format::Human, 100, false));
+        println!("{}", error.full());
     }
     let mut circuit = press();
     circuit.connect("relief.port_b", "tank.port");

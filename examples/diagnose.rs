@@ -3,10 +3,8 @@
 
 #![allow(clippy::print_stdout, reason = "an example shows what it found")]
 
-use bramah::gap::diagnose;
-use bramah::solve::Interpolation;
 use bramah::world::MemoryWorld;
-use bramah::{Request, Simulation};
+use bramah::{Interpolation, Request, Simulation, diagnose};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -80,7 +78,7 @@ fn recording(world: &MemoryWorld, mut seed: u64) -> Result<String, bramah::Error
     Ok(text)
 }
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+fn main() -> Result<(), bramah::Error> {
     let mut world = MemoryWorld::single("Slide.mo", MODEL);
     let (train, held) = (recording(&world, 11)?, recording(&world, 12)?);
     world.add("train.csv", train);

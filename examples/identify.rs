@@ -2,13 +2,8 @@
 
 #![allow(clippy::print_stdout, reason = "an example shows what it found")]
 
-use bramah::analysis::identify::{Identification, Method, Problem};
-use bramah::diag::{Checked, Diagnostic, Sources};
-use bramah::lower::Options;
-use bramah::solve::Interpolation;
-use bramah::study::{Role, Study};
 use bramah::world::MemoryWorld;
-use bramah::{Request, Simulation, compile};
+use bramah::{Interpolation, Request, Simulation, identify};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -55,28 +50,12 @@ fn recording(world: &MemoryWorld) -> Result<String, bramah::Error> {
     Ok(text)
 }
 
-fn said(diagnostics: Vec<Diagnostic>) -> String {
-    diagnostics.iter().map(|d| d.message.clone()).collect::<Vec<_>>().join("\n")
-}
-
-fn checked<T>(it: Checked<T>) -> Result<T, String> {
-    it.value.ok_or_else(|| said(it.diagnostics))
-}
-
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+fn main() -> Result<(), bramah::Error> {
     let mut world = MemoryWorld::single("Tank.mo", MODEL);
     world.add("study.toml", STUDY);
     world.add("bench.csv", recording(&world)?);
-    let mut sources = Sources::default();
-    let study = checked(Study::read(&world, Path::new("study.toml"), &mut sources))?;
-    let model = compile(&world, &study.request(), &Options::default()).value.ok_or("the model is wrong")?;
-    let bound = checked(study.bind(&model.flat))?;
-    let train = checked(bound.load(&world, None, Role::Train, &mut sources))?;
-    let problem = Problem::new(&model, &bound, &train).map_err(said)?;
-    let found = Identification::new(&problem, &train, Method::Auto).map_err(|d| d.message)?;
-    let fit = found.fit().map_err(|d| d.message)?;
-    for ((free, value), deviation) in problem.free.iter().zip(&fit.values).zip(&fit.deviations) {
-        println!("{} = {value:.4} +- {deviation:.4}", free.name);
-    }
+    let found = identify(&world, Path::new("study.toml"))?;
+    println!("{}", found.words);
+    println!("k_p = {}", found.report.parameters["k_p"]["value"]);
     Ok(())
 }

@@ -3,7 +3,7 @@
 #![allow(clippy::print_stdout, reason = "an example shows what it found")]
 
 use bramah::Simulation;
-use bramah::analysis::linear::{Choice, Chosen, linearize, poles};
+use bramah::linear::poles;
 
 const TANKS: &str = "
 model Tanks
@@ -18,12 +18,9 @@ equation
   y = h_2;
 end Tanks;";
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let mut tanks = Simulation::from_text(TANKS)?;
-    let start = tanks.stop_time(1e-3).run()?.state;
-    let model = tanks.model();
-    let chosen = Chosen::new(&model.flat, &Choice::default(), &[]).map_err(|d| d[0].message.clone())?;
-    let linear = linearize(model, &chosen, &start)?;
+fn main() -> Result<(), bramah::Error> {
+    let tanks = Simulation::from_text(TANKS)?;
+    let linear = tanks.linearize(&tanks.state_at(None)?, &[], &[])?;
     println!("A ={}B ={}C ={}D ={}", linear.a, linear.b, linear.c, linear.d);
     for pole in poles(&linear) {
         println!("pole at {:.3e} 1/s", pole.re);

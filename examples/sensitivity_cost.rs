@@ -4,13 +4,14 @@
 
 #![allow(clippy::print_stdout, clippy::disallowed_methods, reason = "an example is asked and shows what it found")]
 
-use bramah::analysis::Tangent;
-use bramah::expr::VarId;
-use bramah::lower::Options;
+use bramah::Request;
+use bramah::internals::analysis::Tangent;
+use bramah::internals::compile::{Model, compile};
+use bramah::internals::expr::VarId;
+use bramah::internals::lower::Options;
+use bramah::internals::solve::{Control, Settings, signals, simulate};
 use bramah::results::Trajectory;
-use bramah::solve::{Control, Settings, signals, simulate};
 use bramah::world::MemoryWorld;
-use bramah::{Model, Request, compile};
 use std::error::Error;
 use std::time::{Duration, Instant};
 

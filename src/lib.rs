@@ -44,9 +44,18 @@
 //! # }
 //! ```
 //!
-//! Models and libraries in files are read through a [`world::World`]: `cli::DiskWorld` for the files of this machine
-//! (`Simulation::compile(&DiskWorld, &Request { source: "Press.mo".into(), ..Request::default() })`), [`world::MemoryWorld`]
-//! for texts at hand, or your own.
+//! Models and libraries in files: `Simulation::from_file("Press.mo")`; what reads files takes a [`world::World`], of which
+//! [`world::DiskWorld`] is this machine's disk and [`world::MemoryWorld`] holds texts.
+//!
+//! | to | use |
+//! |---|---|
+//! | compile and run | [`Simulation`], from text, a file, a shipped class or a [`Circuit`] built in Rust |
+//! | run step by step with inputs from outside | [`Simulation::stepping`], [`Stepping`] |
+//! | read results | [`Trajectory`], and [`results`] for files and comparisons |
+//! | linear models, steady states, sensitivities | [`Simulation::linearize`], [`Simulation::steady`], [`Simulation::sensitivity`], [`linear`] |
+//! | parameters from recordings | [`identify`] |
+//! | where model and machine differ | [`diagnose`], with its [`verdict`] |
+//! | say what is wrong | [`Error`] and its [`Diagnostic`]s |
 //!
 //! `examples/` has a program for each use: `simulate`, `build`, `watch` (rows as they come), `cosimulate` (inputs set from
 //! outside at 1 kHz), `trajectories`, `linearize`, `identify`, `coverage` (how often its
@@ -65,67 +74,130 @@
 //!
 //! Without any, circuits are compiled and run.
 //!
-//! The stages stand here in the order in which a circuit passes through them.
+//! # What is promised
+//!
+//! What stands on this page and what it names. The stages of the compiler and solver are reachable in [`internals`], for
+//! tools that look inside; they change without notice.
 
 #![deny(missing_docs)]
 
+// The stages, in the order in which a circuit passes through them.
+#[doc(hidden)]
 pub mod diag;
+#[doc(hidden)]
 pub mod units;
 pub mod world;
 
+#[doc(hidden)]
 pub mod shipped;
 
+#[doc(hidden)]
 pub mod syntax;
 
+#[doc(hidden)]
 pub mod resolve;
 
+#[doc(hidden)]
 pub mod expr;
 #[doc(hidden)]
 pub mod external;
+#[doc(hidden)]
 pub mod types;
 
 pub mod results;
 
+#[doc(hidden)]
 pub mod instance;
 
+#[doc(hidden)]
 pub mod network;
 
+#[doc(hidden)]
 pub mod flat;
+#[doc(hidden)]
 pub mod unit_check;
 
+#[doc(hidden)]
 pub mod structure;
 
+#[doc(hidden)]
 pub mod lower;
 
-mod compile;
+#[doc(hidden)]
+pub mod compile;
 
-pub use compile::{
-    Flattened, Model, Outcome, Request, Runnable, analyze, compile, flatten, flatten_text, graph, inspect, runnable, sort,
-};
-
+#[doc(hidden)]
 pub mod solve;
 
+#[doc(hidden)]
 pub mod circuit;
 
 #[cfg(feature = "analysis")]
+#[doc(hidden)]
 pub mod analysis;
 
-pub use circuit::{Circuit, Simulation, Stepping};
-pub use diag::Error;
-
+#[doc(hidden)]
 pub mod plot;
 
 #[cfg(feature = "analysis")]
+#[doc(hidden)]
 pub mod experiment;
 
 #[cfg(feature = "analysis")]
+#[doc(hidden)]
 pub mod study;
 
 #[cfg(feature = "gap")]
+#[doc(hidden)]
 pub mod gap;
 
 #[cfg(feature = "lsp")]
+#[doc(hidden)]
 pub mod editor;
 
 #[cfg(feature = "cli")]
+#[doc(hidden)]
 pub mod cli;
+
+pub use circuit::{Circuit, InputPort, Outcome, Parameter, Probe, Simulation, Stepping};
+pub use compile::Request;
+pub use diag::{Code, Diagnostic, Error, Severity, Sources};
+pub use instance::Override;
+pub use results::{Kind, Signal, Trajectory};
+pub use solve::{Control, End, Interpolation, Progress, Settings, State, Statistics};
+
+#[cfg(feature = "analysis")]
+pub use analysis::identify::{Identified, identify};
+#[cfg(feature = "analysis")]
+pub use analysis::sensitivity::Sensitivity;
+#[cfg(feature = "gap")]
+pub use gap::{Diagnosis, Stage, Verdict, diagnose};
+
+/// Linear models, as [`Simulation::linearize`] gives them.
+#[cfg(feature = "analysis")]
+pub mod linear {
+    pub use crate::analysis::linear::{Pole, Quantity, StateSpace, csv, mat, modelica, poles, response, words, zeros};
+}
+
+/// What a [`Verdict`] is made of.
+#[cfg(feature = "gap")]
+pub mod verdict {
+    pub use crate::gap::verdict::*;
+}
+
+/// The stages of compiler, solver and diagnosis, in the order in which a circuit passes through them. No promise: they
+/// change without notice.
+pub mod internals {
+    #[cfg(feature = "cli")]
+    pub use crate::cli;
+    #[cfg(feature = "lsp")]
+    pub use crate::editor;
+    #[cfg(feature = "gap")]
+    pub use crate::gap;
+    #[cfg(feature = "analysis")]
+    pub use crate::{analysis, experiment, study};
+    pub use crate::{
+        circuit, compile, diag, expr, external, flat, instance, lower, network, plot, resolve, shipped, solve,
+        structure, syntax, types, unit_check, units,
+    };
+}

@@ -4,8 +4,8 @@
 
 mod disk;
 
+use bramah::internals::solve::{End, Statistics};
 use bramah::results::Trajectory;
-use bramah::solve::{End, Statistics};
 use bramah::world::MemoryWorld;
 use bramah::{Request, Simulation};
 use disk::Disk;

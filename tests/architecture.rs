@@ -28,6 +28,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
         "compile",
         &[
             "diag",
+            "expr",
             "flat",
             "instance",
             "lower",
@@ -50,6 +51,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     (
         "analysis",
         &[
+            "circuit",
             "compile",
             "diag",
             "experiment",

@@ -9,7 +9,7 @@
 
 mod diagnose;
 
-use bramah::diag::Diagnostic;
+use bramah::Diagnostic;
 use diagnose::Report;
 use std::fmt::Write;
 

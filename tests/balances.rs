@@ -13,11 +13,12 @@
 mod disk;
 mod rig;
 
-use bramah::diag::Code;
-use bramah::flat::FlatModel;
+use bramah::Code;
+use bramah::internals::compile::flatten;
+use bramah::internals::flat::FlatModel;
 use bramah::results::Trajectory;
 use bramah::world::{MemoryWorld, World};
-use bramah::{Request, Simulation, flatten};
+use bramah::{Request, Simulation};
 use disk::Disk;
 use rig::{column, last};
 use std::collections::BTreeMap;
@@ -128,8 +129,8 @@ impl Circuit {
         let has_oil = !oil.is_empty() && flattened.flat.variables.iter().any(|v| v.name == "oil.T");
         let closed = oil.iter().all(|c| c.1);
         let class = class.to_owned();
-        let heat = |v: &bramah::flat::Variable| v.name.ends_with(".T_oil") || v.name.ends_with(".T_case");
-        let of_oil = |v: &bramah::flat::Variable| heat(v) && v.fixed && v.start.is_some();
+        let heat = |v: &bramah::internals::flat::Variable| v.name.ends_with(".T_oil") || v.name.ends_with(".T_case");
+        let of_oil = |v: &bramah::internals::flat::Variable| heat(v) && v.fixed && v.start.is_some();
         let thermal = flattened.flat.variables.iter().any(of_oil);
         has_oil.then(|| Circuit { class, oil, all, flat: flattened.flat, default_oil, closed, thermal })
     }

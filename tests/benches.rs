@@ -9,7 +9,7 @@ mod rig;
 use std::process::Command;
 
 use bramah::Simulation;
-use bramah::analysis::linear::{Choice, Chosen, linearize, response};
+use bramah::internals::analysis::linear::{Choice, Chosen, linearize, response};
 use bramah::results::Trajectory;
 use disk::Disk;
 use rig::{at, circuit, column, last, line, mean_from, near, run, shipped, shipped_with};
@@ -257,15 +257,15 @@ fn the_experiments_name_what_there_is() {
         let mut entries: Vec<_> = std::fs::read_dir(folder).expect("the folder is there").flatten().collect();
         entries.sort_by_key(std::fs::DirEntry::path);
         for path in entries.iter().map(std::fs::DirEntry::path).filter(|p| p.extension().is_some_and(|e| e == "toml")) {
-            let mut sources = bramah::diag::Sources::default();
+            let mut sources = bramah::internals::diag::Sources::default();
             // studies have a key of their own and are not experiments
             if std::fs::read_to_string(&path).expect("a text").contains("\nversion = ") {
-                let study = bramah::study::Study::read(&Disk, &path, &mut sources);
+                let study = bramah::internals::study::Study::read(&Disk, &path, &mut sources);
                 assert!(study.value.is_some(), "{path:?}: {:?}", study.diagnostics);
                 continue;
             }
             let file = sources.add(path.to_string_lossy(), std::fs::read_to_string(&path).expect("a text"));
-            let checked = bramah::experiment::parse(&sources, file);
+            let checked = bramah::internals::experiment::parse(&sources, file);
             assert!(checked.diagnostics.is_empty(), "{path:?}: {:?}", checked.diagnostics);
             let experiment = checked.value.expect("an experiment");
             let set: Vec<_> = experiment.set.iter().map(|(name, value)| (name.as_str(), value.as_str())).collect();

@@ -1,9 +1,12 @@
 //! Runs that are taken up at a checkpoint go on as if they had never stopped, to the last bit.
 #![allow(clippy::disallowed_methods, reason = "starts the command and kills it")]
 
-use bramah::solve::{Checkpoint, Control, Input, Run, Settings, Sink, resume, simulate};
-use bramah::structure::StateChoice;
-use bramah::{Model, Request, compile, lower, world::MemoryWorld};
+use bramah::Request;
+use bramah::internals::compile::{Model, compile};
+use bramah::internals::lower;
+use bramah::internals::solve::{Checkpoint, Control, Input, Run, Settings, Sink, resume, simulate};
+use bramah::internals::structure::StateChoice;
+use bramah::world::MemoryWorld;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -34,7 +37,7 @@ fn model(text: &str) -> Model {
 }
 
 fn settings(model: &Model, every: f64) -> Settings {
-    let wanted = (0u32..).zip(&model.flat.variables).map(|(i, _)| bramah::expr::VarId(i)).collect();
+    let wanted = (0u32..).zip(&model.flat.variables).map(|(i, _)| bramah::internals::expr::VarId(i)).collect();
     Settings { wanted, checkpoint_every: every, ..Settings::from_experiment(&model.flat.experiment) }
 }
 

@@ -5,10 +5,10 @@
 
 mod disk;
 
-use bramah::analysis::identify::{Identification, Method, Problem, Report};
-use bramah::diag::Sources;
-use bramah::diag::render::{Format, render};
-use bramah::study::{Bound, Recording, Role, Study};
+use bramah::Sources;
+use bramah::internals::analysis::identify::{Identification, Method, Problem, Report};
+use bramah::internals::diag::render::{Format, render};
+use bramah::internals::study::{Bound, Recording, Role, Study};
 use bramah::world::MemoryWorld;
 use bramah::{Request, Simulation};
 use disk::Disk;

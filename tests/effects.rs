@@ -6,17 +6,18 @@
     reason = "tests read their own files and say what they skip"
 )]
 
-use bramah::diag::render::{Format, render};
-use bramah::gap::augment::{Attached, augment, compile};
-use bramah::gap::circuit::{Circuit, circuit};
-use bramah::gap::effects::{Attach, Effect, catalogue};
-use bramah::gap::fixed::fixed;
-use bramah::gap::hypotheses::{Free, Hypothesis, Signal, Site, hypotheses};
-use bramah::lower;
+use bramah::Interpolation;
+use bramah::internals::compile::Outcome;
+use bramah::internals::diag::render::{Format, render};
+use bramah::internals::gap::augment::{Attached, augment, compile};
+use bramah::internals::gap::circuit::{Circuit, circuit};
+use bramah::internals::gap::effects::{Attach, Effect, catalogue};
+use bramah::internals::gap::fixed::fixed;
+use bramah::internals::gap::hypotheses::{Free, Hypothesis, Signal, Site, hypotheses};
+use bramah::internals::lower;
 use bramah::results::Trajectory;
-use bramah::solve::Interpolation;
 use bramah::world::{MemoryWorld, World};
-use bramah::{Outcome, Request, Simulation};
+use bramah::{Request, Simulation};
 use std::path::{Path, PathBuf};
 
 fn value<T>(outcome: Outcome<T>) -> T {
@@ -52,8 +53,8 @@ fn check(world: &dyn World, request: &Request, signals: &[Signal]) -> String {
     }
     let text = augment(&places, &attached, signals);
     let model = value(compile(world, request, None, &text, &lower::Options::default()));
-    let plain = value(bramah::compile(world, request, &lower::Options::default()));
-    let states = |m: &bramah::Model, prefix: &str| -> Vec<String> {
+    let plain = value(bramah::internals::compile::compile(world, request, &lower::Options::default()));
+    let states = |m: &bramah::internals::compile::Model, prefix: &str| -> Vec<String> {
         let names = m.dae.states.iter().map(|v| m.dae.variables[v.index()].name.clone());
         let mut names: Vec<String> = names.map(|n| n.strip_prefix(prefix).unwrap_or(&n).to_string()).collect();
         names.sort();
@@ -248,7 +249,7 @@ fn what_an_ideal_gear_drives_has_a_speed() {
     let request = Request { source: "Train.mo".into(), ..Request::default() };
     let places = value(circuit(&MemoryWorld::single("Train.mo", text), &request));
     let node = |name: &str| {
-        let of = |p: &bramah::gap::circuit::Port| p.name == name;
+        let of = |p: &bramah::internals::gap::circuit::Port| p.name == name;
         let port = places.ports.iter().find(|p| of(p)).expect("a port");
         &places.nodes[port.node]
     };
@@ -446,7 +447,7 @@ end Loop;
     assert!(!file.contains("connect(control.y, axis.u)"), "{file}");
     let alone = MemoryWorld::single("Fixed.mo", file);
     let request = Request { source: "Fixed.mo".into(), model: Some("Fixed".into()), ..Request::default() };
-    value(bramah::compile(&alone, &request, &lower::Options::default()));
+    value(bramah::internals::compile::compile(&alone, &request, &lower::Options::default()));
 }
 
 /// A mistake in an effect of the user's own is shown in its file.

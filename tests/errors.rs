@@ -5,7 +5,7 @@
 
 mod diagnose;
 
-use bramah::diag::{Code, Severity};
+use bramah::internals::diag::{Code, Severity};
 use std::fmt::Write;
 
 /// Codes found in a run only.

@@ -4,22 +4,22 @@
 
 mod rig;
 
-use bramah::diag::Sources;
-use bramah::gap::estimate::simulation::from_start;
-use bramah::gap::fixed::corrected;
-use bramah::gap::plan::{Pair, plan};
-use bramah::gap::report::report;
-use bramah::gap::select::models;
-use bramah::gap::select::search::{explained, search};
-use bramah::gap::study::{planned, question};
-use bramah::gap::verdict::{Verdict, conclude};
-use bramah::solve::Interpolation;
-use bramah::study::Study;
+use bramah::Interpolation;
+use bramah::Sources;
+use bramah::internals::gap::estimate::simulation::from_start;
+use bramah::internals::gap::fixed::corrected;
+use bramah::internals::gap::plan::{Pair, plan};
+use bramah::internals::gap::report::report;
+use bramah::internals::gap::select::models;
+use bramah::internals::gap::select::search::{explained, search};
+use bramah::internals::gap::study::{planned, question};
+use bramah::internals::gap::verdict::{Verdict, conclude};
+use bramah::internals::study::Study;
 use bramah::world::MemoryWorld;
 use bramah::{Request, Simulation};
 use rig::{Numbers, ORIFICE};
-use std::ops::ControlFlow;
 use std::fmt::Write;
+use std::ops::ControlFlow;
 use std::path::Path;
 
 /// A slide on a spring with its own connectors; the plant has dry friction of another form than the library's, waves of
@@ -439,7 +439,7 @@ fn a_plan_says_what_would_be_seen_and_what_could_not_be_told_apart() {
     let mut sources = Sources::default();
     let study = Study::read(&world, Path::new("study.toml"), &mut sources).value.unwrap();
     let mut question = planned(&world, &study, None, &mut sources).ok().unwrap();
-    let plan = plan(&mut question.problem, &mut |_| ControlFlow::Continue(())).unwrap();
+    let plan = plan(&mut question.problem, &mut |_| ()).unwrap();
     let of = |family: &str| plan.hypotheses.iter().position(|h| h.family == family).unwrap();
     assert!(plan.hypotheses[of("dry_friction")].nats > 8.0);
     let drift = |i: usize| plan.hypotheses[i].places == ["mass.m"];

@@ -1,7 +1,7 @@
 //! The language: small models, and what the standard says of them.
 
+use bramah::Interpolation;
 use bramah::Simulation;
-use bramah::solve::Interpolation;
 
 fn run(text: &str) -> bramah::results::Trajectory {
     let simulation = Simulation::from_text(text).unwrap_or_else(|e| panic!("{e}"));

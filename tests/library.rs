@@ -4,11 +4,12 @@
 
 mod disk;
 
-use bramah::diag::render::{Format, render};
-use bramah::resolve::{Library, Trees, nested_classes};
-use bramah::syntax::ast::ClassKind;
+use bramah::Request;
+use bramah::internals::compile::{flatten, flatten_text};
+use bramah::internals::diag::render::{Format, render};
+use bramah::internals::resolve::{Library, Trees, nested_classes};
+use bramah::internals::syntax::ast::ClassKind;
 use bramah::world::World;
-use bramah::{Request, flatten, flatten_text};
 use disk::Disk;
 use std::path::{Path, PathBuf};
 
@@ -34,8 +35,8 @@ fn remarks(request: &Request) -> String {
     let outcome = flatten(&Disk, request);
     let mut diagnostics = outcome.diagnostics;
     if let Some(value) = &outcome.value {
-        diagnostics.extend(bramah::unit_check::check(&value.flat));
-        bramah::structure::analyze(&value.flat, &Default::default()).sink(&mut diagnostics);
+        diagnostics.extend(bramah::internals::unit_check::check(&value.flat));
+        bramah::internals::structure::analyze(&value.flat, &Default::default()).sink(&mut diagnostics);
     }
     render(&outcome.sources, &diagnostics, Format::Short, 200, false)
 }
@@ -134,8 +135,8 @@ fn every_component_has_a_header() {
 #[test]
 fn classes_are_described() {
     let trees = Trees::new();
-    let shipped = bramah::shipped::Shipped;
-    let roots = bramah::shipped::Shipped::roots().map(|r| (&shipped as &dyn World, r)).to_vec();
+    let shipped = bramah::internals::shipped::Shipped;
+    let roots = bramah::internals::shipped::Shipped::roots().map(|r| (&shipped as &dyn World, r)).to_vec();
     let mut library = Library::new(&trees, roots);
     let mut silent = Vec::new();
     for package in
@@ -202,7 +203,7 @@ fn a_variable_that_a_when_assigns_has_a_left_limit_without_being_declared_discre
           end when;
         end M;";
     let flat = flatten_text(text, None).value.expect("it is right").flat;
-    let dae = bramah::structure::analyze(&flat, &Default::default());
+    let dae = bramah::internals::structure::analyze(&flat, &Default::default());
     assert!(dae.diagnostics.is_empty(), "{:?}", dae.diagnostics);
     let written = flat.text();
     assert!(written.contains("pre(y)"), "{written}");

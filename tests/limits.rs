@@ -10,12 +10,13 @@
 mod disk;
 mod rig;
 
-use bramah::expr::VarId;
-use bramah::flat::{Type, Variability};
-use bramah::lower::Options;
+use bramah::Request;
+use bramah::internals::compile::{Model, compile};
+use bramah::internals::expr::VarId;
+use bramah::internals::flat::{Type, Variability};
+use bramah::internals::lower::Options;
+use bramah::internals::solve::{Control, End, Progress, Settings, signals, simulate};
 use bramah::results::{Trajectory, number};
-use bramah::solve::{Control, End, Progress, Settings, signals, simulate};
-use bramah::{Model, Request, compile};
 use disk::Disk;
 use rig::Numbers;
 use std::collections::BTreeMap;

@@ -1,12 +1,13 @@
 //! Gaps and friction of an axial piston machine from its map of efficiencies: what the map can tell, said before the fit,
 //! and the values of those that it can.
 
-use bramah::analysis::identify::{Fit, Identification, Method, Problem, separation_words};
-use bramah::diag::Sources;
-use bramah::solve::Interpolation;
-use bramah::study::{Recording, Role, Study};
+use bramah::Interpolation;
+use bramah::Simulation;
+use bramah::Sources;
+use bramah::internals::analysis::identify::{Fit, Identification, Method, Problem, separation_words};
+use bramah::internals::compile::compile;
+use bramah::internals::study::{Recording, Role, Study};
 use bramah::world::MemoryWorld;
-use bramah::{Simulation, compile};
 use std::path::Path;
 
 /// The pump of the closed circuit between two pressures, other gaps and weights assumed than it has.

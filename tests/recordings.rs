@@ -7,21 +7,21 @@
 
 mod rig;
 
-use bramah::diag::Sources;
-use bramah::gap::fixed::corrected;
-use bramah::gap::report::report;
-use bramah::gap::select::search::search;
-use bramah::gap::study::question;
-use bramah::gap::verdict::conclude;
-use bramah::gap::words::words;
-use bramah::study::Study;
+use bramah::Sources;
+use bramah::internals::gap::fixed::corrected;
+use bramah::internals::gap::report::report;
+use bramah::internals::gap::select::search::search;
+use bramah::internals::gap::study::question;
+use bramah::internals::gap::verdict::conclude;
+use bramah::internals::gap::words::words;
+use bramah::internals::study::Study;
 use bramah::world::MemoryWorld;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use rig::{Numbers, ORIFICE};
-use std::ops::ControlFlow;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::LazyLock;
 
@@ -233,7 +233,9 @@ fn diagnosed(case: &Case) -> bool {
     let Some(study) = Study::read(&world, Path::new("study.toml"), &mut sources).value else { return false };
     let Ok(question) = question(&world, &study, None, &mut sources) else { return false };
     let Ok(held) = question.held(None, &mut sources) else { return false };
-    let Ok(found) = search(&question.problem, &held.recordings, &mut |_| ControlFlow::Continue(())) else { return false };
+    let Ok(found) = search(&question.problem, &held.recordings, &mut |_| ControlFlow::Continue(())) else {
+        return false;
+    };
     let verdict = conclude(&question.problem, &found, &held.recordings, 0.0);
     assert!(!words(&verdict).contains("NaN"), "{}", words(&verdict));
     serde_json::to_string(&verdict).expect("a verdict is JSON");

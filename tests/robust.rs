@@ -4,13 +4,15 @@
 
 #![allow(clippy::disallowed_methods, reason = "reads its cases")]
 
-use bramah::diag::Diagnostic;
-use bramah::expr::VarId;
-use bramah::lower::Options;
+use bramah::Diagnostic;
+use bramah::Request;
+use bramah::internals::compile::Outcome;
+use bramah::internals::compile::compile;
+use bramah::internals::expr::VarId;
+use bramah::internals::lower::Options;
+use bramah::internals::solve::{Control, Progress, Settings, signals, simulate};
 use bramah::results::Trajectory;
-use bramah::solve::{Control, Progress, Settings, signals, simulate};
 use bramah::world::MemoryWorld;
-use bramah::{Outcome, Request, compile};
 use proptest::prelude::*;
 use std::path::Path;
 use std::sync::LazyLock;
@@ -225,7 +227,7 @@ proptest! {
         let text = entangled(&choices);
         let world = MemoryWorld::single("model.mo", &text);
         let request = Request { source: "model.mo".into(), model: Some("T.M".into()), ..Request::default() };
-        let ended = std::panic::catch_unwind(|| bramah::flatten(&world, &request).diagnostics.len());
+        let ended = std::panic::catch_unwind(|| bramah::internals::compile::flatten(&world, &request).diagnostics.len());
         if ended.is_err() {
             return Err(TestCaseError::fail(format!("panics:\n{text}")));
         }
@@ -254,7 +256,7 @@ fn packages_that_go_in_circles_many_times_over_are_told() {
     );
     let world = MemoryWorld::single("model.mo", &text);
     let request = Request { source: "model.mo".into(), model: Some("T.M".into()), ..Request::default() };
-    let diagnostics = bramah::flatten(&world, &request).diagnostics;
+    let diagnostics = bramah::internals::compile::flatten(&world, &request).diagnostics;
     assert!(diagnostics.iter().any(|d| d.code.id() == "E014" && d.message.contains("need each other")));
 }
 

@@ -1,7 +1,7 @@
 //! The crate from outside: steps with inputs set in between, rows handed to a function, and misuse.
 
-use bramah::diag::Code;
-use bramah::solve::{End, Interpolation};
+use bramah::Code;
+use bramah::internals::solve::{End, Interpolation};
 use bramah::{Error, Simulation};
 use std::ops::ControlFlow;
 

@@ -3,7 +3,7 @@
 
 #![allow(clippy::disallowed_methods, reason = "tests read their own files")]
 
-use bramah::solve::{End, Statistics};
+use bramah::internals::solve::{End, Statistics};
 use bramah::world::MemoryWorld;
 use bramah::{Request, Simulation};
 use serde::Deserialize;

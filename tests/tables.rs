@@ -1,8 +1,9 @@
 //! Tables that models read from files: the same as tables written in the model, and mistakes reported at their place.
 
-use bramah::diag::render::{Format, render};
+use bramah::internals::compile::compile;
+use bramah::internals::diag::render::{Format, render};
 use bramah::world::MemoryWorld;
-use bramah::{Request, Simulation, compile};
+use bramah::{Request, Simulation};
 
 /// A model whose table comes from `trajectory.csv` beside it.
 fn model(block: &str) -> String {
@@ -14,7 +15,7 @@ fn said(block: &str, data: &str) -> String {
     let mut world = MemoryWorld::single("bench/M.mo", model(block));
     world.add("bench/t.csv", data);
     let request = Request { source: "bench/M.mo".into(), ..Request::default() };
-    let outcome = compile(&world, &request, &bramah::lower::Options { native: false });
+    let outcome = compile(&world, &request, &bramah::internals::lower::Options { native: false });
     render(&outcome.sources, &outcome.diagnostics, Format::Short, 200, false)
 }
 
@@ -82,7 +83,7 @@ fn the_file_of_a_table_may_be_given_from_outside() {
     for given in ["t.csv", "data/t-1.csv", "\"t.csv\"", "table 1.csv"] {
         let mut world = MemoryWorld::single("M.mo", text);
         world.add(given.trim_matches('"'), "x,y\n0,0\n1,4\n");
-        let set = bramah::instance::Override { name: "t.fileName".into(), value: given.into() };
+        let set = bramah::Override { name: "t.fileName".into(), value: given.into() };
         let request = Request { source: "M.mo".into(), overrides: vec![set], ..Request::default() };
         let run =
             Simulation::compile(&world, &request).and_then(|s| s.run()).unwrap_or_else(|e| panic!("{given}: {e}"));

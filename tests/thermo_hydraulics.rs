@@ -309,9 +309,13 @@ fn baffles_delay_what_returns() {
 fn oil_of_one_temperature_has_no_heat_in_it() {
     for class in ["ServoPump.System", "ClosedCircuit.Bench", "Hydraulic.Examples.CylinderExample"] {
         let request = Request { source: class.into(), ..Request::default() };
-        let model = bramah::compile(&MemoryWorld::default(), &request, &bramah::lower::Options::default())
-            .value
-            .unwrap_or_else(|| panic!("{class} compiles"));
+        let model = bramah::internals::compile::compile(
+            &MemoryWorld::default(),
+            &request,
+            &bramah::internals::lower::Options::default(),
+        )
+        .value
+        .unwrap_or_else(|| panic!("{class} compiles"));
         let states: Vec<&str> = model.dae.states.iter().map(|v| model.dae.variables[v.index()].name.as_str()).collect();
         assert!(states.iter().all(|s| !s.contains(".T_oil") && !s.contains(".T_case")), "{class}: {states:?}");
     }

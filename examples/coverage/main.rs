@@ -11,13 +11,14 @@
 mod benches;
 
 use benches::Bench;
-use bramah::analysis::identify::{Identification, Method, Problem};
-use bramah::diag::{Checked, Diagnostic, Sources};
-use bramah::lower::Options;
-use bramah::solve::Interpolation;
-use bramah::study::{Recording, Role, Study};
+use bramah::Interpolation;
+use bramah::internals::analysis::identify::{Identification, Method, Problem};
+use bramah::internals::compile::compile;
+use bramah::internals::diag::{Checked, Diagnostic, Sources};
+use bramah::internals::lower::Options;
+use bramah::internals::study::{Recording, Role, Study};
 use bramah::world::MemoryWorld;
-use bramah::{Request, Simulation, compile};
+use bramah::{Request, Simulation};
 use std::error::Error;
 use std::path::Path;
 

@@ -3,8 +3,8 @@
 use super::run;
 use super::shell::{Page, code, up};
 use bramah::Simulation;
-use bramah::diag::render::{Format, render};
-use bramah::plot::svg::escape;
+use bramah::internals::diag::render::{Format, render};
+use bramah::internals::plot::svg::escape;
 use pulldown_cmark::{CodeBlockKind, CowStr, Event, HeadingLevel, Options, Parser, Tag, TagEnd, html};
 use std::collections::BTreeMap;
 use std::path::Path;

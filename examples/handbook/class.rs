@@ -6,10 +6,10 @@ use super::run::{self, Runs};
 use super::shell::{Page, code, up};
 use super::tables;
 use super::{equations, icon};
-use bramah::plot::network::symbols::symbol;
-use bramah::plot::svg::escape;
-use bramah::resolve::{ClassId, Library};
-use bramah::syntax::ast::{Causality, Class, ClassBody, ClassKind, ExprKind, Variability};
+use bramah::internals::plot::network::symbols::symbol;
+use bramah::internals::plot::svg::escape;
+use bramah::internals::resolve::{ClassId, Library};
+use bramah::internals::syntax::ast::{Causality, Class, ClassBody, ClassKind, ExprKind, Variability};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
@@ -269,7 +269,7 @@ impl<'a> Press<'_, 'a> {
         if out.is_empty() { out } else { format!("<h2>{title}</h2>{out}") }
     }
 
-    fn joined(&mut self, body: &bramah::syntax::ast::LongBody) -> String {
+    fn joined(&mut self, body: &bramah::internals::syntax::ast::LongBody) -> String {
         let sources = &self.library.sources;
         let rows: Vec<String> = equations::connections(&body.equations)
             .into_iter()
@@ -323,7 +323,7 @@ impl<'a> Press<'_, 'a> {
     }
 }
 
-fn musts(body: &bramah::syntax::ast::LongBody) -> String {
+fn musts(body: &bramah::internals::syntax::ast::LongBody) -> String {
     let list = equations::conditions(&body.equations);
     if list.is_empty() {
         return String::new();

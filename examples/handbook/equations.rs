@@ -1,9 +1,9 @@
 //! Equations and statements as blocks of typeset lines.
 
 use super::math;
-use bramah::diag::Span;
-use bramah::plot::svg::escape;
-use bramah::syntax::ast::{Equation, EquationKind, Expr, ExprKind, Iterator, Statement, StatementKind};
+use bramah::internals::diag::Span;
+use bramah::internals::plot::svg::escape;
+use bramah::internals::syntax::ast::{Equation, EquationKind, Expr, ExprKind, Iterator, Statement, StatementKind};
 
 /// Longer equations are cut into lines of about so many characters.
 const ROOM: usize = 84;

@@ -1,9 +1,9 @@
 //! Facts about declarations and texts: units and bounds, and what a documentation says of limits and sources.
 
 use super::library::{self, Member};
-use bramah::resolve::Library;
-use bramah::syntax::ast::{Argument, ArgumentKind, ClassBody, ClassKind, ExprKind, Modification};
-use bramah::syntax::symbol::Symbol;
+use bramah::internals::resolve::Library;
+use bramah::internals::syntax::ast::{Argument, ArgumentKind, ClassBody, ClassKind, ExprKind, Modification};
+use bramah::internals::syntax::symbol::Symbol;
 
 /// Attributes of a declared quantity, as written; empty where there are none.
 #[derive(Clone, Debug, Default)]

@@ -1,7 +1,7 @@
 //! The box of a component with its ports, its name below: squares for physical ports, triangles for signals.
 
-use bramah::plot::network::symbols::FIELD;
-use bramah::plot::svg::escape;
+use bramah::internals::plot::network::symbols::FIELD;
+use bramah::internals::plot::svg::escape;
 use std::fmt::Write as _;
 
 /// What a port carries, by its connector.

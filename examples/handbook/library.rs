@@ -1,9 +1,9 @@
 //! The classes of `components/` and `models/` by name, what they inherit, and who uses whom.
 
-pub use bramah::resolve::names::{Member, bases, body, lineage, named, resolve};
-use bramah::resolve::{ClassId, Library, names, nested_classes};
-use bramah::syntax::ast::{Argument, ArgumentKind, Class, ClassBody, ClassKind, ElementKind, Expr, Path};
-use bramah::syntax::symbol::Symbol;
+pub use bramah::internals::resolve::names::{Member, bases, body, lineage, named, resolve};
+use bramah::internals::resolve::{ClassId, Library, names, nested_classes};
+use bramah::internals::syntax::ast::{Argument, ArgumentKind, Class, ClassBody, ClassKind, ElementKind, Expr, Path};
+use bramah::internals::syntax::symbol::Symbol;
 use std::collections::BTreeMap;
 
 /// Packages of the handbook, in the order in which they are shown.
@@ -125,7 +125,7 @@ pub fn is_runnable(class: &Class) -> bool {
 }
 
 /// The modification of an annotation by path, such as `Documentation`, `info`.
-pub fn annotation<'a>(class: &'a Class, path: &[&str]) -> Option<&'a bramah::syntax::ast::Modification> {
+pub fn annotation<'a>(class: &'a Class, path: &[&str]) -> Option<&'a bramah::internals::syntax::ast::Modification> {
     let mut at = class.annotation.as_ref()?;
     for name in path {
         at = at.arguments.iter().find_map(|a| match &a.kind {

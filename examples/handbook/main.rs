@@ -18,9 +18,9 @@ mod run;
 mod shell;
 mod tables;
 
-use bramah::plot::svg::escape;
-use bramah::resolve::{Library, Trees};
-use bramah::shipped::Shipped;
+use bramah::internals::plot::svg::escape;
+use bramah::internals::resolve::{Library, Trees};
+use bramah::internals::shipped::Shipped;
 use bramah::world::World;
 use library::{Catalogue, PACKAGES};
 use shell::Page;

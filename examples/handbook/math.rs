@@ -1,8 +1,8 @@
 //! Expressions as MathML: fractions, powers, roots and indices; names stay the names of the source.
 
-use bramah::plot::svg::escape;
+use bramah::internals::plot::svg::escape;
+use bramah::internals::syntax::ast::{BinaryOp, Expr, ExprKind, Iterator, Reference, Subscript, UnaryOp};
 use bramah::results::number;
-use bramah::syntax::ast::{BinaryOp, Expr, ExprKind, Iterator, Reference, Subscript, UnaryOp};
 
 /// Greek letters that names may begin with. `w` and `V` are left alone: the page shows what the source says.
 const GREEK: [(&str, &str); 21] = [
@@ -278,13 +278,17 @@ fn listed(items: &[Expr]) -> String {
     items.iter().map(|i| write(i, Level::Whole)).collect::<Vec<_>>().join("<mo>,</mo>")
 }
 
-fn bracketed(args: &[Expr], named: &[(bramah::syntax::ast::Ident, Expr)]) -> String {
+fn bracketed(args: &[Expr], named: &[(bramah::internals::syntax::ast::Ident, Expr)]) -> String {
     let mut all: Vec<String> = args.iter().map(|a| write(a, Level::Whole)).collect();
     all.extend(named.iter().map(|(n, v)| format!("{}<mo>=</mo>{}", name(n.name.as_str()), write(v, Level::Whole))));
     round(&all.join("<mo>,</mo>"))
 }
 
-fn call(function: &Reference, args: &[Expr], named: &[(bramah::syntax::ast::Ident, Expr)]) -> (Level, String) {
+fn call(
+    function: &Reference,
+    args: &[Expr],
+    named: &[(bramah::internals::syntax::ast::Ident, Expr)],
+) -> (Level, String) {
     let words: Vec<&str> = function.parts.iter().map(|p| p.name.name.as_str()).collect();
     match (words.join(".").as_str(), args) {
         ("der", [x]) => (Level::Power, derivative(x)),
@@ -381,12 +385,12 @@ fn upright(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use bramah::diag::Sources;
+    use bramah::Sources;
 
     fn set(text: &str) -> String {
         let mut sources = Sources::default();
         let file = sources.add("e", text);
-        expression(&bramah::syntax::parse_expression(file, text).value.expect("an expression"))
+        expression(&bramah::internals::syntax::parse_expression(file, text).value.expect("an expression"))
     }
 
     #[test]

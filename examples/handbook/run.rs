@@ -1,8 +1,8 @@
 //! Runs examples and draws what a class does in them.
 
-use bramah::plot::figure::Figure;
-use bramah::plot::select::{Choice, Run, figure};
-use bramah::plot::svg;
+use bramah::internals::plot::figure::Figure;
+use bramah::internals::plot::select::{Choice, Run, figure};
+use bramah::internals::plot::svg;
 use bramah::results::{Globs, Trajectory};
 use bramah::{Error, Simulation};
 use std::collections::BTreeMap;
@@ -91,7 +91,7 @@ fn moves(column: &[f64]) -> bool {
 /// What is wrong with the circuit, or that there is no such variable.
 pub fn circuit(text: &str, variables: &[&str], x: Option<&str>) -> Result<String, String> {
     let outcome = Simulation::from_text(text).and_then(|s| s.run()).map_err(|e: Error| e.to_string())?;
-    let choice = Choice { variables: Globs::new(variables), x: x.map(str::to_owned), title: String::new() };
+    let choice = Choice { variables: Globs::new(variables), x: x.map(str::to_owned), ..Choice::default() };
     let drawn = figure(&[Run { label: "", trajectory: &outcome.trajectory }], &choice)?;
     Ok(svg::write(&drawn.figure))
 }

@@ -1,6 +1,6 @@
 //! The frame of every page: navigation, style, and nothing from the network.
 
-use bramah::plot::svg::escape;
+use bramah::internals::plot::svg::escape;
 
 /// A page before it is framed.
 pub struct Page {

@@ -3,9 +3,9 @@
 use super::class::{Press, facts_of};
 use super::library::{self, Given, Member};
 use super::{facts, math};
-use bramah::plot::svg::escape;
-use bramah::resolve::ClassId;
-use bramah::syntax::ast::{Causality, Component, Subscript, Variability};
+use bramah::internals::plot::svg::escape;
+use bramah::internals::resolve::ClassId;
+use bramah::internals::syntax::ast::{Causality, Component, Subscript, Variability};
 use std::fmt::Write as _;
 
 /// The name of a component with its dimensions, as code.

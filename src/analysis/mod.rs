@@ -10,6 +10,7 @@ pub mod local;
 pub mod noise;
 pub mod partition;
 pub mod sensitivity;
+mod simulation;
 pub mod steady;
 pub mod sweep;
 pub mod tangent;

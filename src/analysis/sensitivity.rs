@@ -6,7 +6,7 @@
 
 use super::Tangent;
 use super::lift::reading;
-use crate::Model;
+use crate::compile::Model;
 use crate::expr::VarId;
 use crate::results::Trajectory;
 use crate::solve::{Control, Settings, Tangents, signals, simulate};
@@ -340,7 +340,8 @@ mod tests {
     ) -> (Model, Settings, Vec<Moved>) {
         let world = MemoryWorld::single("m.mo", text);
         let request = crate::Request { source: source.into(), ..crate::Request::default() };
-        let model = crate::compile(&world, &request, &crate::lower::Options { native: false }).value.expect("sound");
+        let model =
+            crate::compile::compile(&world, &request, &crate::lower::Options { native: false }).value.expect("sound");
         let id = |n: &str| {
             let i = model.flat.variables.iter().position(|v| v.name == n).expect("there");
             VarId(u32::try_from(i).expect("small"))

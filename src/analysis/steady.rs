@@ -5,10 +5,15 @@
 
 use super::linear::Chosen;
 use super::local::{Local, LocalError};
+use crate::compile::Model;
+use crate::diag::{Code, Diagnostic};
 use crate::expr::VarId;
-use crate::solve::State;
+use crate::results::{Trajectory, number};
+use crate::solve::{Control, Settings, State, signals, simulate};
+use crate::structure::StateChoice;
 use crate::units::Unit;
 use nalgebra::{DMatrix, DVector};
+use std::sync::atomic::AtomicBool;
 
 /// A steady state.
 #[derive(Clone, Debug)]
@@ -40,10 +45,92 @@ pub enum Unsteady {
     },
 }
 
+impl Unsteady {
+    /// What a user reads.
+    pub fn said(&self, chosen: &Chosen) -> Diagnostic {
+        let d = Diagnostic::new(Code::InitialFailed, format!("no steady state was found: {self}"));
+        match self {
+            Unsteady::Restless { state, rate } => {
+                let v = chosen.plan.state_variables().nth(*state);
+                let name = v.map_or_else(String::new, |v| chosen.plan.system.dae.variables[v.index()].name.clone());
+                let rate = number::rounded(*rate, 3);
+                d.note(format!("`{name}` still moves by {rate} of its usual size a second")).help(
+                    "give start values nearer to it, or look at a run: it may oscillate, or rest on a command in time",
+                )
+            }
+            Unsteady::Local(_) => d.help("give start values nearer to it"),
+        }
+    }
+}
+
 /// Rates below this part of a state's usual size and second count as zero.
 const REST: f64 = 1e-9;
 /// Most steps.
 const STEPS: usize = 400;
+
+/// Parts of the experiment's length after which a search that led nowhere is begun again.
+const LATER: [f64; 3] = [0.01, 0.1, 1.0];
+
+/// A state of the model at rest, reached from a state. Where the search from there comes to no rest, as between valves
+/// that open and close, from where a run from there leads.
+///
+/// # Errors
+/// [`Unsteady`].
+pub fn rest(model: &Model, chosen: &Chosen, state: &State, interrupt: &AtomicBool) -> Result<State, Unsteady> {
+    let from = |at: &State| steady(chosen, at).map(|(found, _)| put(chosen, &found.x, at.clone()));
+    let why = match from(state) {
+        Err(why @ Unsteady::Restless { .. }) => why,
+        other => return other,
+    };
+    let experiment = Settings::from_experiment(&model.dae.experiment);
+    let mut at = state.clone();
+    for part in LATER {
+        let length = part * (experiment.stop_time - experiment.start_time);
+        let Ok((_, after)) = run_from(model, chosen, &at, length, &[], interrupt) else { break };
+        at = State { time: state.time, ..after };
+        if let Ok(found) = from(&at) {
+            return Ok(found);
+        }
+    }
+    Err(why)
+}
+
+/// A state of the model with these values of its states.
+fn put(chosen: &Chosen, x: &[f64], mut state: State) -> State {
+    for (v, &x) in chosen.plan.state_variables().zip(x) {
+        state.values[v.index()] = x;
+    }
+    state
+}
+
+/// A run from a state, with the values of the raised parameters in it; two rows.
+///
+/// # Errors
+/// The diagnostics of a run that did not reach its end.
+pub fn run_from(
+    model: &Model,
+    chosen: &Chosen,
+    state: &State,
+    length: f64,
+    wanted: &[VarId],
+    interrupt: &AtomicBool,
+) -> Result<(Trajectory, State), Vec<Diagnostic>> {
+    let settings = Settings {
+        start_time: state.time,
+        stop_time: state.time + length,
+        interval: length,
+        tolerance: 1e-8,
+        parameters: chosen.raised().map(|v| (v, state.values[v.index()])).collect(),
+        wanted: wanted.to_vec(),
+        event_rows: false,
+        ..Settings::from_experiment(&model.dae.experiment)
+    };
+    let mut rows = Trajectory::new(signals(&model.dae, wanted));
+    let mut reselect = |choice: &StateChoice| model.with_states(choice);
+    let mut control = Control { interrupt: Some(interrupt), reselect: Some(&mut reselect), ..Control::default() };
+    let run = simulate(&model.system, &settings, &[], Some(state), &mut rows, &mut control);
+    if run.end.is_success() { Ok((rows, run.state)) } else { Err(run.diagnostics) }
+}
 
 /// The steady state reached from a state of the model, with its inputs and parameters.
 ///

@@ -8,7 +8,7 @@ fn id(flat: &FlatModel, name: &str) -> VarId {
 }
 
 fn flat(text: &str) -> FlatModel {
-    crate::flatten_text(text, None).value.expect("sound").flat
+    crate::compile::flatten_text(text, None).value.expect("sound").flat
 }
 
 /// Times, and by direction (the plain run first) the trajectories of variables.

@@ -11,7 +11,7 @@ use crate::results::{Signal, Trajectory};
 use crate::solve::{self, Control, End, Input, Interpolation, Progress, Run, Settings, Sink, State, Statistics};
 use crate::structure::StateChoice;
 use crate::structure::parameters::out_of_range;
-use crate::world::{MemoryWorld, World};
+use crate::world::{DiskWorld, MemoryWorld, World};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -65,6 +65,14 @@ impl Simulation {
             }
             None => Err(Error { diagnostics: outcome.diagnostics, sources }),
         }
+    }
+
+    /// Compiles the model of a file, or of a folder that is a package, where only one can run.
+    ///
+    /// # Errors
+    /// As [`Simulation::compile`].
+    pub fn from_file(path: impl Into<std::path::PathBuf>) -> Result<Self, Error> {
+        Self::compile(&DiskWorld, &Request { source: path.into(), ..Request::default() })
     }
 
     /// Compiles the last model of a text; classes that ship with bramah are there by name.
@@ -148,7 +156,7 @@ impl Simulation {
     }
 
     /// Values of parameters and constants in the next run.
-    pub(super) fn parameter_values(&self) -> Vec<f64> {
+    pub(crate) fn parameter_values(&self) -> Vec<f64> {
         let system = &self.model.system;
         let mut values = system.layout.values();
         let mut given = vec![false; self.model.dae.variables.len()];
@@ -322,11 +330,11 @@ impl Simulation {
         }
     }
 
-    pub(super) fn asked(&self) -> &Settings {
+    pub(crate) fn asked(&self) -> &Settings {
         &self.settings
     }
 
-    pub(super) fn driven(&self) -> &[Input] {
+    pub(crate) fn driven(&self) -> &[Input] {
         &self.inputs
     }
 
@@ -334,11 +342,11 @@ impl Simulation {
         self.error(Diagnostic::new(Code::BadMap, format!("`{name}` is not an input of the model")))
     }
 
-    pub(super) fn errors(&self, diagnostics: Vec<Diagnostic>) -> Error {
+    pub(crate) fn errors(&self, diagnostics: Vec<Diagnostic>) -> Error {
         Error { diagnostics, sources: self.sources.clone() }
     }
 
-    pub(super) fn variable(&self, name: &str) -> Result<VarId, Error> {
+    pub(crate) fn variable(&self, name: &str) -> Result<VarId, Error> {
         let variables = &self.model.flat.variables;
         if let Some(i) = variables.iter().position(|v| v.name == name) {
             return Ok(VarId(u32::try_from(i).expect("fewer than 2^32 variables")));

@@ -1,8 +1,8 @@
 //! Co-simulation: a run that the caller takes from step to step, setting inputs and reading variables in between.
 
 use super::simulation::Simulation;
-use crate::diag::Error;
 use crate::diag::Diagnostic;
+use crate::diag::Error;
 use crate::solve::driver::{self, Driver, Stop};
 use crate::solve::{End, State, Statistics};
 

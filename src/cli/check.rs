@@ -62,7 +62,9 @@ pub(super) fn run(args: &CheckArgs, messages: &mut Messages) -> Result<Ending, F
     }
     // The network can be looked at even when the equations do not fit together.
     match args.emit {
-        Some(Emit::Network) => write(args, &network_list(&messages.quietly(|quiet| model::graph(&experiment, quiet))?.1))?,
+        Some(Emit::Network) => {
+            write(args, &network_list(&messages.quietly(|quiet| model::graph(&experiment, quiet))?.1))?
+        }
         Some(Emit::Svg) => write_picture(args, &messages.quietly(|quiet| model::graph(&experiment, quiet))?)?,
         Some(Emit::Flat) => write(args, &messages.quietly(|quiet| model::flatten(&experiment, quiet))?.flat.text())?,
         Some(Emit::Dae | Emit::Blt) | None => {}

@@ -23,6 +23,7 @@ The tube reaches --tolerance times the signal's range up and down, and --time-to
 Examples:
   bramah compare bench.csv press.csv --map 'line.p=p_bench' --tolerance 0.02
   bramah compare old.csv new.csv --variables 'pump.*' --format json
+  bramah compare bench.csv press.csv --time-column t_s,time --map 'line.p=p_bench'
   bramah compare old.csv new.csv -o difference.svg --start-time '50 ms'
 
 Exit status: 0 all signals within tolerance, 1 a violation, 2 the files cannot be compared.")]
@@ -54,9 +55,9 @@ pub(super) struct CompareArgs {
     /// Compare up to this time: seconds, or a time with a unit
     #[arg(long, value_name = "TIME", value_parser = seconds, allow_hyphen_values = true)]
     stop_time: Option<f64>,
-    /// The time column of CSV files [default: `time`, or the first]
-    #[arg(long, value_name = "NAME")]
-    time_column: Option<String>,
+    /// The time column of CSV and Parquet files: one name for both, or one for each [default: `time`, or the first]
+    #[arg(long, value_name = "NAME[,NAME]", value_delimiter = ',', num_args = 1)]
+    time_column: Vec<String>,
     /// Unit of signals in a file without units, for both files; may be repeated
     #[arg(long, value_name = "GLOB=UNIT")]
     unit: Vec<String>,
@@ -84,8 +85,17 @@ fn positive(text: &str) -> Result<f64, String> {
 }
 
 pub(super) fn run(args: &CompareArgs, messages: &mut Messages) -> Result<Ending, Failure> {
-    let mut reference = data::result(&args.reference, args.time_column.as_deref(), messages)?;
-    let mut result = data::result(&args.result, args.time_column.as_deref(), messages)?;
+    let times = match args.time_column.as_slice() {
+        [] => [None, None],
+        [both] => [Some(both.as_str()); 2],
+        [a, b] => [Some(a.as_str()), Some(b.as_str())],
+        more => {
+            let text = format!("`--time-column` names {} columns, and there are two files", more.len());
+            return Err(Failure::new(Code::BadArgument, text));
+        }
+    };
+    let mut reference = data::result(&args.reference, times[0], messages)?;
+    let mut result = data::result(&args.result, times[1], messages)?;
     data::apply_units(&mut reference, &args.unit)?;
     data::apply_units(&mut result, &args.unit)?;
     let window = args.start_time.unwrap_or(f64::NEG_INFINITY)..=args.stop_time.unwrap_or(f64::INFINITY);

@@ -7,9 +7,9 @@ use clap::Args;
 
 use super::messages::Messages;
 use super::{Ending, Failure, files};
-use crate::world::DiskWorld;
 use crate::diag::Code;
 use crate::syntax::format::format;
+use crate::world::DiskWorld;
 use crate::world::World;
 
 /// Lay out Modelica files: indentation and blanks; comments and line breaks stay

@@ -10,7 +10,7 @@ use super::recorder::write_text;
 use super::request::ModelArgs;
 use super::{Ending, Failure, files, interrupt, model, plot};
 use crate::analysis::linear::{self, Choice, Chosen, StateSpace};
-use crate::analysis::steady::{self, Unsteady};
+use crate::analysis::steady;
 use crate::compile::Model;
 use crate::diag::{Code, Diagnostic};
 use crate::experiment::seconds;
@@ -181,82 +181,10 @@ fn pretty(value: &serde_json::Value) -> String {
 /// The state at the time asked for, or the steady state reached from there.
 fn operating_point(args: &LinearizeArgs, model: &Model, chosen: &Chosen) -> Result<State, Failure> {
     let state = state_at(model, args.at)?.0;
-    if args.steady { rest(model, chosen, &state).map_err(|e| restless(&e, chosen)) } else { Ok(state) }
-}
-
-/// A state of the model with these values of its states.
-fn put(chosen: &Chosen, x: &[f64], mut state: State) -> State {
-    for (v, &x) in chosen.plan.state_variables().zip(x) {
-        state.values[v.index()] = x;
+    if !args.steady {
+        return Ok(state);
     }
-    state
-}
-
-/// Parts of the experiment's length after which a search that led nowhere is begun again.
-const LATER: [f64; 3] = [0.01, 0.1, 1.0];
-
-/// The steady state reached from a state. Where the search from there comes to no rest, as between valves that open and
-/// close, from where a run from there leads.
-pub(super) fn rest(model: &Model, chosen: &Chosen, state: &State) -> Result<State, Unsteady> {
-    let from = |at: &State| steady::steady(chosen, at).map(|(found, _)| put(chosen, &found.x, at.clone()));
-    let why = match from(state) {
-        Err(why @ Unsteady::Restless { .. }) => why,
-        other => return other,
-    };
-    let experiment = Settings::from_experiment(&model.dae.experiment);
-    let mut at = state.clone();
-    for part in LATER {
-        let length = part * (experiment.stop_time - experiment.start_time);
-        let Ok((_, after)) = run_from(model, chosen, &at, length, &[]) else { break };
-        at = State { time: state.time, ..after };
-        if let Ok(found) = from(&at) {
-            return Ok(found);
-        }
-    }
-    Err(why)
-}
-
-/// A run from a state, with the values of the raised parameters in it; two rows.
-pub(super) fn run_from(
-    model: &Model,
-    chosen: &Chosen,
-    state: &State,
-    length: f64,
-    wanted: &[VarId],
-) -> Result<(Trajectory, State), Failure> {
-    let settings = Settings {
-        start_time: state.time,
-        stop_time: state.time + length,
-        interval: length,
-        tolerance: 1e-8,
-        parameters: chosen.raised().map(|v| (v, state.values[v.index()])).collect(),
-        wanted: wanted.to_vec(),
-        event_rows: false,
-        ..Settings::from_experiment(&model.dae.experiment)
-    };
-    let mut rows = Trajectory::new(signals(&model.dae, wanted));
-    let mut reselect = |choice: &StateChoice| model.with_states(choice);
-    let mut control =
-        Control { interrupt: Some(interrupt::flag()), reselect: Some(&mut reselect), ..Control::default() };
-    let run = simulate(&model.system, &settings, &[], Some(state), &mut rows, &mut control);
-    if run.end.is_success() { Ok((rows, run.state)) } else { Err(Failure { diagnostics: run.diagnostics }) }
-}
-
-/// Why there is no steady state, in words.
-pub(super) fn restless(why: &Unsteady, chosen: &Chosen) -> Failure {
-    let d = Diagnostic::new(Code::InitialFailed, format!("no steady state was found: {why}"));
-    match why {
-        Unsteady::Restless { state, rate } => {
-            let v = chosen.plan.state_variables().nth(*state);
-            let name = v.map_or_else(String::new, |v| chosen.plan.system.dae.variables[v.index()].name.clone());
-            let rate = number::rounded(*rate, 3);
-            d.note(format!("`{name}` still moves by {rate} of its usual size a second")).help(
-                "give start values nearer to it, or look at a run: it may oscillate, or rest on a command in time",
-            )
-        }
-        Unsteady::Local(_) => d.help("give start values nearer to it"),
-    }
-    .into()
+    steady::rest(model, chosen, &state, interrupt::flag()).map_err(|why| why.said(chosen).into())
 }
 
 fn no_values(why: &str) -> Failure {

@@ -2,9 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use super::Failure;
 use super::messages::Messages;
 use super::request::library_folders;
-use super::Failure;
+use crate::compile::{Flattened, Model, Outcome, Request};
 use crate::diag::{Diagnostic, Severity};
 use crate::experiment::Experiment;
 use crate::flat::FlatModel;
@@ -13,35 +14,35 @@ use crate::lower::Options;
 use crate::network::Graph;
 use crate::structure::Dae;
 use crate::world::DiskWorld;
-use crate::{Flattened, Model, Outcome, Request};
 
 /// Up to the flat model, which exists also where the equations do not fit together.
 pub(super) fn flatten(experiment: &Experiment, messages: &mut Messages) -> Result<Flattened, Failure> {
-    let outcome = crate::flatten(&DiskWorld, &request(experiment)?);
+    let outcome = crate::compile::flatten(&DiskWorld, &request(experiment)?);
     pass(outcome, experiment, messages)
 }
 
 /// Name, components and connections, also where ports are open.
 pub(super) fn graph(experiment: &Experiment, messages: &mut Messages) -> Result<(String, Graph), Failure> {
-    let outcome = crate::graph(&DiskWorld, &request(experiment)?);
+    let outcome = crate::compile::graph(&DiskWorld, &request(experiment)?);
     pass(outcome, experiment, messages)
 }
 
 /// Up to the sorted equations, without running.
 pub(super) fn sort(experiment: &Experiment, messages: &mut Messages) -> Result<(FlatModel, Graph, Dae), Failure> {
-    let outcome = crate::sort(&DiskWorld, &request(experiment)?);
+    let outcome = crate::compile::sort(&DiskWorld, &request(experiment)?);
     pass(outcome, experiment, messages)
 }
 
 /// Names of all models of a source that can run.
 pub(super) fn runnable(experiment: &Experiment) -> Result<Vec<String>, Failure> {
-    let found = crate::runnable(&DiskWorld, &request(experiment)?).map_err(|diagnostics| Failure { diagnostics })?;
+    let found =
+        crate::compile::runnable(&DiskWorld, &request(experiment)?).map_err(|diagnostics| Failure { diagnostics })?;
     Ok(found.into_iter().map(|r| r.class).collect())
 }
 
 /// The whole way to a system that can run.
 pub(super) fn compile(experiment: &Experiment, messages: &mut Messages) -> Result<Model, Failure> {
-    let outcome = crate::compile(&DiskWorld, &request(experiment)?, &Options { native: true });
+    let outcome = crate::compile::compile(&DiskWorld, &request(experiment)?, &Options { native: true });
     pass(outcome, experiment, messages)
 }
 

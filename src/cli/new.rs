@@ -93,7 +93,7 @@ mod tests {
         world.add("rig.toml", named(STUDY));
         let mut sources = crate::diag::Sources::default();
         let study = crate::study::Study::read(&world, Path::new("rig.toml"), &mut sources).value.unwrap();
-        let flat = crate::flatten(&world, &study.request()).value.unwrap().flat;
+        let flat = crate::compile::flatten(&world, &study.request()).value.unwrap().flat;
         let bound = study.bind(&flat);
         assert_eq!(bound.diagnostics, []);
         assert_eq!(bound.value.unwrap().parameters.len(), 4);

@@ -5,14 +5,14 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::axes::Entry;
-use super::linearize::{restless, state_at};
+use super::linearize::state_at;
 use super::messages::Messages;
 use super::recorder::{write_points, write_text};
 use super::request::ModelArgs;
 use super::{Ending, Failure, files, model, plot};
 use crate::analysis::linear::{Choice, Chosen, outputs};
 use crate::analysis::partition::{Zones, curve, zones};
-use crate::analysis::steady::Point;
+use crate::analysis::steady::{Point, Unsteady};
 use crate::compile::Model;
 use crate::diag::Code;
 use crate::expr::VarId;
@@ -108,7 +108,7 @@ fn curves(model: &Model, chosen: &Chosen, axes: &[Axis]) -> Result<Vec<Curve>, F
         None => vec![None],
     };
     let given = state_at(model, None)?.0;
-    let mut local = chosen.at(&given).map_err(|why| restless(&why.into(), chosen))?;
+    let mut local = chosen.at(&given).map_err(|why| Unsteady::from(why).said(chosen))?;
     let mut from = Point { x: local.state(), given };
     let mut found = Vec::with_capacity(loads.len());
     for load in loads {
@@ -116,7 +116,7 @@ fn curves(model: &Model, chosen: &Chosen, axes: &[Axis]) -> Result<Vec<Curve>, F
         let at = axes.get(1).zip(load).map(|(axis, value)| (axis.variable, value));
         let curve = curve(chosen, &mut local, &from, speeds, at);
         let (first, points) =
-            curve.map_err(|missed| located(restless(&missed.why, chosen), axes, missed.speed, load))?;
+            curve.map_err(|missed| located(missed.why.said(chosen).into(), axes, missed.speed, load))?;
         from = first;
         found.push(Curve { load, points });
     }

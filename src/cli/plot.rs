@@ -19,6 +19,7 @@ Examples:
   bramah plot press.csv -o press.svg
   bramah plot press.mat --variables 'pump.*,line.p' -o press.png
   bramah plot run1.csv run2.csv -o report.html       the same variables of both, together
+  bramah plot press.csv --panel line.p --panel pump.Q_A,relief.q     panels composed by hand
   bramah plot press.csv --x line.p --variables relief.q    flow over pressure
   bramah plot p*.csv --x N --y dp --variables eta    a map: each file is a row, at its value of dp
   bramah plot press.csv --unit '*.p=Pa:bar'          units for a file that carries none")]
@@ -29,6 +30,9 @@ pub(super) struct PlotArgs {
     /// Variables to draw, such as 'pump.*,line.p'; may be repeated
     #[arg(long, value_name = "GLOB,...")]
     variables: Vec<String>,
+    /// A panel with these variables, in this order, instead of panels by unit; may be repeated
+    #[arg(long, value_name = "GLOB,...", conflicts_with_all = ["variables", "y"])]
+    panel: Vec<String>,
     /// Where to write: .svg, .png or .html; `-` writes SVG to stdout [default: RESULT.svg]
     #[arg(short = 'o', long = "output-file", visible_alias = "output", value_name = "FILE")]
     output: Option<PathBuf>,
@@ -69,7 +73,12 @@ pub(super) fn run(args: &PlotArgs, messages: &mut Messages) -> Result<Ending, Fa
         trajectories.push(trajectory);
     }
     let labels: Vec<String> = args.results.iter().map(|p| stem(p)).collect();
-    let choice = Choice { variables: Globs::new(&args.variables), x: args.x.clone(), title: args.title.clone() };
+    let choice = Choice {
+        variables: Globs::new(&args.variables),
+        panels: args.panel.iter().map(|list| Globs::new(&[list])).collect(),
+        x: args.x.clone(),
+        title: args.title.clone(),
+    };
     let runs: Vec<Run<'_>> =
         labels.iter().zip(&trajectories).map(|(label, trajectory)| Run { label, trajectory }).collect();
     let output = args.output.clone().unwrap_or_else(|| args.results[0].with_extension("svg"));
@@ -175,7 +184,7 @@ pub(super) fn stem(path: &Path) -> String {
 fn not_found(why: &str, args: &PlotArgs, trajectories: &[Trajectory]) -> Failure {
     let names = || trajectories.iter().flat_map(|t| t.signals.iter().map(|s| s.name.as_str()));
     let mut diagnostic = Diagnostic::new(Code::BadArgument, why);
-    let asked = Globs::new(&args.variables);
+    let asked = Globs::new(&[args.variables.as_slice(), args.panel.as_slice()].concat());
     let wanted = args.x.as_deref().into_iter().chain(args.y.as_deref()).chain(asked.unused(names()));
     for name in wanted.filter(|n| !names().any(|k| k == *n)) {
         if let Some(near) = crate::diag::nearest(name, names()) {

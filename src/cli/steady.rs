@@ -5,13 +5,14 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::axes::Entry;
-use super::linearize::{rest, restless, run_from, run_to, state_at};
+use super::linearize::{run_to, state_at};
 use super::messages::Messages;
 use super::recorder::write_points;
 use super::request::ModelArgs;
-use super::{Ending, Failure, columns, files, model};
+use super::{Ending, Failure, columns, files, interrupt, model};
 use crate::analysis::balance::{self, Budget};
 use crate::analysis::linear::{Choice, Chosen};
+use crate::analysis::steady::{rest, run_from};
 use crate::compile::Model;
 use crate::diag::Code;
 use crate::experiment::seconds;
@@ -91,7 +92,7 @@ pub(super) fn run(args: &SteadyArgs, messages: &mut Messages) -> Result<Ending, 
         if let Some(&v) = moved.first().filter(|_| !over.is_empty()) {
             state.values[v.index()] = value;
         }
-        match rest(&model, &chosen, &state) {
+        match rest(&model, &chosen, &state, interrupt::flag()) {
             Ok(found) => {
                 state = found;
                 let (rows, after) = settled(&model, &chosen, &state, &wanted)?;
@@ -106,16 +107,16 @@ pub(super) fn run(args: &SteadyArgs, messages: &mut Messages) -> Result<Ending, 
     }
     tell(args, &over, &table)?;
     if let Some(why) = failed {
-        let mut failure = restless(&why, &chosen);
-        if let (Some(d), false) = (failure.diagnostics.first_mut(), over.is_empty()) {
+        let mut d = why.said(&chosen);
+        if !over.is_empty() {
             let value = values.get(table.len()).copied().unwrap_or(f64::NAN);
             d.notes.push(format!("at {} = {}", over[0], number::rounded(value, 6)));
         }
-        return Err(failure);
+        return Err(d.into());
     }
     if args.balance || args.sankey.is_some() {
         let ports = balance::ports(&model.flat);
-        let rows = run_from(&model, &chosen, &state, MOMENT, &balance::wanted(&ports))?.0;
+        let rows = moment(&model, &chosen, &state, &balance::wanted(&ports))?.0;
         power(args, &model, &ports, &rows, messages)?;
     }
     Ok(Ending::Fine)
@@ -145,9 +146,14 @@ fn wanted(args: &SteadyArgs, model: &Model, chosen: &Chosen) -> Result<Vec<VarId
 /// Seconds over which a steady state is watched, to see how fast positions move.
 const MOMENT: f64 = 1e-3;
 
+fn moment(model: &Model, chosen: &Chosen, state: &State, wanted: &[VarId]) -> Result<(Trajectory, State), Failure> {
+    let ran = run_from(model, chosen, state, MOMENT, wanted, interrupt::flag());
+    ran.map_err(|diagnostics| Failure { diagnostics })
+}
+
 /// The values at a steady state, and the state with everything that follows from it.
 fn settled(model: &Model, chosen: &Chosen, state: &State, wanted: &[VarId]) -> Result<(Vec<f64>, State), Failure> {
-    let (rows, mut after) = run_from(model, chosen, state, MOMENT, wanted)?;
+    let (rows, mut after) = moment(model, chosen, state, wanted)?;
     after.time = state.time;
     Ok((rows.columns.iter().map(|c| c[0]).collect(), after))
 }

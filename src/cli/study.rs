@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use super::messages::Messages;
 use super::Failure;
-use crate::Model;
+use super::messages::Messages;
+use crate::compile::Model;
 use crate::diag::{Checked, Diagnostic, Sources};
 use crate::lower::Options;
 use crate::study::{Bound, Recording, Role, Study};
@@ -25,7 +25,7 @@ pub(super) struct Opened {
 pub(super) fn open(path: &Path, data: Option<&Path>, messages: &mut Messages) -> Result<Opened, Failure> {
     let mut sources = Sources::default();
     let study = said(Study::read(&DiskWorld, path, &mut sources), &sources, messages)?;
-    let outcome = crate::compile(&DiskWorld, &study.request(), &Options { native: true });
+    let outcome = crate::compile::compile(&DiskWorld, &study.request(), &Options { native: true });
     messages.sources = outcome.sources;
     let Some(model) = outcome.value else { return Err(Failure { diagnostics: outcome.diagnostics }) };
     messages.say(&outcome.diagnostics);

@@ -3,6 +3,7 @@
 mod messages;
 
 use crate::diag::{Checked, Code, Diagnostic, Sources};
+use crate::expr::VarId;
 use crate::flat::{self, FlatModel};
 use crate::instance::{self, Instance, ModelRequest, Override};
 use crate::lower::{self, System};
@@ -71,6 +72,21 @@ impl Model {
     pub fn with_states(&self, choice: &StateChoice) -> Option<Arc<System>> {
         let dae = structure::analyze(&self.flat, choice).value?;
         Some(Arc::new(lower::lower(Arc::new(dae), &lower::Options::default())))
+    }
+
+    /// The same model whose parameters have these values from the beginning; sorted anew.
+    ///
+    /// # Errors
+    /// Where the equations do not determine the unknowns with these values.
+    pub fn with_values(&self, values: &[(VarId, f64)]) -> Result<Model, Vec<Diagnostic>> {
+        let mut flat = FlatModel::clone(&self.flat);
+        for &(v, value) in values {
+            flat.variables[v.index()].binding = Some(flat.exprs.num(value));
+        }
+        let sorted = analyze(&flat);
+        let dae = Arc::new(sorted.value.ok_or(sorted.diagnostics)?);
+        let system = Arc::new(lower::lower(dae.clone(), &lower::Options::default()));
+        Ok(Model { flat: Arc::new(flat), graph: self.graph.clone(), dae, system })
     }
 }
 

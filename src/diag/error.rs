@@ -15,6 +15,16 @@ pub struct Error {
     pub sources: Arc<Sources>,
 }
 
+/// Characters a line of [`Error::full`].
+const WIDTH: usize = 100;
+
+impl Error {
+    /// What the command prints: with the text concerned, causes and help.
+    pub fn full(&self) -> String {
+        render(&self.sources, &self.diagnostics, Format::Human, WIDTH, false).trim_end().to_owned()
+    }
+}
+
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(render(&self.sources, &self.diagnostics, Format::Short, 120, false).trim_end())

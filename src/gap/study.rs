@@ -62,7 +62,7 @@ impl Unusable {
         Unusable { diagnostics, sources: None, model: false }
     }
 
-    fn model<T>(outcome: crate::Outcome<T>) -> Self {
+    fn model<T>(outcome: crate::compile::Outcome<T>) -> Self {
         Unusable { diagnostics: outcome.diagnostics, sources: Some(outcome.sources), model: true }
     }
 }
@@ -119,7 +119,7 @@ struct Nominal {
 impl Nominal {
     fn read(world: &dyn World, study: &Study) -> Result<Self, Unusable> {
         let request = study.request();
-        let outcome = crate::sort(world, &request);
+        let outcome = crate::compile::sort(world, &request);
         let Some((flat, _, dae)) = outcome.value else { return Err(Unusable::model(outcome)) };
         let checked = study.bind(&flat);
         let Some(bound) = checked.value else { return Err(Unusable::study(checked.diagnostics)) };
@@ -226,7 +226,7 @@ impl Nominal {
 /// # Errors
 /// [`Unusable`].
 pub fn proposed(world: &dyn World, study: &Study) -> Result<(Vec<Hypothesis>, Vec<Diagnostic>), Unusable> {
-    let outcome = crate::flatten(world, &study.request());
+    let outcome = crate::compile::flatten(world, &study.request());
     let Some(f) = outcome.value else { return Err(Unusable::model(outcome)) };
     let checked = study.bind(&f.flat);
     let Some(bound) = checked.value else { return Err(Unusable::study(checked.diagnostics)) };

@@ -18,6 +18,8 @@ const UNASKED: usize = 28;
 pub struct Choice {
     /// Signals by name; all when empty.
     pub variables: Globs,
+    /// Panels composed by hand, each of what its patterns match; by unit when empty.
+    pub panels: Vec<Globs>,
     /// The signal on the horizontal axis; time when `None`.
     pub x: Option<String>,
     /// Stands above the picture.
@@ -84,6 +86,9 @@ pub struct Selected {
 /// # Errors
 /// A sentence when nothing matches or the horizontal signal does not exist.
 pub fn figure(runs: &[Run<'_>], choice: &Choice) -> Result<Selected, String> {
+    if !choice.panels.is_empty() {
+        return by_hand(runs, choice);
+    }
     let mut chosen = chosen_names(runs, choice)?;
     if choice.variables.is_empty() {
         worth_drawing(runs, &mut chosen);
@@ -102,6 +107,30 @@ pub fn figure(runs: &[Run<'_>], choice: &Choice) -> Result<Selected, String> {
     }
     let figure = Figure { title: choice.title.clone(), panels, shared_x: choice.x.is_none() };
     Ok(Selected { figure, left_out })
+}
+
+/// Panels that the user composed, each of one dimension: values are shown in the unit of its first signal.
+fn by_hand(runs: &[Run<'_>], choice: &Choice) -> Result<Selected, String> {
+    let mut panels = Vec::new();
+    for globs in &choice.panels {
+        let one = Choice { variables: globs.clone(), panels: Vec::new(), ..choice.clone() };
+        let mut signals = chosen_names(runs, &one)?;
+        signals.sort_by_key(|s| globs.position(&s.name));
+        let like_first: Vec<Signal> = signals.iter().map(|s| shown_like(s, signals[0])).collect();
+        if let Some(other) = like_first.iter().find(|s| group(s) != group(&like_first[0])) {
+            let of = |s: &Signal| axis_label(&format!("`{}`", s.name), s);
+            return Err(format!("one panel cannot hold both {} and {}", of(signals[0]), of(other)));
+        }
+        panels.push(panel(runs, &like_first.iter().collect::<Vec<_>>(), choice.x.as_deref())?);
+    }
+    let figure = Figure { title: choice.title.clone(), panels, shared_x: choice.x.is_none() };
+    Ok(Selected { figure, left_out: 0 })
+}
+
+/// A signal shown in the unit of another, where it has its dimension.
+fn shown_like(signal: &Signal, first: &Signal) -> Signal {
+    let like = Signal { display_unit: shown_unit(first).to_owned(), ..signal.clone() };
+    if conversion(&like).is_some() || like.display_unit == like.unit { like } else { signal.clone() }
 }
 
 /// The signals to draw, each name once, in the order of the runs.
@@ -310,10 +339,27 @@ mod tests {
     }
 
     #[test]
+    fn panels_by_hand() {
+        let t = sample();
+        let run = Run { label: "a", trajectory: &t };
+        let drawn = |panels: &[&str]| {
+            let panels = panels.iter().map(|p| Globs::new(&[p])).collect();
+            let found = figure(&[run], &Choice { panels, ..Choice::default() })?.figure;
+            let names = |p: &Panel| p.series.iter().map(|s| s.name.clone()).collect::<Vec<_>>().join(" ");
+            Ok::<_, String>(found.panels.iter().map(names).collect::<Vec<_>>())
+        };
+        assert_eq!(drawn(&["tank.p,pump.p", "on", "*.p"]).unwrap(), ["tank.p pump.p", "on", "pump.p tank.p"]);
+        let like = shown_like(&Signal::new("p").unit("Pa"), &t.signals[0]);
+        assert_eq!(plotted(&like, &[2e5]), [2.0]);
+        assert_eq!(drawn(&["pump.*"]).unwrap_err(), "one panel cannot hold both `pump.p` in bar and `pump.q` in m3/s");
+        assert_eq!(drawn(&["nothing"]).unwrap_err(), "no variable matches");
+    }
+
+    #[test]
     fn two_runs_against_a_variable() {
         let t = sample();
         let runs = [Run { label: "a", trajectory: &t }, Run { label: "b", trajectory: &t }];
-        let choice = Choice { variables: Globs::new(&["tank.p"]), x: Some("pump.p".into()), title: String::new() };
+        let choice = Choice { variables: Globs::new(&["tank.p"]), x: Some("pump.p".into()), ..Choice::default() };
         let figure = figure(&runs, &choice).unwrap().figure;
         assert!(!figure.shared_x);
         assert_eq!(figure.panels[0].x_label, "pump.p in bar");

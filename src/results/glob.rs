@@ -29,6 +29,11 @@ impl Globs {
         self.patterns.iter().any(|p| p == name || array(name) == Some(p.as_str()))
     }
 
+    /// The index of the first pattern that matches; behind all where none does.
+    pub fn position(&self, name: &str) -> usize {
+        self.patterns.iter().position(|p| matches(p, name)).unwrap_or(usize::MAX)
+    }
+
     /// The patterns that match none of these names: probably spelling mistakes.
     pub fn unused<'a>(&self, names: impl Iterator<Item = &'a str> + Clone) -> Vec<&str> {
         let none = |pattern: &&String| !names.clone().any(|name| matches(pattern, name));

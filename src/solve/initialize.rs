@@ -273,8 +273,8 @@ mod tests {
                w2 = 2*w1;
              end M;"
         );
-        let flat = crate::flatten_text(&text, None).value.expect("sound").flat;
-        let dae = crate::analyze(&flat).value.expect("sound");
+        let flat = crate::compile::flatten_text(&text, None).value.expect("sound").flat;
+        let dae = crate::compile::analyze(&flat).value.expect("sound");
         let system = lower(Arc::new(dae), &Options { native: false });
         let mut values = prepare(&system, &Settings::default());
         let scales = Scales::new(&system, &values);

@@ -122,8 +122,8 @@ mod tests {
                  n = pre(n) + 1;
                end when;
              end M;";
-        let flat = crate::flatten_text(text, None).value.expect("sound").flat;
-        let dae = crate::analyze(&flat).value.expect("sound");
+        let flat = crate::compile::flatten_text(text, None).value.expect("sound").flat;
+        let dae = crate::compile::analyze(&flat).value.expect("sound");
         lower(Arc::new(dae), &Options { native: false })
     }
 

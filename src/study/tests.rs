@@ -54,7 +54,7 @@ fn load(world: &MemoryWorld) -> (Option<(Bound, Vec<Recording>)>, String) {
     let mut said = Vec::new();
     let made = (|| {
         let study = Study::read(world, Path::new("lab/study.toml"), &mut sources).sink(&mut said)?;
-        let flat = crate::flatten(world, &study.request()).value.expect("the model is right").flat;
+        let flat = crate::compile::flatten(world, &study.request()).value.expect("the model is right").flat;
         let bound = study.bind(&flat).sink(&mut said)?;
         let recordings = bound.load(world, None, Role::Train, &mut sources).sink(&mut said)?;
         Some((bound, recordings))

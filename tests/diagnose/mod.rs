@@ -1,12 +1,13 @@
 //! Compiles a text, and runs it if asked to, and tells what bramah says about it. Used by several test files.
 #![allow(dead_code, reason = "each test file uses a part")]
 
-use bramah::diag::{Diagnostic, Severity, Sources};
-use bramah::expr::VarId;
-use bramah::lower::Options;
-use bramah::solve::{Control, Settings, Sink, simulate};
+use bramah::Request;
+use bramah::internals::compile::Outcome;
+use bramah::internals::diag::{Diagnostic, Severity, Sources};
+use bramah::internals::expr::VarId;
+use bramah::internals::lower::Options;
+use bramah::internals::solve::{Control, Settings, Sink, simulate};
 use bramah::world::MemoryWorld;
-use bramah::{Outcome, Request};
 use std::ops::ControlFlow;
 
 /// All that is said about a text.
@@ -35,7 +36,8 @@ impl Report {
 pub fn report(text: &str, model: Option<&str>, run: bool) -> Report {
     let world = MemoryWorld::single("model.mo", text);
     let request = Request { source: "model.mo".into(), model: model.map(Into::into), ..Request::default() };
-    let Outcome { sources, mut diagnostics, value } = bramah::compile(&world, &request, &Options { native: false });
+    let Outcome { sources, mut diagnostics, value } =
+        bramah::internals::compile::compile(&world, &request, &Options { native: false });
     if let Some(model) = value.filter(|_| run) {
         let all = (0..model.flat.variables.len()).map(|i| VarId(u32::try_from(i).expect("few variables")));
         let settings = Settings { wanted: all.collect(), ..Settings::from_experiment(&model.flat.experiment) };

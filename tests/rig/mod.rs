@@ -2,7 +2,7 @@
 
 #![allow(dead_code, reason = "each test file uses a part")]
 
-use bramah::instance::Override;
+use bramah::Override;
 use bramah::results::Trajectory;
 use bramah::world::MemoryWorld;
 use bramah::{Request, Simulation};

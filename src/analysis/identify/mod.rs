@@ -19,6 +19,7 @@ mod residuals;
 pub mod runs;
 mod separate;
 mod starts;
+mod study;
 mod weights;
 
 pub use doubts::doubts;
@@ -33,9 +34,10 @@ pub use residuals::{Dependence, ResidualTest};
 pub use runs::Broken;
 pub use separate::{Blind, Separation};
 pub use starts::Starts;
+pub use study::{Identified, identify};
 
-use crate::Model;
 use crate::analysis::noise;
+use crate::compile::Model;
 use crate::diag::{Code, Diagnostic};
 use crate::study::{Bound, Recording, full_scales};
 use doubts::foreign;

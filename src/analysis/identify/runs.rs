@@ -1,6 +1,6 @@
 //! Runs of a model along recordings, with the values at the times of the samples.
 
-use crate::Model;
+use crate::compile::Model;
 use crate::expr::VarId;
 use crate::solve::{self, Control, End, Input, Settings, Sink, State};
 use crate::structure::StateChoice;

@@ -59,7 +59,7 @@ pub(super) fn with_fit<T>(
 ) -> T {
     let mut sources = Sources::default();
     let study = Study::read(world, Path::new("study.toml"), &mut sources).value.expect("a study");
-    let outcome = crate::compile(world, &study.request(), &crate::lower::Options { native: false });
+    let outcome = crate::compile::compile(world, &study.request(), &crate::lower::Options { native: false });
     let model = outcome.value.unwrap_or_else(|| panic!("{:?}", outcome.diagnostics));
     let bound = study.bind(&model.flat).value.expect("fits");
     let train = bound.load(world, None, Role::Train, &mut sources).value.expect("readable");
@@ -290,7 +290,8 @@ fn questions_without_sense() {
         let world = world(LAG, text, lag_recording(1, 0.02), lag_recording(2, 0.02));
         let mut sources = Sources::default();
         let study = Study::read(&world, Path::new("study.toml"), &mut sources).value.expect("a study");
-        let model = crate::compile(&world, &study.request(), &crate::lower::Options { native: false }).value.unwrap();
+        let model =
+            crate::compile::compile(&world, &study.request(), &crate::lower::Options { native: false }).value.unwrap();
         let bound = study.bind(&model.flat).value.expect("fits");
         let train = bound.load(&world, None, Role::Train, &mut sources).value.expect("readable");
         match Problem::new(&model, &bound, &train) {

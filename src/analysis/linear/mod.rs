@@ -13,7 +13,7 @@ pub use schedule::{Schedule, schedule};
 
 use super::local::{Local, LocalError, Plan};
 use super::{Lifted, lift};
-use crate::Model;
+use crate::compile::Model;
 use crate::diag::{Code, Diagnostic, nearest};
 use crate::expr::VarId;
 use crate::flat::{FlatModel, Type, Variability, Variable};

@@ -8,7 +8,7 @@ fn id(flat: &FlatModel, name: &str) -> VarId {
 }
 
 fn local(text: &str, parameters: &[&str], outputs: &[&str], u: &[f64]) -> Local {
-    let flat = crate::flatten_text(text, None).value.expect("sound").flat;
+    let flat = crate::compile::flatten_text(text, None).value.expect("sound").flat;
     let ids = |names: &[&str]| names.iter().map(|n| id(&flat, n)).collect::<Vec<_>>();
     let lifted = lift(&flat, &ids(parameters), &ids(outputs));
     let plan = Arc::new(Plan::new(&lifted).expect("can be sorted"));

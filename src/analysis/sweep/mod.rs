@@ -13,7 +13,7 @@ pub use sobol::{Index, indices};
 pub use table::{Table, fingerprint};
 
 use super::linear::outputs;
-use crate::Model;
+use crate::compile::Model;
 use crate::diag::{Code, Diagnostic, nearest};
 use crate::experiment::Sweep;
 use crate::expr::VarId;
@@ -144,7 +144,7 @@ mod tests {
     fn model(text: &str) -> Model {
         let world = MemoryWorld::single("m.mo", text);
         let request = crate::Request { source: "m.mo".into(), ..crate::Request::default() };
-        crate::compile(&world, &request, &crate::lower::Options { native: false }).value.expect("sound")
+        crate::compile::compile(&world, &request, &crate::lower::Options { native: false }).value.expect("sound")
     }
 
     const DECAY: &str = "model M parameter Real k(unit = \"1/s\") = 1; parameter Integer n = 2; Real a[n];

@@ -7,9 +7,9 @@ use std::sync::Arc;
 
 use lsp_types::Uri;
 
-use crate::world::DiskWorld;
 use crate::editor::is_shipped;
 use crate::shipped::Shipped;
+use crate::world::DiskWorld;
 use crate::world::World;
 
 /// Texts that are open, over the disk. Cheap to copy.

@@ -6,7 +6,9 @@ use super::super::inputs::all_driven;
 use super::folder::Folder;
 use super::http::{Answer, Ask, Refusal, said};
 use super::jobs::{Job, Jobs, Made};
+use crate::Simulation;
 use crate::circuit::Parameter;
+use crate::compile::{Request, graph, runnable};
 use crate::diag::{Code, Diagnostic, nearest};
 use crate::experiment::seconds;
 use crate::instance::Override;
@@ -15,7 +17,6 @@ use crate::plot::{html, network};
 use crate::results::{Globs, Kind, Signal, number};
 use crate::solve::{Control, Progress};
 use crate::world::DiskWorld;
-use crate::{Request, Simulation, graph, runnable};
 
 /// Digits of values that the page shows: as many as the reader of a data sheet needs, and the text is what is sent back.
 const DIGITS: usize = 9;

@@ -9,10 +9,10 @@ use super::super::model::source;
 use super::super::{Failure, files};
 use super::guard;
 use super::http::{Refusal, said};
+use crate::compile::{Request, runnable};
 use crate::diag::{Code, Sources};
 use crate::shipped::Shipped;
 use crate::world::{DiskWorld, World};
-use crate::{Request, runnable};
 
 /// Folders deeper than this are not searched.
 const DEPTH: usize = 5;
@@ -117,13 +117,16 @@ impl Folder {
 /// Models that ship with bramah to be run: those of `models`, and the examples of the library.
 fn shipped() -> Vec<Listed> {
     let mut all = Vec::new();
-    for root in Shipped::roots() {
+    let mut roots = Shipped::roots();
+    roots.sort_by_key(|root| !root.starts_with("models"));
+    for root in roots {
         for (name, _) in Shipped.list(&root).unwrap_or_default() {
             let request = Request { source: root.join(name), ..Request::default() };
             all.extend(runnable(&Shipped, &request).unwrap_or_default().into_iter().filter(|r| r.experiment));
         }
     }
-    let listed = |r: crate::Runnable| Listed { source: String::new(), class: r.class, description: r.description };
+    let listed =
+        |r: crate::compile::Runnable| Listed { source: String::new(), class: r.class, description: r.description };
     all.into_iter().map(listed).collect()
 }
 

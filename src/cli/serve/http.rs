@@ -139,9 +139,8 @@ pub(super) fn answer(mut request: Request, act: impl FnOnce(&Ask) -> Result<Answ
         let bug = |_| Refusal::new(500, "this is a bug of bramah; its terminal says more");
         catch_unwind(AssertUnwindSafe(|| act(&ask))).unwrap_or_else(|panic| Err(bug(panic)))
     });
-    let answer = answered.unwrap_or_else(|why| {
-        Answer::json(&Messages { messages: &why.messages }).with_status(why.status)
-    });
+    let answer =
+        answered.unwrap_or_else(|why| Answer::json(&Messages { messages: &why.messages }).with_status(why.status));
     let headers = [
         ("Content-Type", answer.kind),
         ("Content-Security-Policy", answer.policy),

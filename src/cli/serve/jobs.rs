@@ -136,10 +136,7 @@ impl Job {
 
 impl Jobs {
     /// Begins a job; its number is the answer.
-    pub fn start(
-        &self,
-        work: impl FnOnce(&Job) -> Result<Made, String> + Send + 'static,
-    ) -> Result<Answer, Refusal> {
+    pub fn start(&self, work: impl FnOnce(&Job) -> Result<Made, String> + Send + 'static) -> Result<Answer, Refusal> {
         let id = self.next.fetch_add(1, Ordering::Relaxed);
         let job = Arc::new(Job { id, stop: AtomicBool::default(), begun: Instant::now(), now: Mutex::default() });
         let mut all = self.all();

@@ -1,7 +1,7 @@
 //! `bramah serve`: circuits and studies of a folder in a browser.
 //!
 //! `guard` decides who may ask for what, `jobs` holds what takes time, `circuits` and `studies` answer. The page
-//! (`page.html`, `page.css`, `page.js`) talks to them in JSON; nothing is kept in the server but uploaded recordings.
+//! (`page/`) talks to them in JSON; nothing is kept in the server but uploaded recordings.
 
 mod circuits;
 mod folder;
@@ -11,11 +11,12 @@ mod jobs;
 mod studies;
 
 use std::net::{Ipv4Addr, SocketAddr};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::Arc;
 
 use clap::Args;
+use include_dir::{Dir, include_dir};
 use tiny_http::Server;
 
 use super::{Ending, Failure, files};
@@ -53,6 +54,9 @@ pub(super) struct ServeArgs {
     #[arg(long)]
     open: bool,
 }
+
+/// The files of the page.
+static PAGE: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/src/cli/serve/page");
 
 /// What all requests share.
 struct Shared {
@@ -113,9 +117,6 @@ fn open(address: &str) {
 fn answer(shared: &Arc<Shared>, ask: &Ask) -> Result<Answer, Refusal> {
     let Shared { folder, jobs, uploads, .. } = &**shared;
     match (ask.post, ask.path.as_str()) {
-        (false, "/") => Ok(Answer::page(include_str!("page.html"))),
-        (false, "/page.css") => Ok(Answer::style(include_str!("page.css"))),
-        (false, "/page.js") => Ok(Answer::script(include_str!("page.js"))),
         (false, "/api/folder") => Ok(Answer::json(&folder.contents())),
         (false, "/api/circuit") => circuits::open(folder, ask),
         (true, "/api/run") => circuits::run(folder, ask, jobs),
@@ -129,6 +130,23 @@ fn answer(shared: &Arc<Shared>, ask: &Ask) -> Result<Answer, Refusal> {
         (true, "/api/study/save") => studies::save(folder, ask, uploads),
         (true, "/api/recordings") => uploads.take(ask),
         (false, "/api/recording") => uploads.columns(folder, ask),
-        _ => Err(Refusal::new(404, format!("there is nothing at `{}`", ask.path))),
+        (false, path) => page(path).ok_or_else(|| nothing(path)),
+        (true, path) => Err(nothing(path)),
+    }
+}
+
+fn nothing(path: &str) -> Refusal {
+    Refusal::new(404, format!("there is nothing at `{path}`"))
+}
+
+/// A file of the page.
+fn page(path: &str) -> Option<Answer> {
+    let name = if path == "/" { "index.html" } else { path.strip_prefix('/')? };
+    let text = PAGE.get_file(name)?.contents_utf8()?;
+    match Path::new(name).extension()?.to_str()? {
+        "html" => Some(Answer::page(text)),
+        "css" => Some(Answer::style(text)),
+        "js" => Some(Answer::script(text)),
+        _ => None,
     }
 }

@@ -317,7 +317,9 @@ fn lexical(path: &Path) -> String {
     let mut kept: Vec<std::path::Component<'_>> = Vec::new();
     for part in path.components() {
         match part {
-            std::path::Component::ParentDir if kept.last().is_some_and(|l| matches!(l, std::path::Component::Normal(_))) => {
+            std::path::Component::ParentDir
+                if kept.last().is_some_and(|l| matches!(l, std::path::Component::Normal(_))) =>
+            {
                 kept.pop();
             }
             other => kept.push(other),

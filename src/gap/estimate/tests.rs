@@ -10,7 +10,7 @@ use nalgebra::DMatrix;
 use std::sync::Arc;
 
 fn plan(text: &str, parameters: &[&str], outputs: &[&str]) -> Arc<Plan> {
-    let flat = crate::flatten_text(text, None).value.expect("a model").flat;
+    let flat = crate::compile::flatten_text(text, None).value.expect("a model").flat;
     let id = |name: &&str| {
         let i = flat.variables.iter().position(|v| v.name == *name).expect("the model has it");
         VarId(u32::try_from(i).expect("small"))

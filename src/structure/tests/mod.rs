@@ -352,15 +352,15 @@ fn a_parameter_of_value_0_is_fixed_where_the_structure_hangs_on_it() {
           der(v2) = i;
           R*i = v1 - v2;
         end M;";
-    let flat = crate::flatten_text(text, None).value.expect("sound").flat;
-    let dae = crate::analyze(&flat).value.expect("sound");
+    let flat = crate::compile::flatten_text(text, None).value.expect("sound").flat;
+    let dae = crate::compile::analyze(&flat).value.expect("sound");
     assert_eq!(dae.states.len(), 1);
     let variability = |name: &str| dae.variables.iter().find(|v| v.name == name).expect("declared").variability;
     assert_eq!(
         ["R0", "R", "G"].map(variability),
         [Variability::Constant, Variability::Constant, Variability::Parameter]
     );
-    let varied = crate::analyze(&FlatModel { varied: true, ..flat }).value.expect("sound");
+    let varied = crate::compile::analyze(&FlatModel { varied: true, ..flat }).value.expect("sound");
     assert_eq!(varied.states.len(), 2);
 }
 
@@ -378,6 +378,6 @@ fn a_product_that_stays_does_not_go_round_for_ever() {
           c*i = x - w;
           der(w) = i;
         end M;";
-    let flat = crate::flatten_text(text, None).value.expect("sound").flat;
-    assert!(crate::analyze(&flat).value.is_some());
+    let flat = crate::compile::flatten_text(text, None).value.expect("sound").flat;
+    assert!(crate::compile::analyze(&flat).value.is_some());
 }

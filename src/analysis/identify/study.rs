@@ -1,0 +1,86 @@
+//! From a study file to its parameters.
+
+use super::{Identification, Method, Problem, Report, doubts, fit_words};
+use crate::compile::compile;
+use crate::diag::{Checked, Diagnostic, Error, Sources};
+use crate::lower::Options;
+use crate::study::{Recording, Role, Study};
+use crate::world::World;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Parameters found from recordings.
+#[derive(Clone, Debug)]
+pub struct Identified {
+    /// The numbers; serializes as the JSON of `bramah identify`.
+    pub report: Report,
+    /// The same in words for people.
+    pub words: String,
+    /// Warnings about study, recordings and fit.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// Reads a study, and finds the parameters that it lists from its recordings.
+///
+/// ```no_run
+/// use bramah::world::DiskWorld;
+///
+/// # fn main() -> Result<(), bramah::Error> {
+/// let found = bramah::identify(&DiskWorld, "rig/study.toml".as_ref())?;
+/// println!("{}", found.words);
+/// println!("{}", found.report.parameters["load.J"]["value"]);
+/// # Ok(())
+/// # }
+/// ```
+///
+/// # Errors
+/// What is wrong with the study, its model or its recordings; that runs fail.
+pub fn identify(world: &dyn World, study: &Path) -> Result<Identified, Error> {
+    let mut said = Said::default();
+    let read = Study::read(world, study, &mut said.sources);
+    let study = said.take(read)?;
+    let outcome = compile(world, &study.request(), &Options::default());
+    let Some(model) = outcome.value else {
+        return Err(Error { diagnostics: outcome.diagnostics, sources: Arc::new(outcome.sources) });
+    };
+    let bound = said.take(study.bind(&model.flat))?;
+    let load = |role, said: &mut Said| -> Result<Vec<Recording>, Error> {
+        let loaded = bound.load(world, None, role, &mut said.sources);
+        said.take(loaded)
+    };
+    let train = load(Role::Train, &mut said)?;
+    let problem = Problem::new(&model, &bound, &train).map_err(|d| said.error(d))?;
+    let found = Identification::new(&problem, &train, Method::Auto).map_err(|d| said.error(vec![d]))?;
+    let fit = found.fit().map_err(|d| said.error(vec![d]))?;
+    let held = if bound.has(Role::Held) { load(Role::Held, &mut said)? } else { Vec::new() };
+    let held = match held.is_empty() {
+        true => Vec::new(),
+        false => found.judge_held(&fit, &held).map_err(|d| said.error(vec![d]))?,
+    };
+    said.diagnostics.extend(found.suspicions.iter().cloned());
+    said.diagnostics.extend(doubts(&problem, &fit, &held));
+    Ok(Identified {
+        report: Report::new(&problem, &found, &fit, &held, &[]),
+        words: fit_words(&problem, &fit, &held),
+        diagnostics: said.diagnostics,
+    })
+}
+
+/// What was said so far, with the texts it points into.
+#[derive(Default)]
+struct Said {
+    sources: Sources,
+    diagnostics: Vec<Diagnostic>,
+}
+
+impl Said {
+    fn take<T>(&mut self, checked: Checked<T>) -> Result<T, Error> {
+        let Some(value) = checked.value else { return Err(self.error(checked.diagnostics)) };
+        self.diagnostics.extend(checked.diagnostics);
+        Ok(value)
+    }
+
+    fn error(&self, diagnostics: Vec<Diagnostic>) -> Error {
+        Error { diagnostics, sources: Arc::new(self.sources.clone()) }
+    }
+}
