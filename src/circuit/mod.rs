@@ -13,10 +13,11 @@ pub use simulation::{Outcome, Simulation};
 pub use stepping::{InputPort, Probe, Stepping};
 
 use crate::compile::Request;
-use crate::diag::Error;
+use crate::diag::{Code, Diagnostic, Error};
 use crate::instance::Override;
 use crate::world::MemoryWorld;
 use std::fmt::Write;
+use std::sync::Arc;
 
 /// A circuit under construction.
 ///
@@ -28,6 +29,8 @@ pub struct Circuit {
     components: Vec<(String, String, Vec<(String, String)>)>,
     connections: Vec<(String, String)>,
     equations: Vec<String>,
+    /// Parameters that were set before there was a component.
+    astray: Vec<String>,
 }
 
 impl Circuit {
@@ -50,10 +53,12 @@ impl Circuit {
     }
 
     /// Modifies the component added last: `set("V", "1e-3")`, `set("p.start", "5e5")`. Values are Modelica
-    /// expressions, in the variable's unit.
+    /// expressions, in the variable's unit. Before any component was added there is nothing to modify, and the circuit does
+    /// not compile.
     pub fn set(&mut self, parameter: impl Into<String>, value: impl ToString) -> &mut Self {
-        if let Some((.., modifiers)) = self.components.last_mut() {
-            modifiers.push((parameter.into(), value.to_string()));
+        match self.components.last_mut() {
+            Some((.., modifiers)) => modifiers.push((parameter.into(), value.to_string())),
+            None => self.astray.push(parameter.into()),
         }
         self
     }
@@ -97,6 +102,11 @@ impl Circuit {
     /// # Errors
     /// The diagnostics of the first stage that finds something wrong; their places are in [`Circuit::text`].
     pub fn compile(&self) -> Result<Simulation, Error> {
+        if let Some(parameter) = self.astray.first() {
+            let text = format!("`set(\"{parameter}\", ..)` has no component to modify");
+            let d = Diagnostic::new(Code::BadSet, text).help("it modifies the component that was added last");
+            return Err(Error { diagnostics: vec![d], sources: Arc::default() });
+        }
         let file = format!("{}.mo", self.name);
         let world = MemoryWorld::single(&file, self.text());
         let request = Request {
@@ -106,5 +116,18 @@ impl Circuit {
             ..Request::default()
         };
         Simulation::compile(&world, &request)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_for_no_component_is_an_error() {
+        let mut circuit = Circuit::new("Empty");
+        circuit.set("V", 1.0).add("tank", "Hydraulic.Tank");
+        let said = circuit.compile().unwrap_err().to_string();
+        assert!(said.contains("`set(\"V\", ..)` has no component"), "{said}");
     }
 }

@@ -142,6 +142,9 @@ impl Found {
     /// A folder with a `package.mo` is one circuit file with all in it; of studies and experiments, those that say
     /// `version` are studies.
     fn walk(&mut self, folder: &Path, depth: usize) {
+        if depth == 0 {
+            return;
+        }
         let here = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
         let entries = DiskWorld.list(here).unwrap_or_default();
         let package = entries.iter().any(|(name, folder)| name == "package.mo" && !folder);
@@ -157,9 +160,8 @@ impl Found {
             match path.extension().and_then(|e| e.to_str()) {
                 _ if name.starts_with('.') || is_folder && name == "target" => {}
                 _ if is_folder => {
-                    if depth > 0 && !(package && path.join("package.mo").exists()) {
-                        self.walk(&path, depth - 1);
-                    }
+                    let inner = package && path.join("package.mo").exists();
+                    self.walk(&path, if inner { 0 } else { depth - 1 });
                 }
                 Some("mo") if !package => self.circuits.push(shown),
                 Some("toml") if is_study(&path) => self.studies.push(shown),

@@ -149,7 +149,8 @@ pub(super) fn answer(mut request: Request, act: impl FnOnce(&Ask) -> Result<Answ
         ("Referrer-Policy", "no-referrer"),
         ("Cross-Origin-Resource-Policy", "same-origin"),
     ];
-    let mut response = Response::from_string(answer.body).with_status_code(answer.status);
+    let plain = Response::from_string(answer.body).with_status_code(answer.status);
+    let mut response = plain.with_chunked_threshold(usize::MAX);
     for (name, value) in headers {
         response.add_header(Header::from_bytes(name, value).expect("the names and values above are plain"));
     }

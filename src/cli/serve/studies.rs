@@ -247,7 +247,7 @@ fn parsed(folder: &Folder, given: &Text, sources: &mut Sources) -> Result<Study,
 pub(super) fn compare(folder: &Folder, ask: &Ask, uploads: &Uploads, jobs: &Jobs) -> Result<Answer, Refusal> {
     begin(folder, ask, uploads, jobs, |question, sources, job| {
         job.at("simulating along the recordings", None);
-        let warnings = said(&question.diagnostics, &sources);
+        let warnings = said(&question.diagnostics, sources);
         let figure = question.compared().map_err(|d| said(&d, sources))?;
         Ok(Made { messages: warnings, page: html::write(&figure, &[]), files: Vec::new() })
     })
