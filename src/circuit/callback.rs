@@ -41,7 +41,7 @@ impl Conduct {
 /// Hands rows to a function.
 pub(super) struct Rows<'f> {
     /// Takes the time and the values.
-    pub on_row: &'f mut dyn FnMut(f64, &[f64]) -> ControlFlow<()>,
+    pub on_row: &'f mut (dyn FnMut(f64, &[f64]) -> ControlFlow<()> + Send),
     /// How it behaved.
     pub conduct: Conduct,
 }

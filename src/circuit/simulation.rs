@@ -285,7 +285,7 @@ impl Simulation {
     pub fn run_rows(
         &self,
         from: Option<&State>,
-        mut on_row: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
+        mut on_row: impl FnMut(f64, &[f64]) -> ControlFlow<()> + Send,
     ) -> Result<Outcome, Error> {
         let mut rows = Rows { on_row: &mut on_row, conduct: Conduct::default() };
         let run = self.run_into(from, &mut Control::default(), &mut rows)?;
@@ -321,7 +321,7 @@ impl Simulation {
             let conduct = &mut conduct;
             move |now: &Progress| conduct.call(|| report(now))
         });
-        let progress = watched.as_mut().map(|report| report as &mut dyn FnMut(&Progress) -> bool);
+        let progress = watched.as_mut().map(|report| report as &mut (dyn FnMut(&Progress) -> bool + Send));
         let mut control = Control { interrupt: control.interrupt, progress, reselect: Some(&mut reselect) };
         let run = solve::simulate(&self.model.system, &self.settings, &self.inputs, from, sink, &mut control);
         match conduct.complaint(run.time) {

@@ -58,9 +58,9 @@ pub struct Control<'a> {
     /// Ends the run soon after it is set, as from Ctrl-C.
     pub interrupt: Option<&'a AtomicBool>,
     /// Called every now and then; ends the run by returning false.
-    pub progress: Option<&'a mut dyn FnMut(&Progress) -> bool>,
+    pub progress: Option<&'a mut (dyn FnMut(&Progress) -> bool + Send)>,
     /// Analyses the model anew with other states, when those chosen have become singular. Called once for each choice.
-    pub reselect: Option<&'a mut dyn FnMut(&StateChoice) -> Option<Arc<System>>>,
+    pub reselect: Option<&'a mut (dyn FnMut(&StateChoice) -> Option<Arc<System>> + Send)>,
 }
 
 /// What a run came to. The rows are in the sink.

@@ -10,7 +10,7 @@ use std::ops::ControlFlow;
 use std::time::Duration;
 
 /// Takes the rows of a run in the order of time. Rows of equal time are an event: before and after it.
-pub trait Sink {
+pub trait Sink: Send {
     /// A row; the values are in the order of `Settings::wanted`. `Break` ends the run as interrupted.
     fn row(&mut self, time: f64, values: &[f64]) -> ControlFlow<()>;
 

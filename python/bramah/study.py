@@ -1,0 +1,290 @@
+"""Models and recordings: parameters, and what a model lacks."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+import numpy as np
+
+from . import _bramah, _given
+from .model import Model
+from .result import framed
+
+
+def identify(study: str | os.PathLike[str] | Study, data: str | os.PathLike[str] | None = None) -> Identified:
+    """Finds the parameters that a study lists from its recordings.
+
+    Args:
+        study: a study file (docs/study.md), or a `Study`.
+        data: the folder of the recordings; that of the study where left out.
+    """
+    files, path = _files(study, data)
+    return Identified(*_bramah.identify(files, path))
+
+
+def gap(
+    study: str | os.PathLike[str] | Study,
+    data: str | os.PathLike[str] | None = None,
+    *,
+    effect: str | None = None,
+    progress: bool | Callable[[str], None] = False,
+) -> Verdict:
+    """Diagnoses the gap between a model and recordings of its machine.
+
+    Args:
+        study: a study file (docs/study.md), or a `Study`.
+        data: the folder of the recordings; that of the study where left out.
+        effect: fit this effect alone and show it, even where the diagnosis refuses it: "Effects.SensorLag@p".
+        progress: True prints the stages, or a function that gets each as a text.
+    """
+    files, path = ([], os.fspath(study)) if not isinstance(study, Study) else (study._files, study._path)
+    show = progress if callable(progress) else (_print if progress else None)
+    folder = None if data is None else os.fspath(data)
+    return Verdict(*_bramah.diagnose(files, path, folder, effect, show))
+
+
+def _print(stage: str) -> None:
+    print(stage, flush=True)
+
+
+def _files(study: str | os.PathLike[str] | Study, data: str | os.PathLike[str] | None) -> tuple[list[tuple[str, str]], str]:
+    if isinstance(study, Study):
+        return study._files, study._path
+    path = os.fspath(study)
+    if data is None:
+        return [], path
+    # recordings are looked for beside the study: it is moved, and keeps its model
+    with open(path, encoding="utf-8") as file:
+        text = file.read()
+    moved = os.path.join(os.fspath(data), os.path.basename(path))
+    here = os.path.relpath(os.path.dirname(os.path.abspath(path)), os.path.abspath(os.fspath(data)))
+    return [(moved, _with_model_from(text, here))], moved
+
+
+def _with_model_from(text: str, folder: str) -> str:
+    """The study with the path of its model read from another folder."""
+    lines = text.split("\n")
+    for i, line in enumerate(lines):
+        if line.lstrip().startswith("["):
+            break
+        key, equals, value = line.partition("=")
+        if equals and key.strip() == "model":
+            name = value.split("#")[0].strip().strip("\"'")
+            lines[i] = f"model = {json.dumps(os.path.join(folder, name))}"
+    return "\n".join(lines)
+
+
+class Identified:
+    """Parameters found from recordings.
+
+    Attributes:
+        report: the numbers of `bramah identify`, as a dict.
+        messages: warnings, or "".
+    """
+
+    def __init__(self, report: str, words: str, messages: str) -> None:
+        self.report: dict[str, Any] = json.loads(report)
+        self.messages = messages
+        self._words = words
+
+    @property
+    def values(self) -> dict[str, float]:
+        """The values found, in the parameters' units: `model.with_values(found.values)` is the fitted model."""
+        return {name: p["value"] for name, p in self.report["parameters"].items()}
+
+    @property
+    def std(self) -> dict[str, float]:
+        """One standard deviation of each, in its unit; NaN where the data say nothing."""
+        return {n: np.nan if p["std"] is None else p["std"] for n, p in self.report["parameters"].items()}
+
+    def to_pandas(self) -> Any:
+        """A row for each parameter: value, std, interval (95 %), unit."""
+        import pandas
+
+        rows = {
+            name: {"value": p["value"], "std": p["std"], "low": p["interval"][0], "high": p["interval"][1], "unit": p["unit"]}
+            for name, p in self.report["parameters"].items()
+        }
+        return pandas.DataFrame.from_dict(rows, orient="index")
+
+    def __str__(self) -> str:
+        return self._words
+
+    def __repr__(self) -> str:
+        return f"<bramah.Identified: {', '.join(self.values)}>"
+
+    def _repr_html_(self) -> str:
+        import html
+
+        return f"<pre>{html.escape(self._words)}</pre>"
+
+
+class Verdict:
+    """What a diagnosis came to.
+
+    Attributes:
+        report: the numbers of `bramah gap`, as a dict (docs/gap.md).
+        html: the same as one page, which a notebook shows.
+        corrected: the corrected model as Modelica text, class `Fixed`; `load(verdict.corrected)` runs it. None where
+            it cannot be written.
+        messages: warnings, or "".
+    """
+
+    def __init__(self, report: str, words: str, page: str, corrected: str | None, messages: str) -> None:
+        self.report: dict[str, Any] = json.loads(report)
+        self.html, self.corrected, self.messages = page, corrected, messages
+        self._words = words
+
+    @property
+    def verdict(self) -> str:
+        """"effects", "outside_library", "gap_open", "undecidable", "nothing_found" or "recording_error"."""
+        return self.report["verdict"]
+
+    @property
+    def effects(self) -> list[dict[str, Any]]:
+        """What the model lacks: effect, places, parameters, evidence; the surest first."""
+        return self.report["effects"]
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes the page (.html), the numbers (.json) or the corrected model (.mo)."""
+        path = os.fspath(path)
+        if path.endswith(".json"):
+            text = json.dumps(self.report, indent=2)
+        elif path.endswith(".mo"):
+            if self.corrected is None:
+                raise ValueError("there is no corrected model")
+            text = self.corrected
+        else:
+            text = self.html
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+
+    def __str__(self) -> str:
+        return self._words
+
+    def __repr__(self) -> str:
+        named = ", ".join(f"{e['effect']} at {e['places'][0]['place']}" for e in self.effects)
+        return f"<bramah.Verdict {self.verdict}{': ' + named if named else ''}>"
+
+    def _repr_html_(self) -> str:
+        return framed(self.html, 800)
+
+
+class Study:
+    """A model tied to recordings that are data frames.
+
+    >>> study = br.Study(model, recordings=[run1, run2], held=[run3],
+    ...                  inputs={"u": "u_valve"}, signals={"vol.p": ("p1", "bar"), "cyl.x": ("x", "mm")},
+    ...                  tolerances={"shaft.J": "3 %", "pump.V": "exact"})
+    >>> study.gap()
+
+    Args:
+        model: from `load`.
+        recordings: pandas or polars frames, or mappings of columns: train recordings.
+        held: recordings that only confirm.
+        time: the time column, in seconds (or the index of that name); "time" or another usual name where left out.
+        signals: for each measured variable its column, or (column, unit), or a dict with the keys of docs/study.md
+            (column, unit, sign, full_scale, accuracy).
+        inputs: for each input of the model its column, (column, unit), or a dict (column, unit, hold, kind).
+        tolerances: for each parameter "3 %", "0.2 bar", "exact", or a dict (sigma, min, max).
+        effects: dict with include, exclude, places, folder.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        recordings: Iterable[Any],
+        *,
+        held: Iterable[Any] = (),
+        time: str | None = None,
+        signals: Mapping[str, Any],
+        inputs: Mapping[str, Any] | None = None,
+        tolerances: Mapping[str, Any] | None = None,
+        effects: Mapping[str, Any] | None = None,
+    ) -> None:
+        text, source, name, libraries, overrides = model._core.recipe()
+        if libraries or overrides:
+            raise ValueError("a study takes a model as its text has it: without libraries and values that were set")
+        lines = ["version = 1"]
+        self._files: list[tuple[str, str]] = []
+        if text is not None:
+            lines.append('model = "model.mo"')
+            self._files.append(("model.mo", text))
+        elif os.path.exists(source):
+            lines.append(f"model = {_toml(os.path.abspath(source))}")
+        lines.append(f"class = {_toml(model.name)}")
+        lines += _table("inputs", inputs or {}, ("column", "unit"))
+        lines += _table("signals", {k: _with_variable(k, v) for k, v in signals.items()}, ("column", "unit"))
+        frames = [("train", f) for f in _list(recordings)] + [("held", f) for f in _list(held)]
+        if not frames:
+            raise ValueError("there is no recording")
+        for number, (role, frame) in enumerate(frames, 1):
+            lines += self._recording(f"recording_{number}.csv", role, frame, time)
+        lines += _table("parameters", tolerances or {}, ())
+        lines += ["", "[effects]"] if effects else []
+        lines += [f"{key} = {_toml(value)}" for key, value in (effects or {}).items()]
+        self.text = "\n".join(lines) + "\n"
+        self._path = "study.toml"
+        self._files.append((self._path, self.text))
+
+    def _recording(self, name: str, role: str, frame: Any, time: str | None) -> list[str]:
+        columns = _given.frame_columns(frame)
+        if time is not None and time not in columns:
+            raise KeyError(f"a recording has no column {time!r}{_given.nearest(time, columns)}")
+        rows = zip(*columns.values())
+        cell = lambda v: "" if v != v else repr(v)  # noqa: E731 - an empty cell where nothing was measured
+        head = ",".join('"' + name.replace('"', '""') + '"' for name in columns)
+        self._files.append((name, "\n".join([head, *(",".join(map(cell, row)) for row in rows)]) + "\n"))
+        lines = ["", "[[recordings]]", f"file = {_toml(name)}", f"role = {_toml(role)}"]
+        return lines + ([] if time is None else [f"time = {_toml(time)}"])
+
+    def identify(self) -> Identified:
+        """Finds the parameters that have tolerances or bounds."""
+        return identify(self)
+
+    def gap(self, *, effect: str | None = None, progress: bool | Callable[[str], None] = False) -> Verdict:
+        """Diagnoses the gap between model and recordings."""
+        return gap(self, effect=effect, progress=progress)
+
+    def __repr__(self) -> str:
+        return f"<bramah.Study: {self.text.count('[[recordings]]')} recordings>"
+
+
+def _list(given: Iterable[Any]) -> list[Any]:
+    one = isinstance(given, Mapping) or hasattr(given, "columns")
+    return [given] if one else list(given)
+
+
+def _with_variable(variable: str, entry: Any) -> dict[str, Any]:
+    return {"variable": variable, **_entry(entry, ("column", "unit"))}
+
+
+def _entry(entry: Any, keys: tuple[str, ...]) -> Any:
+    if isinstance(entry, str):
+        return {keys[0]: entry} if keys else ("exact" if entry == "exact" else {"sigma": entry})
+    if isinstance(entry, tuple):
+        return dict(zip(keys, entry))
+    return dict(entry)
+
+
+def _table(name: str, entries: Mapping[str, Any], keys: tuple[str, ...]) -> list[str]:
+    if not entries:
+        return []
+    return ["", f"[{name}]", *(f"{_toml(key)} = {_toml(_entry(value, keys))}" for key, value in entries.items())]
+
+
+def _toml(value: Any) -> str:
+    if isinstance(value, (bool, np.bool_)):
+        return "true" if value else "false"
+    if isinstance(value, Mapping):
+        return "{ " + ", ".join(f"{key} = {_toml(v)}" for key, v in value.items()) + " }"
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(map(_toml, value)) + "]"
+    if isinstance(value, (int, float, np.integer, np.floating)):
+        return repr(value.item() if hasattr(value, "item") else value)
+    if isinstance(value, str):
+        return json.dumps(value)
+    raise TypeError(f"a study cannot hold a {type(value).__name__}")

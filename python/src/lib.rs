@@ -1,0 +1,21 @@
+//! The compiled core of the Python package `bramah`: models, runs, studies. The classes that users see are in `bramah/*.py`
+//! and hold these; only here is the lock of the interpreter given up, and taken to ask whether the user pressed Ctrl-C.
+
+mod errors;
+mod model;
+mod run;
+mod stepper;
+mod study;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+fn _bramah(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add_class::<model::Core>()?;
+    module.add_class::<run::Run>()?;
+    module.add_class::<run::Saved>()?;
+    module.add_class::<stepper::Core>()?;
+    module.add_function(wrap_pyfunction!(study::identify, module)?)?;
+    module.add_function(wrap_pyfunction!(study::diagnose, module)?)
+}

@@ -1,0 +1,321 @@
+//! A compiled model.
+
+use crate::errors::raised;
+use crate::run::{Plan, Run, Saved};
+use crate::stepper;
+use bramah::internals::compile::graph;
+use bramah::internals::diag::render::{Format, render};
+use bramah::internals::plot::network;
+use bramah::internals::units::{Unit, quantity};
+use bramah::world::{DiskWorld, MemoryWorld, Overlay};
+use bramah::{Diagnostic, Error, Kind, Override, Request, Signal, Simulation};
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use rayon::prelude::*;
+
+/// The name under which messages show a text without a file.
+const TEXT: &str = "model.mo";
+
+/// A compiled model, with the values that were set.
+#[pyclass(frozen, module = "bramah._bramah", name = "Model")]
+#[derive(Clone)]
+pub struct Core {
+    pub simulation: Simulation,
+    text: Option<String>,
+    request: Request,
+}
+
+/// A value as Python gives it: a number in the parameter's unit, or a text with a unit of its own.
+#[derive(FromPyObject, Clone)]
+pub enum Value {
+    Flag(bool),
+    Number(f64),
+    Text(String),
+}
+
+impl Value {
+    /// As `--set` takes it.
+    fn text(&self) -> String {
+        match self {
+            Value::Flag(flag) => flag.to_string(),
+            Value::Number(number) => bramah::results::number::text(*number),
+            Value::Text(text) => text.clone(),
+        }
+    }
+}
+
+type Quantity = (String, String, String, String, &'static str, Vec<String>);
+type Parameter = (Quantity, f64, Option<f64>, Option<f64>, bool, bool);
+
+fn quantity_of(signal: Signal) -> Quantity {
+    let (kind, literals) = match signal.kind {
+        Kind::Real => ("Real", Vec::new()),
+        Kind::Integer => ("Integer", Vec::new()),
+        Kind::Boolean => ("Boolean", Vec::new()),
+        Kind::Enumeration(literals) => ("enumeration", literals),
+    };
+    (signal.name, signal.unit, signal.display_unit, signal.description, kind, literals)
+}
+
+/// Compiles; a text lies over the files of the disk.
+fn compiled(text: Option<&String>, request: &Request) -> Result<Simulation, Error> {
+    match text {
+        Some(text) => {
+            let world = Overlay { base: &DiskWorld, files: MemoryWorld::single(TEXT, text.clone()) };
+            Simulation::compile(&world, request)
+        }
+        None => Simulation::compile(&DiskWorld, request),
+    }
+}
+
+impl Core {
+    fn new(text: Option<String>, request: Request) -> Result<Self, Error> {
+        Ok(Core { simulation: compiled(text.as_ref(), &request)?, text, request })
+    }
+
+    /// The same with other values: without compiling again where that is possible.
+    fn with(&self, values: &[(String, Value)]) -> Result<Self, Error> {
+        let mut changed = self.clone();
+        let parameters = self.simulation.parameters();
+        let mut again = Vec::new();
+        for (name, value) in values {
+            let parameter = parameters.iter().find(|p| p.signal.name == *name);
+            let number = parameter.filter(|p| !p.structural).and_then(|p| number(value, &p.signal));
+            match number {
+                Some(number) => drop(changed.simulation.set(name, number)?),
+                None => again.push(Override { name: name.clone(), value: value.text() }),
+            }
+        }
+        if again.is_empty() {
+            return Ok(changed);
+        }
+        // names of arrays, texts, structural parameters and inputs go through the compiler, as `--set` does
+        let mut request = self.request.clone();
+        request.overrides.retain(|o| !values.iter().any(|(name, _)| *name == o.name));
+        request.overrides.extend(values.iter().map(|(n, v)| Override { name: n.clone(), value: v.text() }));
+        Core::new(self.text.clone(), request)
+    }
+
+    /// With values and trajectories of inputs, ready to run.
+    fn ready(&self, values: &[(String, Value)], plan: &Plan) -> Result<Simulation, Error> {
+        let mut simulation = self.with(values)?.simulation;
+        plan.apply(&mut simulation)?;
+        Ok(simulation)
+    }
+
+    fn messages_of(&self, diagnostics: &[Diagnostic]) -> String {
+        render(self.simulation.sources(), diagnostics, Format::Human, 100, false).trim_end().to_owned()
+    }
+}
+
+/// A value in the unit of a quantity, where it is a number; the compiler says what is wrong with any other.
+fn number(value: &Value, signal: &Signal) -> Option<f64> {
+    match value {
+        Value::Flag(flag) => (signal.kind == Kind::Boolean).then(|| f64::from(u8::from(*flag))),
+        Value::Number(number) => (signal.kind == Kind::Real).then_some(*number),
+        Value::Text(text) => {
+            let (number, unit) = quantity(text).ok()?;
+            let Some(unit) = unit else { return (signal.kind == Kind::Real).then_some(number) };
+            unit.convert(number, &Unit::parse(&signal.unit).ok()?)
+        }
+    }
+}
+
+#[pymethods]
+impl Core {
+    /// Compiles a text, a file, a package folder, or a class that ships with bramah.
+    #[new]
+    #[pyo3(signature = (text, source, model, libraries, overrides))]
+    fn compile(
+        py: Python<'_>,
+        text: Option<String>,
+        source: String,
+        model: Option<String>,
+        libraries: Vec<String>,
+        overrides: Vec<(String, String)>,
+    ) -> PyResult<Self> {
+        let source = if text.is_some() { TEXT.into() } else { source.into() };
+        let overrides = overrides.into_iter().map(|(name, value)| Override { name, value }).collect();
+        let libraries = libraries.into_iter().map(Into::into).collect();
+        let request = Request { source, model, overrides, libraries, ..Request::default() };
+        py.detach(|| Core::new(text, request)).map_err(|e| raised(py, &e))
+    }
+
+    /// What makes the same model again, for pickling.
+    fn recipe(&self) -> (Option<String>, String, Option<String>, Vec<String>, Vec<(String, String)>) {
+        let r = &self.request;
+        let path = |p: &std::path::PathBuf| p.display().to_string();
+        let set = r.overrides.iter().map(|o| (o.name.clone(), o.value.clone())).collect();
+        (self.text.clone(), path(&r.source), r.model.clone(), r.libraries.iter().map(path).collect(), set)
+    }
+
+    /// The full name of the class.
+    #[getter]
+    fn class_name(&self) -> String {
+        self.simulation.model().flat.class.clone()
+    }
+
+    /// Warnings and notes of the compilation.
+    #[getter]
+    fn messages(&self) -> String {
+        self.messages_of(&self.simulation.diagnostics)
+    }
+
+    /// Start time, stop time, output interval (seconds), relative tolerance.
+    #[getter]
+    fn experiment(&self) -> (f64, f64, f64, f64) {
+        let mut simulation = self.simulation.clone();
+        let s = simulation.settings();
+        (s.start_time, s.stop_time, s.interval, s.tolerance)
+    }
+
+    fn parameters(&self) -> Vec<Parameter> {
+        let all = self.simulation.parameters().into_iter();
+        all.map(|p| (quantity_of(p.signal), p.value, p.min, p.max, p.structural, p.root)).collect()
+    }
+
+    fn inputs(&self) -> Vec<Quantity> {
+        self.simulation.inputs().into_iter().map(quantity_of).collect()
+    }
+
+    fn variables(&self) -> Vec<Quantity> {
+        self.simulation.variables().into_iter().map(quantity_of).collect()
+    }
+
+    /// The network as SVG.
+    fn network(&self) -> String {
+        let world = match &self.text {
+            Some(text) => MemoryWorld::single(TEXT, text.clone()),
+            None => MemoryWorld::default(),
+        };
+        let world = Overlay { base: &DiskWorld, files: world };
+        graph(&world, &self.request).value.map_or_else(String::new, |(class, graph)| network::write(&graph, &class))
+    }
+
+    /// The same model with other values.
+    fn with_values(&self, py: Python<'_>, values: Vec<(String, Value)>) -> PyResult<Self> {
+        py.detach(|| self.with(&values)).map_err(|e| raised(py, &e))
+    }
+
+    /// Runs.
+    #[pyo3(signature = (values, plan, from_state, progress))]
+    fn run(
+        &self,
+        py: Python<'_>,
+        values: Vec<(String, Value)>,
+        plan: Plan,
+        from_state: Option<&Saved>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Run> {
+        let ready = py.detach(|| self.ready(&values, &plan)).map_err(|e| raised(py, &e))?;
+        Run::of(py, &ready, from_state.map(|s| &s.state), progress)
+    }
+
+    /// Many runs on all cores: for each list of values a run, or what went wrong.
+    fn sweep(&self, py: Python<'_>, points: Vec<Vec<(String, Value)>>, plan: Plan) -> PyResult<Vec<Py<PyAny>>> {
+        let ran: Vec<Result<_, Error>> =
+            py.detach(|| points.par_iter().map(|values| self.ready(values, &plan).and_then(|s| s.run())).collect());
+        let of = |outcome: Result<bramah::Outcome, Error>| -> PyResult<Py<PyAny>> {
+            match outcome {
+                Ok(outcome) => Ok(Py::new(py, Run::new(py, outcome, self.simulation.sources()))?.into_any()),
+                Err(error) => Ok(raised(py, &error).into_value(py).into_any()),
+            }
+        };
+        ran.into_iter().map(of).collect()
+    }
+
+    /// The linear model at a time, or at the steady state from there.
+    #[pyo3(signature = (values, at, steady, inputs, outputs))]
+    fn linearize<'py>(
+        &self,
+        py: Python<'py>,
+        values: Vec<(String, Value)>,
+        at: Option<f64>,
+        steady: bool,
+        inputs: Vec<String>,
+        outputs: Vec<String>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let found = py.detach(|| {
+            let simulation = self.with(&values)?.simulation;
+            let state = simulation.state_at(at)?;
+            let state = if steady { simulation.steady(&state)? } else { state };
+            let inputs: Vec<&str> = inputs.iter().map(String::as_str).collect();
+            let outputs: Vec<&str> = outputs.iter().map(String::as_str).collect();
+            simulation.linearize(&state, &inputs, &outputs)
+        });
+        let found = found.map_err(|e| raised(py, &e))?;
+        let dict = PyDict::new(py);
+        for (name, matrix) in [("A", &found.a), ("B", &found.b), ("C", &found.c), ("D", &found.d)] {
+            let rows: Vec<f64> = matrix.row_iter().flat_map(|r| r.iter().copied().collect::<Vec<_>>()).collect();
+            let array = PyArray1::from_vec(py, rows).reshape([matrix.nrows(), matrix.ncols()])?;
+            dict.set_item::<_, Bound<'_, PyArray2<f64>>>(name, array)?;
+        }
+        for (name, list) in [("states", &found.states), ("inputs", &found.inputs), ("outputs", &found.outputs)] {
+            let all: Vec<(String, String, f64)> =
+                list.iter().map(|q| (q.name.clone(), q.unit.clone(), q.value)).collect();
+            dict.set_item(name, all)?;
+        }
+        let poles: Vec<(f64, f64)> = bramah::linear::poles(&found).into_iter().map(|p| (p.re, p.im)).collect();
+        dict.set_item("poles", poles)?;
+        dict.set_item("time", found.time)?;
+        Ok(dict)
+    }
+
+    /// Values at the steady state reached from a time of a run.
+    #[pyo3(signature = (values, at))]
+    fn steady(&self, py: Python<'_>, values: Vec<(String, Value)>, at: Option<f64>) -> PyResult<Vec<(String, f64)>> {
+        let found = py.detach(|| {
+            let simulation = self.with(&values)?.simulation;
+            let state = simulation.steady(&simulation.state_at(at)?)?;
+            // the state holds what the search moved; a moment of a run computes all that follows from it
+            let mut after = simulation.clone();
+            after.settings().stop_time = state.time + MOMENT;
+            after.settings().interval = MOMENT;
+            let rows = after.run_from(&state)?.trajectory;
+            Ok(rows.signals.iter().zip(&rows.columns).map(|(s, c)| (s.name.clone(), c[0])).collect())
+        });
+        found.map_err(|e: Error| raised(py, &e))
+    }
+
+    /// How what is recorded moves with parameters.
+    fn sensitivity<'py>(
+        &self,
+        py: Python<'py>,
+        values: Vec<(String, Value)>,
+        plan: Plan,
+        parameters: Vec<String>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let found = py.detach(|| {
+            let names: Vec<&str> = parameters.iter().map(String::as_str).collect();
+            self.ready(&values, &plan)?.sensitivity(&names)
+        });
+        let found = found.map_err(|e| raised(py, &e))?;
+        let dict = PyDict::new(py);
+        dict.set_item("time", PyArray1::from_slice(py, &found.plain.times))?;
+        for ((name, size), columns) in found.parameters.iter().zip(found.columns) {
+            let of = PyDict::new(py);
+            for (signal, column) in found.plain.signals.iter().zip(columns) {
+                let by_unit: Vec<f64> = column.iter().map(|v| v / size).collect();
+                of.set_item(&signal.name, PyArray1::from_vec(py, by_unit))?;
+            }
+            dict.set_item(name, of)?;
+        }
+        Ok(dict)
+    }
+
+    /// A run to be taken from step to step.
+    #[pyo3(signature = (values, from_state))]
+    fn stepper(
+        &self,
+        py: Python<'_>,
+        values: Vec<(String, Value)>,
+        from_state: Option<&Saved>,
+    ) -> PyResult<stepper::Core> {
+        let simulation = py.detach(|| self.with(&values)).map_err(|e| raised(py, &e))?.simulation;
+        stepper::Core::begin(py, simulation, from_state.map(|s| s.state.clone()))
+    }
+}
+
+/// Seconds over which values at a steady state are computed.
+const MOMENT: f64 = 1e-6;

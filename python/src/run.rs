@@ -1,0 +1,284 @@
+//! Runs and their results.
+
+use crate::errors::raised;
+use bramah::internals::diag::render::{Format, render};
+use bramah::internals::plot::select::{Choice, Run as Drawn, UnitSystem, figure};
+use bramah::internals::plot::{html, svg};
+use bramah::results::{CsvWriter, Globs};
+use bramah::{
+    Control, End, Error, Interpolation, Kind, Outcome, Progress, Signal, Simulation, Sources, State, Trajectory,
+};
+use numpy::{PyArray1, PyArrayMethods};
+use pyo3::exceptions::{PyOSError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// Calls of the solver's progress between two looks whether the user pressed Ctrl-C.
+const LOOK: u32 = 16;
+
+/// How a run is to go.
+#[derive(FromPyObject)]
+pub struct Plan {
+    #[pyo3(item)]
+    start: Option<f64>,
+    #[pyo3(item)]
+    stop: Option<f64>,
+    #[pyo3(item)]
+    interval: Option<f64>,
+    #[pyo3(item)]
+    tolerance: Option<f64>,
+    #[pyo3(item)]
+    event_rows: Option<bool>,
+    #[pyo3(item)]
+    outputs: Vec<String>,
+    /// Name, times, values, held until the next sample.
+    #[pyo3(item)]
+    inputs: Vec<(String, Vec<f64>, Vec<f64>, bool)>,
+}
+
+impl Plan {
+    /// Gives a simulation its settings and inputs.
+    pub fn apply(&self, simulation: &mut Simulation) -> Result<(), Error> {
+        let settings = simulation.settings();
+        if let Some(start) = self.start {
+            settings.start_time = start;
+        }
+        if let Some(stop) = self.stop {
+            settings.stop_time = stop;
+            settings.interval = (stop - settings.start_time) / 500.0;
+        }
+        if let Some(interval) = self.interval {
+            settings.interval = interval;
+        }
+        if let Some(tolerance) = self.tolerance {
+            settings.tolerance = tolerance;
+        }
+        if let Some(rows) = self.event_rows {
+            settings.event_rows = rows;
+        }
+        for (name, times, values, held) in &self.inputs {
+            let between = if *held { Interpolation::Held } else { Interpolation::Linear };
+            simulation.input(name, times, values, between)?;
+        }
+        self.record(simulation)
+    }
+
+    /// Patterns choose among the variables that change; a plain name may also be a parameter.
+    fn record(&self, simulation: &mut Simulation) -> Result<(), Error> {
+        if self.outputs.is_empty() {
+            let changing: Vec<String> = simulation.variables().into_iter().map(|s| s.name).collect();
+            return simulation.record(&changing.iter().map(String::as_str).collect::<Vec<_>>()).map(drop);
+        }
+        let all: Vec<String> = simulation.variables().into_iter().map(|s| s.name).collect();
+        let mut chosen: Vec<&str> = Vec::new();
+        for pattern in &self.outputs {
+            let globs = Globs::new(&[pattern]);
+            let before = chosen.len();
+            chosen.extend(all.iter().map(String::as_str).filter(|n| globs.matches(n)));
+            if chosen.len() == before {
+                chosen.push(pattern);
+            }
+        }
+        let mut seen = std::collections::BTreeSet::new();
+        chosen.retain(|name| seen.insert(*name));
+        simulation.record(&chosen).map(drop)
+    }
+}
+
+/// Where a run ended, to go on from.
+#[pyclass(frozen, module = "bramah._bramah", name = "State")]
+pub struct Saved {
+    pub state: State,
+}
+
+#[pymethods]
+impl Saved {
+    /// Seconds.
+    #[getter]
+    fn time(&self) -> f64 {
+        self.state.time
+    }
+
+    /// The value of every variable.
+    fn values(&self) -> Vec<(String, f64)> {
+        self.state.names.iter().cloned().zip(self.state.values.iter().copied()).collect()
+    }
+}
+
+/// A result.
+#[pyclass(frozen, module = "bramah._bramah", name = "Run")]
+pub struct Run {
+    signals: Vec<Signal>,
+    time: Py<PyArray1<f64>>,
+    columns: Vec<Py<PyArray1<f64>>>,
+    end: End,
+    state: State,
+    messages: String,
+    statistics: bramah::Statistics,
+}
+
+impl Run {
+    pub fn new(py: Python<'_>, outcome: Outcome, sources: &Sources) -> Self {
+        let Outcome { trajectory, end, state, statistics, diagnostics } = outcome;
+        let messages = render(sources, &diagnostics, Format::Human, 100, false).trim_end().to_owned();
+        // the vectors become the arrays: nothing is copied
+        let array = |v: Vec<f64>| PyArray1::from_vec(py, v).unbind();
+        Run {
+            signals: trajectory.signals,
+            time: array(trajectory.times),
+            columns: trajectory.columns.into_iter().map(array).collect(),
+            end,
+            state,
+            messages,
+            statistics,
+        }
+    }
+
+    /// Runs without the interpreter's lock, which is taken now and then for Ctrl-C and progress.
+    pub fn of(
+        py: Python<'_>,
+        simulation: &Simulation,
+        from: Option<&State>,
+        show: Option<Py<PyAny>>,
+    ) -> PyResult<Self> {
+        let (mut calls, mut stopped) = (0, None);
+        let outcome = py.detach(|| {
+            let mut progress = |now: &Progress| {
+                calls += 1;
+                if calls % LOOK != 0 {
+                    return true;
+                }
+                let asked = Python::attach(|py| {
+                    py.check_signals()?;
+                    show.as_ref().map_or(Ok(()), |show| show.call1(py, (now.time,)).map(drop))
+                });
+                asked.map_err(|error| stopped = Some(error)).is_ok()
+            };
+            let mut control = Control { progress: Some(&mut progress), ..Control::default() };
+            simulation.run_kept(from, &mut control)
+        });
+        let outcome = outcome.map_err(|e| raised(py, &e))?;
+        let is_interrupt = |e: &PyErr| e.is_instance_of::<pyo3::exceptions::PyKeyboardInterrupt>(py);
+        match stopped {
+            // what there is is kept: the result says that it is not complete
+            Some(error) if !is_interrupt(&error) => return Err(error),
+            None if !outcome.end.is_success() => {
+                let sources = std::sync::Arc::new(simulation.sources().clone());
+                return Err(raised(py, &Error { diagnostics: outcome.diagnostics, sources }));
+            }
+            _ => {}
+        }
+        Ok(Run::new(py, outcome, simulation.sources()))
+    }
+
+    fn trajectory(&self, py: Python<'_>) -> PyResult<Trajectory> {
+        let mut trajectory = Trajectory::new(self.signals.clone());
+        trajectory.times = self.time.bind(py).to_vec()?;
+        trajectory.columns = self.columns.iter().map(|c| c.bind(py).to_vec()).collect::<Result<_, _>>()?;
+        Ok(trajectory)
+    }
+}
+
+#[pymethods]
+impl Run {
+    /// Times of the rows in seconds.
+    #[getter]
+    fn time(&self, py: Python<'_>) -> Py<PyArray1<f64>> {
+        self.time.clone_ref(py)
+    }
+
+    /// Name, unit, unit for people, description, kind and literals of each column.
+    fn signals(&self) -> Vec<(String, String, String, String, &'static str, Vec<String>)> {
+        let of = |s: &Signal| {
+            let (kind, literals) = match &s.kind {
+                Kind::Real => ("Real", Vec::new()),
+                Kind::Integer => ("Integer", Vec::new()),
+                Kind::Boolean => ("Boolean", Vec::new()),
+                Kind::Enumeration(literals) => ("enumeration", literals.clone()),
+            };
+            (s.name.clone(), s.unit.clone(), s.display_unit.clone(), s.description.clone(), kind, literals)
+        };
+        self.signals.iter().map(of).collect()
+    }
+
+    /// The arrays of the columns, in the order of `signals`.
+    fn columns(&self, py: Python<'_>) -> Vec<Py<PyArray1<f64>>> {
+        self.columns.iter().map(|c| c.clone_ref(py)).collect()
+    }
+
+    /// `reached`, `terminated` or `interrupted`.
+    #[getter]
+    fn end(&self) -> &'static str {
+        self.end.word()
+    }
+
+    /// What the model said when it ended the run, or nothing.
+    #[getter]
+    fn ending(&self) -> Option<String> {
+        match &self.end {
+            End::Terminated(message) => Some(message.clone()),
+            _ => None,
+        }
+    }
+
+    /// Warnings of the run.
+    #[getter]
+    fn messages(&self) -> &str {
+        &self.messages
+    }
+
+    /// Where it ended.
+    #[getter]
+    fn state(&self) -> Saved {
+        Saved { state: self.state.clone() }
+    }
+
+    /// The work done.
+    fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let (s, dict) = (&self.statistics, PyDict::new(py));
+        dict.set_item("steps", s.steps)?;
+        dict.set_item("events", s.events)?;
+        dict.set_item("residual_evaluations", s.residual_evaluations)?;
+        dict.set_item("jacobian_evaluations", s.jacobian_evaluations)?;
+        dict.set_item("states", s.states)?;
+        dict.set_item("unknowns", s.unknowns)?;
+        dict.set_item("initialize_s", s.initialize_s)?;
+        dict.set_item("solve_s", s.solve_s)?;
+        Ok(dict)
+    }
+
+    /// A picture: `svg`, or `html` with zoom and hover.
+    fn draw(
+        &self,
+        py: Python<'_>,
+        variables: Vec<String>,
+        engineering: bool,
+        format: &str,
+        title: String,
+    ) -> PyResult<String> {
+        let mut trajectory = self.trajectory(py)?;
+        if engineering {
+            UnitSystem::Engineering.apply(&mut trajectory);
+        }
+        let choice = Choice { variables: Globs::new(&variables), title, ..Choice::default() };
+        let drawn = figure(&[Drawn { label: "", trajectory: &trajectory }], &choice).map_err(PyValueError::new_err)?;
+        Ok(if format == "svg" { svg::write(&drawn.figure) } else { html::write(&drawn.figure, &[]) })
+    }
+
+    /// CSV with units in the head, or plain names.
+    fn csv(&self, py: Python<'_>, units: bool) -> PyResult<String> {
+        let io = |e: std::io::Error| PyOSError::new_err(e.to_string());
+        let trajectory = self.trajectory(py)?;
+        let mut signals = trajectory.signals.clone();
+        if units {
+            signals.iter_mut().filter(|s| !s.unit.is_empty()).for_each(|s| s.name = format!("{} [{}]", s.name, s.unit));
+        }
+        let mut bytes = Vec::new();
+        let mut writer = CsvWriter::new(&mut bytes, &signals).map_err(io)?;
+        for (row, &time) in trajectory.times.iter().enumerate() {
+            writer.row(time, trajectory.columns.iter().map(|c| c[row])).map_err(io)?;
+        }
+        writer.finish().map_err(io)?;
+        Ok(String::from_utf8_lossy(&bytes).into_owned())
+    }
+}

@@ -1,0 +1,93 @@
+//! Parameters from recordings, and the diagnosis.
+
+use crate::errors::raised;
+use bramah::internals::diag::render::{Format, render};
+use bramah::internals::gap::study::{Unusable, question};
+use bramah::internals::study::Study;
+use bramah::world::{DiskWorld, MemoryWorld, Overlay};
+use bramah::{Diagnosis, Error, Sources};
+use pyo3::prelude::*;
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Files that Python holds, over those of the disk.
+fn world(files: Vec<(String, String)>) -> Overlay<'static> {
+    let mut held = MemoryWorld::default();
+    files.into_iter().for_each(|(path, text)| held.add(path, text));
+    Overlay { base: &DiskWorld, files: held }
+}
+
+/// JSON report, words and warnings of a fit.
+#[pyfunction]
+pub fn identify(py: Python<'_>, files: Vec<(String, String)>, study: String) -> PyResult<(String, String, String)> {
+    let found = py.detach(|| bramah::identify(&world(files), Path::new(&study))).map_err(|e| raised(py, &e))?;
+    let json = serde_json::to_string(&found.report).expect("numbers and texts always serialize");
+    Ok((json, found.words, said(&Sources::default(), &found.diagnostics)))
+}
+
+/// What a diagnosis came to: JSON verdict, words, HTML report, corrected model, warnings.
+type Found = (String, String, String, Option<String>, String);
+
+/// Diagnoses; `progress` hears of each stage.
+#[pyfunction]
+#[pyo3(signature = (files, study, data, effect, progress))]
+pub fn diagnose(
+    py: Python<'_>,
+    files: Vec<(String, String)>,
+    study: String,
+    data: Option<String>,
+    effect: Option<String>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Found> {
+    let begun = std::time::Instant::now();
+    let mut stopped = None;
+    let found = py.detach(|| -> Result<Found, Error> {
+        let world = world(files);
+        let mut sources = Sources::default();
+        let failed = |diagnostics, sources| Error { diagnostics, sources: Arc::new(sources) };
+        let data = data.as_deref().map(Path::new);
+        let read = Study::read(&world, Path::new(&study), &mut sources);
+        let Some(read) = read.value else { return Err(failed(read.diagnostics, sources)) };
+        let question = match question(&world, &read, data, &mut sources) {
+            Ok(question) => question,
+            Err(Unusable { diagnostics, sources: of_model, .. }) => {
+                return Err(failed(diagnostics, of_model.unwrap_or(sources)));
+            }
+        };
+        let held = match question.held(data, &mut sources) {
+            Ok(held) => held,
+            Err(diagnostics) => return Err(failed(diagnostics, sources)),
+        };
+        let mut show = |stage: bramah::Stage| {
+            let asked = Python::attach(|py| {
+                py.check_signals()?;
+                progress.as_ref().map_or(Ok(()), |p| p.call1(py, (stage.to_string(),)).map(drop))
+            });
+            match asked {
+                Ok(()) => ControlFlow::Continue(()),
+                Err(error) => {
+                    stopped = Some(error);
+                    ControlFlow::Break(())
+                }
+            }
+        };
+        let mut diagnosis = match Diagnosis::new(question, held, effect.as_deref(), &mut show) {
+            Ok(diagnosis) => diagnosis,
+            Err(diagnostics) => return Err(failed(diagnostics, sources)),
+        };
+        diagnosis.took(begun.elapsed().as_secs_f64());
+        let json = serde_json::to_string(diagnosis.verdict()).expect("numbers and texts always serialize");
+        let fixed = diagnosis.corrected();
+        let warnings = [diagnosis.diagnostics(), &fixed.diagnostics].concat();
+        Ok((json, diagnosis.words(), diagnosis.report(), fixed.value, said(&sources, &warnings)))
+    });
+    match stopped {
+        Some(error) => Err(error),
+        None => found.map_err(|e| raised(py, &e)),
+    }
+}
+
+fn said(sources: &Sources, diagnostics: &[bramah::Diagnostic]) -> String {
+    render(sources, diagnostics, Format::Human, 100, false).trim_end().to_owned()
+}
