@@ -132,6 +132,9 @@ pub mod solve;
 #[doc(hidden)]
 pub mod circuit;
 
+#[doc(hidden)]
+pub mod fmi;
+
 #[cfg(feature = "analysis")]
 #[doc(hidden)]
 pub mod analysis;
@@ -197,7 +200,7 @@ pub mod internals {
     #[cfg(feature = "analysis")]
     pub use crate::{analysis, experiment, study};
     pub use crate::{
-        circuit, compile, diag, expr, external, flat, instance, lower, network, plot, resolve, shipped, solve,
+        circuit, compile, diag, expr, external, flat, fmi, instance, lower, network, plot, resolve, shipped, solve,
         structure, syntax, types, unit_check, units,
     };
 }

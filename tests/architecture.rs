@@ -46,6 +46,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
         &["compile", "diag", "expr", "flat", "instance", "lower", "results", "solve", "structure", "units", "world"],
     ),
     ("plot", &["network", "results", "units"]),
+    ("fmi", &["circuit", "compile", "instance", "plot", "results", "units", "world"]),
     ("experiment", &["diag", "results", "units"]),
     ("study", &["compile", "diag", "expr", "flat", "results", "solve", "units", "world"]),
     (

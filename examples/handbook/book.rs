@@ -15,7 +15,9 @@ pub const PARTS: [(&str, &[&str]); 4] = [
         "Circuits",
         &[
             "first_circuit",
+            "first_hour",
             "editor",
+            "serve",
             "oil_and_volumes",
             "drives",
             "friction_and_events",
@@ -27,7 +29,7 @@ pub const PARTS: [(&str, &[&str]); 4] = [
     ),
     (
         "Model and test rig",
-        &["study", "identify", "gap", "gap_method", "validation/gap", "sensitivity", "sweep", "linearize"],
+        &["study", "identify", "gap", "gap_method", "validation/gap", "sensitivity", "sweep", "linearize", "python"],
     ),
     ("The two papers", &["papers/servo_pump", "papers/closed_circuit"]),
     ("Solver and messages", &["bench", "errors/README"]),

@@ -12,16 +12,18 @@
 
 from ._bramah import State, __version__
 from .errors import Error
-from .model import Model, Parameter, Variable, load
-from .result import Result
+from .model import Linear, Model, Parameter, Variable, load
+from .result import Picture, Result
 from .stepper import Stepper
 from .study import Identified, Study, Verdict, gap, identify
 
 __all__ = [
     "Error",
     "Identified",
+    "Linear",
     "Model",
     "Parameter",
+    "Picture",
     "Result",
     "State",
     "Stepper",

@@ -27,5 +27,12 @@ class Error(Exception):
         self.file: str | None = first.get("file")
         self.line: int | None = first.get("line")
 
-    def __reduce__(self):
+    def meant(self, hint: str) -> Error:
+        """The same error with one more line of help."""
+        diagnostics = [dict(d) for d in self.diagnostics]
+        for d in diagnostics[:1]:
+            d["help"] = "\n".join(filter(None, [d["help"], hint]))
+        return Error(f"{self.args[0]}\n = help: {hint}", diagnostics)
+
+    def __reduce__(self) -> tuple[Any, ...]:
         return (Error, (self.args[0], self.diagnostics))

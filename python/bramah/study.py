@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import json
 import os
 from collections.abc import Callable, Iterable, Mapping
@@ -20,6 +21,9 @@ def identify(study: str | os.PathLike[str] | Study, data: str | os.PathLike[str]
     Args:
         study: a study file (docs/study.md), or a `Study`.
         data: the folder of the recordings; that of the study where left out.
+
+    Raises:
+        Error: study, model or recordings are wrong (E601, E604, E902); the message says where and what to do.
     """
     files, path = _files(study, data)
     return Identified(*_bramah.identify(files, path))
@@ -39,10 +43,16 @@ def gap(
         data: the folder of the recordings; that of the study where left out.
         effect: fit this effect alone and show it, even where the diagnosis refuses it: "Effects.SensorLag@p".
         progress: True prints the stages, or a function that gets each as a text.
+
+    Raises:
+        Error: study, model or recordings are wrong (E601, E604, E902); the message says where and what to do.
+        KeyboardInterrupt: after Ctrl-C, once the stage that is running has ended.
     """
+    if not callable(progress) and not isinstance(progress, bool):
+        raise TypeError(f"progress is True, False or a function, not of type {type(progress).__name__}")
     files, path = ([], os.fspath(study)) if not isinstance(study, Study) else (study._files, study._path)
     show = progress if callable(progress) else (_print if progress else None)
-    folder = None if data is None else os.fspath(data)
+    folder = None if data is None else _folder(data)
     return Verdict(*_bramah.diagnose(files, path, folder, effect, show))
 
 
@@ -50,18 +60,24 @@ def _print(stage: str) -> None:
     print(stage, flush=True)
 
 
+def _folder(data: str | os.PathLike[str]) -> str:
+    folder = os.fspath(data)
+    if not os.path.isdir(folder):
+        raise NotADirectoryError(f"there is no folder {folder!r} of recordings")
+    return folder
+
+
 def _files(study: str | os.PathLike[str] | Study, data: str | os.PathLike[str] | None) -> tuple[list[tuple[str, str]], str]:
     if isinstance(study, Study):
         return study._files, study._path
     path = os.fspath(study)
-    if data is None:
+    if data is None or not os.path.isfile(path):
         return [], path
     # recordings are looked for beside the study: it is moved, and keeps its model
     with open(path, encoding="utf-8") as file:
         text = file.read()
-    moved = os.path.join(os.fspath(data), os.path.basename(path))
-    here = os.path.relpath(os.path.dirname(os.path.abspath(path)), os.path.abspath(os.fspath(data)))
-    return [(moved, _with_model_from(text, here))], moved
+    moved = os.path.join(_folder(data), os.path.basename(path))
+    return [(moved, _with_model_from(text, os.path.dirname(os.path.abspath(path))))], moved
 
 
 def _with_model_from(text: str, folder: str) -> str:
@@ -73,12 +89,12 @@ def _with_model_from(text: str, folder: str) -> str:
         key, equals, value = line.partition("=")
         if equals and key.strip() == "model":
             name = value.split("#")[0].strip().strip("\"'")
-            lines[i] = f"model = {json.dumps(os.path.join(folder, name))}"
+            lines[i] = f"model = {_toml(os.path.join(folder, name))}"
     return "\n".join(lines)
 
 
 class Identified:
-    """Parameters found from recordings.
+    """Parameters found from recordings, by `identify`. As a text it reads as on the command line.
 
     Attributes:
         report: the numbers of `bramah identify`, as a dict.
@@ -105,8 +121,9 @@ class Identified:
         import pandas
 
         rows = {
-            name: {"value": p["value"], "std": p["std"], "low": p["interval"][0], "high": p["interval"][1], "unit": p["unit"]}
+            name: {"value": p["value"], "std": p["std"], "low": low, "high": high, "unit": p["unit"]}
             for name, p in self.report["parameters"].items()
+            for low, high in [p["interval"] or (None, None)]
         }
         return pandas.DataFrame.from_dict(rows, orient="index")
 
@@ -117,13 +134,11 @@ class Identified:
         return f"<bramah.Identified: {', '.join(self.values)}>"
 
     def _repr_html_(self) -> str:
-        import html
-
         return f"<pre>{html.escape(self._words)}</pre>"
 
 
 class Verdict:
-    """What a diagnosis came to.
+    """What a diagnosis came to, by `gap`. As a text it reads as on the command line; a notebook shows its page.
 
     Attributes:
         report: the numbers of `bramah gap`, as a dict (docs/gap.md).
@@ -141,16 +156,19 @@ class Verdict:
     @property
     def verdict(self) -> str:
         """"effects", "outside_library", "gap_open", "undecidable", "nothing_found" or "recording_error"."""
-        return self.report["verdict"]
+        return str(self.report["verdict"])
 
     @property
     def effects(self) -> list[dict[str, Any]]:
         """What the model lacks: effect, places, parameters, evidence; the surest first."""
-        return self.report["effects"]
+        effects: list[dict[str, Any]] = self.report["effects"]
+        return effects
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes the page (.html), the numbers (.json) or the corrected model (.mo)."""
         path = os.fspath(path)
+        if not path.endswith((".html", ".htm", ".json", ".mo")):
+            raise ValueError(f"a verdict is written as .html, .json or .mo, not as {os.path.basename(path)!r}")
         if path.endswith(".json"):
             text = json.dumps(self.report, indent=2)
         elif path.endswith(".mo"):
@@ -183,14 +201,24 @@ class Study:
 
     Args:
         model: from `load`.
-        recordings: pandas or polars frames, or mappings of columns: train recordings.
+        recordings: pandas or polars frames, or mappings of columns: train recordings. Columns have the shape (rows,);
+            cells of signals may be empty (NaN), cells of inputs may not. Columns without numbers are left out.
         held: recordings that only confirm.
-        time: the time column, in seconds (or the index of that name); "time" or another usual name where left out.
+        time: the time column (or the index of that name), in seconds, as spans of time or as dates; "time" or another
+            usual name where left out. Time must grow, without gaps.
         signals: for each measured variable its column, or (column, unit), or a dict with the keys of docs/study.md
             (column, unit, sign, full_scale, accuracy).
         inputs: for each input of the model its column, (column, unit), or a dict (column, unit, hold, kind).
-        tolerances: for each parameter "3 %", "0.2 bar", "exact", or a dict (sigma, min, max).
+        tolerances: for each parameter one standard deviation: "3 %", "0.2 bar", a number in its unit; "exact"; or a
+            dict (sigma, min, max).
         effects: dict with include, exclude, places, folder.
+
+    Attributes:
+        text: the study as TOML.
+
+    Raises:
+        KeyError: a recording has no such column.
+        TypeError, ValueError: a column does not hold numbers, columns have unequal lengths, there is no recording.
     """
 
     def __init__(
@@ -205,9 +233,15 @@ class Study:
         tolerances: Mapping[str, Any] | None = None,
         effects: Mapping[str, Any] | None = None,
     ) -> None:
+        if not isinstance(model, Model):
+            raise TypeError(f"a study takes a model from `load`, not a {type(model).__name__}")
         text, source, name, libraries, overrides = model._core.recipe()
         if libraries or overrides:
             raise ValueError("a study takes a model as its text has it: without libraries and values that were set")
+        signals, inputs = _given.mapping("signals", signals), _given.mapping("inputs", inputs)
+        tied = {k: _with_variable(k, v) for k, v in signals.items()}
+        driven = {k: _entry(v, ("column", "unit")) for k, v in inputs.items()}
+        columns = [str(e["column"]) for e in [*tied.values(), *driven.values()] if "column" in e]
         lines = ["version = 1"]
         self._files: list[tuple[str, str]] = []
         if text is not None:
@@ -216,37 +250,40 @@ class Study:
         elif os.path.exists(source):
             lines.append(f"model = {_toml(os.path.abspath(source))}")
         lines.append(f"class = {_toml(model.name)}")
-        lines += _table("inputs", inputs or {}, ("column", "unit"))
-        lines += _table("signals", {k: _with_variable(k, v) for k, v in signals.items()}, ("column", "unit"))
+        lines += _table("inputs", driven) + _table("signals", tied)
         frames = [("train", f) for f in _list(recordings)] + [("held", f) for f in _list(held)]
         if not frames:
             raise ValueError("there is no recording")
         for number, (role, frame) in enumerate(frames, 1):
-            lines += self._recording(f"recording_{number}.csv", role, frame, time)
-        lines += _table("parameters", tolerances or {}, ())
+            lines += self._recording(f"recording_{number}.csv", role, frame, time, columns)
+        known = _given.mapping("tolerances", tolerances)
+        lines += _table("parameters", {k: _entry(v, ()) for k, v in known.items()})
         lines += ["", "[effects]"] if effects else []
         lines += [f"{key} = {_toml(value)}" for key, value in (effects or {}).items()]
         self.text = "\n".join(lines) + "\n"
         self._path = "study.toml"
         self._files.append((self._path, self.text))
 
-    def _recording(self, name: str, role: str, frame: Any, time: str | None) -> list[str]:
-        columns = _given.frame_columns(frame)
-        if time is not None and time not in columns:
-            raise KeyError(f"a recording has no column {time!r}{_given.nearest(time, columns)}")
-        rows = zip(*columns.values())
-        cell = lambda v: "" if v != v else repr(v)  # noqa: E731 - an empty cell where nothing was measured
+    def _recording(self, name: str, role: str, frame: Any, time: str | None, needed: list[str]) -> list[str]:
+        needed = needed if time is None else [time, *needed]
+        columns = _given.frame_columns(frame, needed)
+        for column in needed:
+            if column not in columns:
+                has = ", ".join(map(repr, columns))
+                raise KeyError(f"a recording has no column {column!r}; it has {has}{_given.nearest(column, columns)}")
+        # an empty cell where nothing was measured
+        rows = (",".join("" if v != v else repr(v) for v in row) for row in zip(*columns.values()))
         head = ",".join('"' + name.replace('"', '""') + '"' for name in columns)
-        self._files.append((name, "\n".join([head, *(",".join(map(cell, row)) for row in rows)]) + "\n"))
+        self._files.append((name, "\n".join([head, *rows]) + "\n"))
         lines = ["", "[[recordings]]", f"file = {_toml(name)}", f"role = {_toml(role)}"]
         return lines + ([] if time is None else [f"time = {_toml(time)}"])
 
     def identify(self) -> Identified:
-        """Finds the parameters that have tolerances or bounds."""
+        """Finds the parameters that have tolerances or bounds: as `bramah.identify`."""
         return identify(self)
 
     def gap(self, *, effect: str | None = None, progress: bool | Callable[[str], None] = False) -> Verdict:
-        """Diagnoses the gap between model and recordings."""
+        """Diagnoses the gap between model and recordings: as `bramah.gap`."""
         return gap(self, effect=effect, progress=progress)
 
     def __repr__(self) -> str:
@@ -263,17 +300,23 @@ def _with_variable(variable: str, entry: Any) -> dict[str, Any]:
 
 
 def _entry(entry: Any, keys: tuple[str, ...]) -> Any:
+    """What the study says of a signal or an input (with keys for short forms), or of a parameter."""
     if isinstance(entry, str):
         return {keys[0]: entry} if keys else ("exact" if entry == "exact" else {"sigma": entry})
-    if isinstance(entry, tuple):
+    if not keys and isinstance(entry, (int, float, np.integer, np.floating)) and not isinstance(entry, bool):
+        return {"sigma": entry}
+    if keys and isinstance(entry, (tuple, list)) and 1 <= len(entry) <= len(keys):
         return dict(zip(keys, entry))
-    return dict(entry)
+    if isinstance(entry, Mapping):
+        return dict(entry)
+    forms = "a column, (column, unit) or a dict" if keys else '"3 %", "0.2 bar", a number, "exact" or a dict'
+    raise TypeError(f"{entry!r} is none of {forms}")
 
 
-def _table(name: str, entries: Mapping[str, Any], keys: tuple[str, ...]) -> list[str]:
+def _table(name: str, entries: Mapping[str, Any]) -> list[str]:
     if not entries:
         return []
-    return ["", f"[{name}]", *(f"{_toml(key)} = {_toml(_entry(value, keys))}" for key, value in entries.items())]
+    return ["", f"[{name}]", *(f"{_toml(key)} = {_toml(value)}" for key, value in entries.items())]
 
 
 def _toml(value: Any) -> str:
@@ -286,5 +329,5 @@ def _toml(value: Any) -> str:
     if isinstance(value, (int, float, np.integer, np.floating)):
         return repr(value.item() if hasattr(value, "item") else value)
     if isinstance(value, str):
-        return json.dumps(value)
+        return json.dumps(value, ensure_ascii=False)
     raise TypeError(f"a study cannot hold a {type(value).__name__}")

@@ -45,10 +45,13 @@ impl Value {
     }
 }
 
-type Quantity = (String, String, String, String, &'static str, Vec<String>);
+/// Name, unit, unit for people, description, kind, literals.
+pub type Quantity = (String, String, String, String, &'static str, Vec<String>);
+/// Text, source, class, libraries, values: what makes a model.
+type Recipe = (Option<String>, String, Option<String>, Vec<String>, Vec<(String, String)>);
 type Parameter = (Quantity, f64, Option<f64>, Option<f64>, bool, bool);
 
-fn quantity_of(signal: Signal) -> Quantity {
+pub fn quantity_of(signal: Signal) -> Quantity {
     let (kind, literals) = match signal.kind {
         Kind::Real => ("Real", Vec::new()),
         Kind::Integer => ("Integer", Vec::new()),
@@ -143,7 +146,7 @@ impl Core {
     }
 
     /// What makes the same model again, for pickling.
-    fn recipe(&self) -> (Option<String>, String, Option<String>, Vec<String>, Vec<(String, String)>) {
+    fn recipe(&self) -> Recipe {
         let r = &self.request;
         let path = |p: &std::path::PathBuf| p.display().to_string();
         let set = r.overrides.iter().map(|o| (o.name.clone(), o.value.clone())).collect();

@@ -1,13 +1,12 @@
 //! Runs and their results.
 
 use crate::errors::raised;
+use crate::model::{Quantity, quantity_of};
 use bramah::internals::diag::render::{Format, render};
 use bramah::internals::plot::select::{Choice, Run as Drawn, UnitSystem, figure};
 use bramah::internals::plot::{html, svg};
 use bramah::results::{CsvWriter, Globs};
-use bramah::{
-    Control, End, Error, Interpolation, Kind, Outcome, Progress, Signal, Simulation, Sources, State, Trajectory,
-};
+use bramah::{Control, End, Error, Interpolation, Outcome, Progress, Signal, Simulation, Sources, State, Trajectory};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
@@ -188,17 +187,8 @@ impl Run {
     }
 
     /// Name, unit, unit for people, description, kind and literals of each column.
-    fn signals(&self) -> Vec<(String, String, String, String, &'static str, Vec<String>)> {
-        let of = |s: &Signal| {
-            let (kind, literals) = match &s.kind {
-                Kind::Real => ("Real", Vec::new()),
-                Kind::Integer => ("Integer", Vec::new()),
-                Kind::Boolean => ("Boolean", Vec::new()),
-                Kind::Enumeration(literals) => ("enumeration", literals.clone()),
-            };
-            (s.name.clone(), s.unit.clone(), s.display_unit.clone(), s.description.clone(), kind, literals)
-        };
-        self.signals.iter().map(of).collect()
+    fn signals(&self) -> Vec<Quantity> {
+        self.signals.iter().cloned().map(quantity_of).collect()
     }
 
     /// The arrays of the columns, in the order of `signals`.

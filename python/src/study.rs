@@ -1,5 +1,7 @@
 //! Parameters from recordings, and the diagnosis.
 
+#![allow(clippy::disallowed_methods, reason = "notes how long a diagnosis took")]
+
 use crate::errors::raised;
 use bramah::internals::diag::render::{Format, render};
 use bramah::internals::gap::study::{Unusable, question};

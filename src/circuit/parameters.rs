@@ -1,6 +1,7 @@
 //! What a compiled model offers: parameters with values and limits, inputs, variables.
 
 use super::Simulation;
+use crate::diag::Error;
 use crate::expr::VarId;
 use crate::flat::Variability;
 use crate::results::Signal;
@@ -45,6 +46,22 @@ impl Simulation {
     /// The inputs of the model: values come from outside during a run.
     pub fn inputs(&self) -> Vec<Signal> {
         solve::signals(&self.model().dae, &self.model().dae.inputs)
+    }
+
+    /// Names of the model's own outputs.
+    pub fn outputs(&self) -> Vec<String> {
+        self.model().flat.variables.iter().filter(|v| v.output).map(|v| v.name.clone()).collect()
+    }
+
+    /// The value of an input before it is set: its default, or its start value.
+    ///
+    /// # Errors
+    /// `E023` when the model has no such variable.
+    pub fn start_of(&self, name: &str) -> Result<f64, Error> {
+        let v = self.variable(name)?;
+        let model = self.model();
+        let own = model.flat.variables[v.index()].binding.and_then(|b| model.flat.exprs.as_num(b));
+        Ok(own.unwrap_or_else(|| solve::guesses(&model.system, self.asked())[model.system.layout.var(v)]))
     }
 
     /// Variables that change during a run, without protected ones.

@@ -12,7 +12,7 @@ use crate::experiment::seconds;
 use crate::plot::select::shown_values;
 use crate::plot::{Band, Figure, Panel, Series};
 use crate::results::compare::{Comparison, SignalComparison, Tolerance, compare, tube};
-use crate::results::{Globs, Trajectory, glob, number};
+use crate::results::{Globs, Kind, Trajectory, glob, number};
 
 /// Put a result beside a reference, signal by signal
 #[derive(Args, Debug)]
@@ -96,12 +96,13 @@ pub(super) fn run(args: &CompareArgs, messages: &mut Messages) -> Result<Ending,
     };
     let mut reference = data::result(&args.reference, times[0], messages)?;
     let mut result = data::result(&args.result, times[1], messages)?;
-    data::apply_units(&mut reference, &args.unit)?;
-    data::apply_units(&mut result, &args.unit)?;
+    name_units(&mut reference, &args.unit)?;
+    name_units(&mut result, &args.unit)?;
     let window = args.start_time.unwrap_or(f64::NEG_INFINITY)..=args.stop_time.unwrap_or(f64::INFINITY);
     reference.keep(window.clone());
     result.keep(window);
     let pairs = pairs(args, &mut reference, &result)?;
+    warn_of_units(&reference, &result, &pairs, messages);
     let tolerance =
         Tolerance { relative: args.tolerance, absolute: args.absolute_tolerance, time: args.time_tolerance };
     let comparison = compare(&reference, &result, &pairs, tolerance);
@@ -120,6 +121,30 @@ pub(super) fn run(args: &CompareArgs, messages: &mut Messages) -> Result<Ending,
         plot::write(&figure, &facts, path, messages)?;
     }
     Ok(if comparison.within { Ending::Fine } else { Ending::Wrong })
+}
+
+/// `--unit` is for signals without a unit: what a file says of its own stays.
+fn name_units(trajectory: &mut Trajectory, assignments: &[String]) -> Result<(), Failure> {
+    let own: Vec<String> = trajectory.signals.iter().map(|s| s.unit.clone()).collect();
+    data::apply_units(trajectory, assignments)?;
+    for (signal, own) in trajectory.signals.iter_mut().zip(own).filter(|(_, own)| !own.is_empty()) {
+        signal.unit = own;
+    }
+    Ok(())
+}
+
+/// Numbers with a unit beside numbers without one are compared as they stand.
+fn warn_of_units(reference: &Trajectory, result: &Trajectory, pairs: &[(usize, usize)], messages: &Messages) {
+    for (a, b) in pairs.iter().map(|&(a, b)| (&reference.signals[a], &result.signals[b])) {
+        if a.kind == Kind::Real && a.unit.is_empty() != b.unit.is_empty() {
+            let unit = if a.unit.is_empty() { &b.unit } else { &a.unit };
+            let (with, without) = if a.unit.is_empty() { (b, a) } else { (a, b) };
+            messages.remark(&format!(
+                "`{}` is in `{unit}`, the unit of `{}` is not known: the numbers are compared as they stand (--unit {}=UNIT)",
+                with.name, without.name, without.name
+            ));
+        }
+    }
 }
 
 /// Indices in reference and result of what is to be compared. Units given in `--map` are written into the reference,

@@ -14,6 +14,7 @@ mod completions;
 mod data;
 mod describe;
 mod explain;
+mod export;
 mod files;
 mod fmt;
 mod gap;
@@ -83,6 +84,7 @@ enum Command {
     Partition(partition::PartitionArgs),
     Linearize(linearize::LinearizeArgs),
     Sensitivity(sensitivity::SensitivityArgs),
+    Export(export::ExportArgs),
     Fmt(fmt::FmtArgs),
     Lsp(lsp::LspArgs),
     Serve(serve::ServeArgs),
@@ -167,6 +169,7 @@ fn dispatch(command: Command, messages: &mut Messages) -> Result<Ending, Failure
         Command::Partition(args) => partition::run(&args, messages),
         Command::Linearize(args) => linearize::run(&args, messages),
         Command::Sensitivity(args) => sensitivity::run(&args, messages),
+        Command::Export(args) => export::run(&args, messages),
         Command::Fmt(args) => fmt::run(&args, messages),
         Command::Lsp(args) => lsp::run(&args),
         Command::Serve(args) => serve::run(&args),

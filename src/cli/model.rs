@@ -40,13 +40,19 @@ pub(super) fn runnable(experiment: &Experiment) -> Result<Vec<String>, Failure> 
     Ok(found.into_iter().map(|r| r.class).collect())
 }
 
+/// The description of a class, or nothing.
+pub(super) fn described(request: &Request, class: &str) -> String {
+    let all = crate::compile::runnable(&DiskWorld, request).unwrap_or_default();
+    all.into_iter().find(|r| r.class == class).map(|r| r.description).unwrap_or_default()
+}
+
 /// The whole way to a system that can run.
 pub(super) fn compile(experiment: &Experiment, messages: &mut Messages) -> Result<Model, Failure> {
     let outcome = crate::compile::compile(&DiskWorld, &request(experiment)?, &Options { native: true });
     pass(outcome, experiment, messages)
 }
 
-fn request(experiment: &Experiment) -> Result<Request, Failure> {
+pub(super) fn request(experiment: &Experiment) -> Result<Request, Failure> {
     Ok(Request {
         source: source(Path::new(experiment.file.as_deref().unwrap_or_default())),
         model: experiment.model.clone(),

@@ -60,9 +60,7 @@ impl FlatModel {
             variables.iter().any(|w| self.variables[w.index()].variability == Variability::Parameter)
                 || matches!(self.exprs.node(e), Node::Time)
         };
-        variable.variability == Variability::Parameter
-            && variable.ty == Type::Real
-            && !variable.binding.is_some_and(reads)
+        variable.variability == Variability::Parameter && !variable.binding.is_some_and(reads)
     }
 }
 

@@ -16,6 +16,7 @@ use crate::compile::flatten;
 use crate::plot::network::{self, Mark};
 use crate::plot::svg::escape;
 use crate::plot::{Figure, Panel, Series, html};
+use crate::units::Unit;
 use std::fmt::Write;
 
 /// Deviations of so many tolerances are set off in the table.
@@ -304,13 +305,18 @@ fn beside(
     let behind = |errors: &Errors| recording.len() - errors.first().map_or(0, Vec::len);
     let panel = |(i, signal): (usize, &Signal)| {
         let measured = &recording.signals[i];
-        let unit = problem.circuit.units.get(&signal.variable).map_or("", String::as_str);
-        let mut series = vec![curve("measured", &recording.times, measured, 6)];
+        let (of_model, unit) = (problem.circuit.units.get(&signal.variable), &problem.shown[i].unit);
+        let units = of_model.and_then(|u| Unit::parse(u).ok()).zip(Unit::parse(unit).ok());
+        let in_unit = |values: &[f64]| -> Vec<f64> {
+            let convert = |v: &f64| units.as_ref().and_then(|(from, to)| from.convert(*v, to)).unwrap_or(*v);
+            values.iter().map(convert).collect()
+        };
+        let mut series = vec![curve("measured", &recording.times, &in_unit(measured), 6)];
         for (name, colour, errors) in models {
             let Some(errors) = errors else { continue };
             let from = behind(errors);
             let simulated: Vec<f64> = measured[from..].iter().zip(&errors[i]).map(|(y, e)| y - e).collect();
-            series.push(curve(name, &recording.times[from..], &simulated, *colour));
+            series.push(curve(name, &recording.times[from..], &in_unit(&simulated), *colour));
         }
         Panel {
             x_label: format!("time in s, {what}"),

@@ -11,7 +11,7 @@ use super::shapes;
 use crate::analysis::noise;
 use crate::diag::{Code, Diagnostic, Sources};
 use crate::expr::VarId;
-use crate::flat::{FlatModel, Variability};
+use crate::flat::{FlatModel, Type, Variability};
 use crate::lower::{Options, lower};
 use crate::solve::Interpolation;
 use crate::study::{Bound, BoundSignal, Knowledge, Role, Study, full_scales};
@@ -358,7 +358,12 @@ fn tolerances(flat: &FlatModel, bound: &Bound, value: &impl Fn(VarId) -> f64) ->
     let mut all = Vec::new();
     for (v, variable) in (0..).map(VarId).zip(&flat.variables) {
         let physical = variable.unit.as_deref().is_some_and(|u| !u.is_empty() && u != "1");
-        if variable.hidden || !physical || variable.variability != Variability::Parameter || !flat.is_root(v) {
+        if variable.hidden
+            || !physical
+            || variable.variability != Variability::Parameter
+            || variable.ty != Type::Real
+            || !flat.is_root(v)
+        {
             continue;
         }
         let nominal = value(v);

@@ -43,6 +43,11 @@ use crate::structure::StateChoice;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+/// Values of all variables before the start, by their slots: parameters as the settings say, guesses for all others.
+pub fn guesses(system: &System, settings: &Settings) -> Vec<f64> {
+    initialize::prepare(system, settings)
+}
+
 /// How far a run is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {

@@ -22,6 +22,26 @@ pub struct State {
 }
 
 impl State {
+    /// The state as bytes, for a model with the same variables.
+    pub fn bytes(&self) -> Vec<u8> {
+        let counts = [self.values.len() as f64];
+        let numbers = counts.iter().chain([&self.time]).chain(&self.values).chain(&self.derivatives).copied();
+        numbers.chain(self.past.numbers()).flat_map(f64::to_le_bytes).collect()
+    }
+
+    /// What [`State::bytes`] has written of a model with these variables; `None` for other bytes.
+    pub fn from_bytes(names: Vec<String>, bytes: &[u8]) -> Option<Self> {
+        let (words, rest) = bytes.as_chunks::<8>();
+        let numbers: Vec<f64> = words.iter().map(|w| f64::from_le_bytes(*w)).collect();
+        let n = names.len();
+        if !rest.is_empty() || numbers.len() < 2 + 2 * n || numbers[0] != n as f64 {
+            return None;
+        }
+        let (values, derivatives) = (numbers[2..2 + n].to_vec(), numbers[2 + n..2 + 2 * n].to_vec());
+        let past = Past::from_numbers(&numbers[2 + 2 * n..])?;
+        Some(State { time: numbers[1], names, values, derivatives, past })
+    }
+
     /// The state in `values`.
     pub fn save(system: &System, time: f64, values: &[f64], past: Past) -> Self {
         let ids = || (0..).map(VarId).take(system.dae.variables.len());

@@ -1,7 +1,7 @@
 //! Dimensions: products of powers of the seven base quantities of the SI.
 
 /// Exponents are counted in sixtieths, so that square, cube, fourth, fifth and sixth roots are exact.
-const WHOLE: i16 = 60;
+pub(super) const WHOLE: i16 = 60;
 
 /// The base units, in the order in which they are printed.
 const BASE: [&str; 7] = ["kg", "m", "s", "A", "K", "mol", "cd"];
@@ -45,6 +45,11 @@ impl Dimension {
             i += 1;
         }
         Dimension(sixtieths)
+    }
+
+    /// Exponents of kg, m, s, A, K, mol, cd; `None` where one is not whole.
+    pub fn whole(self) -> Option<[i16; 7]> {
+        self.0.iter().all(|e| e % WHOLE == 0).then(|| self.0.map(|e| e / WHOLE))
     }
 
     /// True when all exponents are 0.

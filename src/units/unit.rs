@@ -4,7 +4,7 @@
 //! `s-1`, `m^2`), `1`, or a unit in brackets. After a `/` only one factor may follow before the next `/`: `J/kg.K` is
 //! refused, as in Modelica, because it can be read in two ways.
 
-use super::dimension::{Dimension, power_of};
+use super::dimension::{Dimension, WHOLE, power_of};
 use super::symbols::{self, Symbol};
 
 /// A unit of measurement. A value `x` in it is `x*factor + offset` in coherent SI units.
@@ -75,6 +75,13 @@ impl Unit {
         ratio(1.0, self.num, self.den, self.decade)
     }
 
+    /// Exponents of kg, m, s, A, K, mol, cd and rad; `None` where one is not whole.
+    pub fn exponents(&self) -> Option<[i16; 8]> {
+        let [kg, m, s, a, k, mol, cd] = self.dimension.whole()?;
+        let angle = (self.angle % WHOLE == 0).then_some(self.angle / WHOLE)?;
+        Some([kg, m, s, a, k, mol, cd, angle])
+    }
+
     /// A value in this unit, in coherent SI units.
     pub fn to_si(&self, value: f64) -> f64 {
         ratio(value, self.num, self.den, self.decade) + self.offset
@@ -113,22 +120,25 @@ impl Unit {
         })
     }
 
-    fn power(self, exponent: i32) -> Option<Unit> {
-        if exponent == 1 {
+    /// A power; that of a square root for exponents such as 0.5, as in the flow coefficient `m3/(s.Pa0.5)`.
+    fn power(self, exponent: f64) -> Option<Unit> {
+        if exponent == 1.0 {
             return Some(self);
         }
-        let (num, den) = if exponent < 0 { (self.den, self.num) } else { (self.num, self.den) };
-        let magnitude = i32::try_from(exponent.unsigned_abs()).ok()?;
-        let (num, den) = (num.powi(magnitude), den.powi(magnitude));
-        if !num.is_finite() || !den.is_finite() {
+        let (num, den) = if exponent < 0.0 { (self.den, self.num) } else { (self.num, self.den) };
+        let decade = f64::from(self.decade) * exponent;
+        // a power of ten that is not whole belongs to the number
+        let rest = 10f64.powf(decade.fract());
+        let (num, den) = (num.powf(exponent.abs()) * rest, den.powf(exponent.abs()));
+        if !num.is_finite() || !den.is_finite() || decade.abs() > f64::from(i16::MAX) {
             return None;
         }
         Some(Unit {
-            dimension: self.dimension.power(f64::from(exponent))?,
-            angle: power_of(self.angle, f64::from(exponent))?,
+            dimension: self.dimension.power(exponent)?,
+            angle: power_of(self.angle, exponent)?,
             num,
             den,
-            decade: self.decade.checked_mul(exponent)?,
+            decade: decade.trunc() as i32,
             offset: 0.0,
         })
     }
@@ -197,7 +207,7 @@ impl Parser<'_> {
         loop {
             let next = if self.eat('/') {
                 below = true;
-                self.factor(depth)?.power(-1)
+                self.factor(depth)?.power(-1.0)
             } else if self.eat('.') || self.eat('*') || self.eat('\u{b7}') {
                 if below {
                     return Err(UnitError::Ambiguous { unit: self.unit.into() });
@@ -220,7 +230,7 @@ impl Parser<'_> {
         } else {
             self.symbol()?
         };
-        let exponent = if base == Unit::ONE { 1 } else { self.exponent()? };
+        let exponent = if base == Unit::ONE { 1.0 } else { self.exponent()? };
         base.power(exponent).ok_or_else(|| self.form())
     }
 
@@ -238,8 +248,9 @@ impl Parser<'_> {
     }
 
     /// A whole exponent directly behind a symbol, or after `^`; else 1.
-    fn exponent(&mut self) -> Result<i32, UnitError> {
-        for (symbol, exponent) in [('\u{b2}', 2), ('\u{b3}', 3)] {
+    /// A whole number, or one with a half: `2`, `-1`, `0.5`.
+    fn exponent(&mut self) -> Result<f64, UnitError> {
+        for (symbol, exponent) in [('\u{b2}', 2.0), ('\u{b3}', 3.0)] {
             if let Some(rest) = self.rest.strip_prefix(symbol) {
                 self.rest = rest;
                 return Ok(exponent);
@@ -250,10 +261,15 @@ impl Parser<'_> {
         let sign = usize::from(self.rest.starts_with(['+', '-']));
         let digits = self.rest[sign..].bytes().take_while(u8::is_ascii_digit).count();
         if digits == 0 {
-            return if raised || sign > 0 { Err(self.form()) } else { Ok(1) };
+            return if raised || sign > 0 { Err(self.form()) } else { Ok(1.0) };
         }
-        let exponent = self.rest[..sign + digits].parse().map_err(|_| self.form())?;
-        self.rest = &self.rest[sign + digits..];
+        let end = sign + digits;
+        // a dot is a product unless a 5 follows, which begins no unit
+        let half =
+            self.rest[end..].strip_prefix(".5").is_some_and(|after| !after.starts_with(|c: char| c.is_ascii_digit()));
+        let end = if half { end + 2 } else { end };
+        let exponent: f64 = self.rest[..end].parse().map_err(|_| self.form())?;
+        self.rest = &self.rest[end..];
         if bracket && !self.eat(')') {
             return Err(self.form());
         }
@@ -283,6 +299,9 @@ mod tests {
         ("mm2/s", 1e-6, "m2/s"),
         ("cSt", 1e-6, "m2/s"),
         ("cP", 1e-3, "Pa.s"),
+        ("m3/(s.Pa0.5)", 1.0, "m^3.5/kg^0.5"),
+        ("l/(min.bar0.5)", 5.270_462_766_947_298e-8, "m^3.5/kg^0.5"),
+        ("m0.5/s", 1.0, "m^0.5/s"),
         ("m^2", 1.0, "m2"),
         ("m^(-2)", 1.0, "1/m2"),
         ("s-1", 1.0, "1/s"),
@@ -345,7 +364,7 @@ mod tests {
             ("m/", "the unit `m/` cannot be read from `its end` on"),
             ("(m", "the unit `(m` cannot be read from `its end` on"),
             ("m)", "the unit `m)` cannot be read from `)` on"),
-            ("m2.5", "the unit `m2.5` cannot be read from `5` on"),
+            ("m2.7", "the unit `m2.7` cannot be read from `7` on"),
             ("10", "the unit `10` cannot be read from `0` on"),
             ("m999999", "the unit `m999999` cannot be read from `its end` on"),
         ];

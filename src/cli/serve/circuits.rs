@@ -3,12 +3,13 @@
 use serde::{Deserialize, Serialize};
 
 use super::super::inputs::all_driven;
+use super::super::model::described;
 use super::folder::Folder;
 use super::http::{Answer, Ask, Refusal, said};
 use super::jobs::{Job, Jobs, Made};
 use crate::Simulation;
 use crate::circuit::Parameter;
-use crate::compile::{Request, graph, runnable};
+use crate::compile::{Request, graph};
 use crate::diag::{Code, Diagnostic, nearest};
 use crate::experiment::seconds;
 use crate::instance::Override;
@@ -92,11 +93,6 @@ fn drawn(request: &Request) -> (String, String) {
     }
 }
 
-fn described(request: &Request, class: &str) -> String {
-    let all = runnable(&DiskWorld, request).unwrap_or_default();
-    all.into_iter().find(|r| r.class == class).map(|r| r.description).unwrap_or_default()
-}
-
 fn named(signal: &Signal) -> Named {
     Named {
         name: signal.name.clone(),
@@ -169,7 +165,7 @@ fn simulated(request: &Request, wanted: &Wanted, stop: Option<f64>, job: &Job) -
         simulation.stop_time(stop);
     }
     let patterns = Globs::new(&wanted.variables);
-    all_driven(&simulation.model().dae, &[]).map_err(|f| said(&f.diagnostics, simulation.sources()))?;
+    all_given(&simulation)?;
     record(&mut simulation, &patterns)?;
     let settings = simulation.settings().clone();
     let length = settings.stop_time - settings.start_time;
@@ -194,15 +190,24 @@ fn simulated(request: &Request, wanted: &Wanted, stop: Option<f64>, job: &Job) -
     };
     let s = &outcome.statistics;
     let work = format!(
-        "until {} s: {} steps, {} events, {} s",
+        "until {} s: {} steps, {} {}, {} s",
         number::text(outcome.state.time),
         s.steps,
         s.events,
+        if s.events == 1 { "event" } else { "events" },
         number::rounded(s.solve_s, 3)
     );
     let messages = [messages, left, work].into_iter().filter(|m| !m.is_empty()).collect::<Vec<_>>().join("\n\n");
     let facts = wanted.set.iter().map(|(name, value)| (name.clone(), value.clone())).collect::<Vec<_>>();
     Ok(Made { messages, page: html::write(&drawn.figure, &facts), files: Vec::new() })
+}
+
+/// Every input has a value of its own; the page has fields for them.
+fn all_given(simulation: &Simulation) -> Result<(), String> {
+    let Err(mut failure) = all_driven(&simulation.model().dae, &[]) else { return Ok(()) };
+    let help = "give it a constant value below \"Inputs\", or recorded ones in a study";
+    failure.diagnostics.iter_mut().for_each(|d| d.help = vec![help.to_owned()]);
+    Err(said(&failure.diagnostics, simulation.sources()))
 }
 
 /// Records what matches the patterns; without any, what the simulation records by itself.

@@ -54,6 +54,8 @@ impl Folder {
     /// Paths in messages are relative to the folder, so the process works in it.
     pub fn new(path: &Path) -> Result<Self, Failure> {
         let root = path.canonicalize().map_err(|e| files::access(path, "read", &e))?;
+        // of a file, its folder
+        let root = if root.is_file() { root.parent().unwrap_or(&root).to_owned() } else { root };
         std::env::set_current_dir(&root).map_err(|e| files::access(path, "opened", &e))?;
         Ok(Folder { root, shipped: OnceLock::new() })
     }

@@ -41,8 +41,8 @@ Examples:
   bramah serve press/ --open           and show them in the browser
   bramah serve --port 9000
 
-The page is for this machine only: the server listens at 127.0.0.1, answers no other site, reads and writes nothing
-outside the folder, and needs no network. Ctrl-C ends it.")]
+The page is for this machine only: the server listens at 127.0.0.1, answers no other site, opens and writes only what
+lies in the folder (a circuit may name a table elsewhere), and needs no network. Ctrl-C ends it.")]
 pub(super) struct ServeArgs {
     /// The folder with circuits (.mo), studies (.toml) and recordings (.csv)
     #[arg(value_name = "FOLDER", default_value = ".")]

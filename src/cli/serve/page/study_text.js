@@ -1,7 +1,7 @@
 // The study: its state, and its TOML text. The text is what the server gets; the form changes sections of it.
 
 import { byId, guarded, post } from "./tools.js";
-import { circuit } from "./circuit.js";
+import { circuit, folder as served } from "./circuit.js";
 
 // inputs: name -> {column, unit, hold, kind}; parameters: name -> "exact" or {sigma, min, max}; recordings carry
 // `name`, as the server knows them, and `info`, their columns; `uploaded` are names in the server's memory.
@@ -155,7 +155,7 @@ export const readText = () => post("/api/study/read", { text: byId("text").value
 
 // ---- A study per circuit survives a reload of the page, and a look at another circuit
 
-const keptAs = (source, name) => `study:${source}:${name}`;
+const keptAs = (source, name) => `study:${served.folder}:${source}:${name}`;
 
 // With the form: a study just begun is half filled in, and its text cannot be read back.
 export function keepStudy() {

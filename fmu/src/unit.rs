@@ -1,0 +1,295 @@
+//! A unit: from its texts to a run that is taken from step to step.
+
+#![allow(clippy::disallowed_methods, reason = "reads its resources")]
+
+use bramah::internals::fmi::{Causality, Interface, Packed, packed};
+use bramah::{Error, InputPort, Interpolation, Probe, Simulation, State, Stepping};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// A stepping run, or why it could not begin.
+struct Begun<'a>(Result<Stepping<'a>, Error>);
+
+self_cell::self_cell!(
+    struct Cell {
+        owner: Simulation,
+        #[not_covariant]
+        dependent: Begun,
+    }
+);
+
+/// A run under way, with what was looked up in it, by port.
+struct Run {
+    cell: Cell,
+    probes: Vec<Option<Probe>>,
+    inputs: Vec<Option<InputPort>>,
+}
+
+impl Run {
+    fn begin(simulation: Simulation, ports: usize, from: Option<&State>) -> Result<Self, Error> {
+        let mut cell =
+            Cell::new(simulation, |s| Begun(from.map_or_else(|| s.stepping(), |state| s.stepping_from(state))));
+        match cell.with_dependent_mut(|_, run| run.0.as_ref().err().cloned()) {
+            Some(error) => Err(error),
+            None => Ok(Run { cell, probes: vec![None; ports], inputs: vec![None; ports] }),
+        }
+    }
+
+    fn act<T>(&mut self, act: impl FnOnce(&mut Stepping<'_>) -> Result<T, Error>) -> Result<T, Error> {
+        self.cell.with_dependent_mut(|_, run| match &mut run.0 {
+            Ok(run) => act(run),
+            Err(error) => Err(error.clone()),
+        })
+    }
+}
+
+/// How the last call ended, where it did not fail.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Went {
+    /// As asked.
+    On,
+    /// The model has called `terminate`.
+    Terminated,
+}
+
+/// A state of a unit, to come back to.
+#[derive(Clone, Debug)]
+pub struct Snapshot {
+    given: BTreeMap<usize, f64>,
+    state: Option<State>,
+    ready: bool,
+}
+
+/// An instance.
+pub struct Unit {
+    /// As it was compiled.
+    fresh: Simulation,
+    simulation: Simulation,
+    interface: Interface,
+    /// Values set from outside, by port.
+    given: BTreeMap<usize, f64>,
+    run: Option<Run>,
+    /// Initialization is over: inputs now act from step to step.
+    ready: bool,
+}
+
+impl Unit {
+    /// Compiles what lies in the folder of resources.
+    ///
+    /// # Errors
+    /// What a user reads.
+    pub fn new(resources: &Path, token: &str) -> Result<Self, String> {
+        let file = resources.join(packed::FILE);
+        let text = std::fs::read_to_string(&file).map_err(|why| format!("`{}`: {why}", file.display()))?;
+        let packed = Packed::from_json(&text).map_err(|why| format!("`{}`: {why}", file.display()))?;
+        if packed.token != token {
+            return Err("the token is not that of this unit: description and binary do not belong together".to_owned());
+        }
+        let simulation = Simulation::compile(&packed, &packed.request()).map_err(|e| e.full())?;
+        let interface = Interface::new(&simulation, &packed.outputs)?;
+        Ok(Unit { fresh: simulation.clone(), simulation, interface, given: BTreeMap::new(), run: None, ready: false })
+    }
+
+    /// Times in seconds and the relative tolerance of the run to come.
+    pub fn setup(&mut self, start: f64, stop: Option<f64>, tolerance: Option<f64>) {
+        let settings = self.simulation.settings();
+        // steps may go on after this time: it says how long the run is about
+        let length = settings.stop_time - settings.start_time;
+        settings.stop_time = stop.filter(|stop| *stop > start).unwrap_or(start + length);
+        settings.start_time = start;
+        settings.tolerance = tolerance.unwrap_or(settings.tolerance);
+        self.run = None;
+    }
+
+    /// Where the run stands, in seconds.
+    pub fn time(&mut self) -> f64 {
+        match &mut self.run {
+            Some(run) => run.act(|r| Ok(r.time())).unwrap_or(f64::NAN),
+            None => self.simulation.settings().start_time,
+        }
+    }
+
+    /// The value behind a reference.
+    ///
+    /// # Errors
+    /// There is no such reference, or no initial values.
+    pub fn get(&mut self, reference: u32) -> Result<f64, String> {
+        let Some(port) = (reference as usize).checked_sub(1) else { return Ok(self.time()) };
+        let name = self.name(port)?;
+        if self.run.is_none() {
+            match self.interface.ports[port].causality {
+                Causality::Parameter | Causality::Calculated => {
+                    return self.simulation.get(&name).map_err(|e| e.full());
+                }
+                Causality::Input if self.given.contains_key(&port) => return Ok(self.given[&port]),
+                _ => {}
+            }
+        }
+        let run = self.begun()?;
+        let probe = match run.probes[port] {
+            Some(probe) => probe,
+            None => run.act(|r| r.probe(&name)).map_err(|e| e.full())?,
+        };
+        run.probes[port] = Some(probe);
+        run.act(|r| Ok(r.get(probe))).map_err(|e| e.full())
+    }
+
+    /// Sets a parameter before the start, or an input.
+    ///
+    /// # Errors
+    /// The variable cannot be set, or cannot have this value.
+    pub fn set(&mut self, reference: u32, value: f64) -> Result<(), String> {
+        let port = (reference as usize).checked_sub(1).ok_or("the time cannot be set")?;
+        let name = self.name(port)?;
+        match self.interface.ports[port].causality {
+            Causality::Parameter if !self.ready => {
+                self.simulation.set(&name, value).map_err(|e| e.full())?;
+                self.run = None;
+            }
+            Causality::Input if !value.is_finite() => return Err(format!("the input `{name}` cannot be {value}")),
+            Causality::Input if self.ready => {
+                let run = self.begun()?;
+                let input = match run.inputs[port] {
+                    Some(input) => input,
+                    None => run.act(|r| r.input(&name)).map_err(|e| e.full())?,
+                };
+                run.inputs[port] = Some(input);
+                run.act(|r| {
+                    r.set(input, value);
+                    Ok(())
+                })
+                .map_err(|e| e.full())?;
+            }
+            Causality::Input => self.run = None,
+            Causality::Parameter => return Err(format!("the parameter `{name}` keeps its value after the start")),
+            _ => return Err(format!("`{name}` follows from others and cannot be set")),
+        }
+        self.given.insert(port, value);
+        Ok(())
+    }
+
+    /// Ends initialization.
+    ///
+    /// # Errors
+    /// There are no initial values.
+    pub fn start(&mut self) -> Result<(), String> {
+        self.begun()?;
+        self.ready = true;
+        Ok(())
+    }
+
+    /// Goes on to a time.
+    ///
+    /// # Errors
+    /// Why the run cannot go on.
+    pub fn step_to(&mut self, time: f64) -> Result<Went, String> {
+        let run = self.begun()?;
+        run.act(|r| r.step_to(time)).map_err(|e| e.full())?;
+        let terminated = run.act(|r| Ok(r.terminated().is_some())).map_err(|e| e.full())?;
+        Ok(if terminated { Went::Terminated } else { Went::On })
+    }
+
+    /// Warnings since the last call.
+    pub fn warnings(&mut self) -> Vec<String> {
+        let Some(run) = &mut self.run else { return Vec::new() };
+        let found = run.act(|r| Ok(r.warnings())).unwrap_or_default();
+        found.into_iter().map(|d| d.message).collect()
+    }
+
+    /// Back to where it was after instantiation.
+    pub fn reset(&mut self) {
+        self.simulation = self.fresh.clone();
+        self.given.clear();
+        (self.run, self.ready) = (None, false);
+    }
+
+    /// A state to come back to.
+    ///
+    /// # Errors
+    /// There are no initial values.
+    pub fn snapshot(&mut self) -> Result<Snapshot, String> {
+        let state = match &mut self.run {
+            Some(run) => Some(run.act(|r| Ok(r.state())).map_err(|e| e.full())?),
+            None => None,
+        };
+        Ok(Snapshot { given: self.given.clone(), state, ready: self.ready })
+    }
+
+    /// Goes back to a state.
+    ///
+    /// # Errors
+    /// The state is of another model.
+    pub fn restore(&mut self, snapshot: &Snapshot) -> Result<(), String> {
+        self.given.clone_from(&snapshot.given);
+        for (&port, &value) in &snapshot.given {
+            if self.interface.ports[port].causality == Causality::Parameter {
+                self.simulation.set(&self.interface.ports[port].signal.name, value).map_err(|e| e.full())?;
+            }
+        }
+        self.ready = snapshot.ready;
+        self.run = None;
+        if let Some(state) = &snapshot.state {
+            let simulation = self.prepared()?;
+            self.run = Some(Run::begin(simulation, self.interface.ports.len(), Some(state)).map_err(|e| e.full())?);
+        }
+        Ok(())
+    }
+
+    /// A snapshot as bytes.
+    pub fn bytes(snapshot: &Snapshot) -> Vec<u8> {
+        let mut out = vec![u8::from(snapshot.ready), u8::from(snapshot.state.is_some())];
+        out.extend((snapshot.given.len() as u64).to_le_bytes());
+        for (&port, value) in &snapshot.given {
+            out.extend((port as u64).to_le_bytes());
+            out.extend(value.to_le_bytes());
+        }
+        out.extend(snapshot.state.iter().flat_map(State::bytes));
+        out
+    }
+
+    /// What [`Unit::bytes`] has written; `None` for the bytes of another model.
+    pub fn read_bytes(&self, bytes: &[u8]) -> Option<Snapshot> {
+        let (&[ready, has_state], rest) = bytes.split_first_chunk::<2>()?;
+        let (count, mut rest) = rest.split_first_chunk::<8>()?;
+        let mut given = BTreeMap::new();
+        for _ in 0..u64::from_le_bytes(*count) {
+            let (port, after) = rest.split_first_chunk::<8>()?;
+            let (value, after) = after.split_first_chunk::<8>()?;
+            let port = usize::try_from(u64::from_le_bytes(*port)).ok()?;
+            self.interface.ports.get(port)?;
+            given.insert(port, f64::from_le_bytes(*value));
+            rest = after;
+        }
+        let names = || self.simulation.model().dae.variables.iter().map(|v| v.name.clone()).collect();
+        let state = if has_state == 1 { Some(State::from_bytes(names(), rest)?) } else { None };
+        Some(Snapshot { given, state, ready: ready == 1 })
+    }
+
+    fn name(&self, port: usize) -> Result<String, String> {
+        let found = self.interface.ports.get(port).map(|p| p.signal.name.clone());
+        found.ok_or_else(|| format!("there is no variable with the value reference {}", port + 1))
+    }
+
+    /// The run; it begins with what was set so far.
+    fn begun(&mut self) -> Result<&mut Run, String> {
+        if self.run.is_none() {
+            let simulation = self.prepared()?;
+            self.run = Some(Run::begin(simulation, self.interface.ports.len(), None).map_err(|e| e.full())?);
+        }
+        self.run.as_mut().ok_or_else(|| "the run has not begun".to_owned())
+    }
+
+    /// The simulation with the inputs that were set, for the initial values.
+    fn prepared(&mut self) -> Result<Simulation, String> {
+        let mut simulation = self.simulation.clone();
+        let start = simulation.settings().start_time;
+        for (&port, &value) in &self.given {
+            let ports = &self.interface.ports[port];
+            if ports.causality == Causality::Input {
+                let input = simulation.input(&ports.signal.name, &[start], &[value], Interpolation::Held);
+                input.map_err(|e| e.full())?;
+            }
+        }
+        Ok(simulation)
+    }
+}

@@ -1,0 +1,233 @@
+//! `bramah export`
+
+use std::fmt::Write as _;
+use std::hash::Hasher;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use rustc_hash::FxHasher;
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipWriter};
+
+use super::files::{self, NewFile};
+use super::messages::Messages;
+use super::model::{described, request};
+use super::request::ModelArgs;
+use super::{Ending, Failure};
+use crate::Simulation;
+use crate::compile::graph;
+use crate::diag::{Code, Diagnostic, nearest};
+use crate::fmi::description::{self, IDENTIFIER, Version};
+use crate::fmi::{Causality, Interface, Packed, Recorder, packed};
+use crate::plot::network;
+use crate::plot::svg::escape;
+use crate::results::number;
+use crate::world::DiskWorld;
+
+/// Write a circuit as a functional mock-up unit (FMI, Co-Simulation)
+#[derive(Args, Debug)]
+#[command(after_help = "\
+The unit runs on a machine with neither bramah nor Rust. It holds a library, the texts that the circuit was made of, a
+description, and a page with the network and its parameters. Inputs of the circuit are inputs, its outputs outputs; with
+--outputs other variables are outputs too. Parameters on which the structure depends keep the value that they have here.
+
+Examples:
+  bramah export Press.mo -o press.fmu --outputs line.p,pump.Q_A
+  bramah export Axis.mo --fmi 2 --set load.m='120 kg' -o axis.fmu
+  bramah export ServoPump.System -o system.fmu
+
+Exit status: 0 fine; 1 the model is wrong; 2 bad arguments or files.")]
+pub(super) struct ExportArgs {
+    #[command(flatten)]
+    model: ModelArgs,
+    /// Where to write it [default: CLASS.fmu]
+    #[arg(short, long, value_name = "FMU")]
+    output_file: Option<PathBuf>,
+    /// Version of the standard
+    #[arg(long, value_enum, default_value_t = Fmi::Three)]
+    fmi: Fmi,
+    /// Variables that are outputs, such as 'line.p,pump.*'; may be repeated
+    #[arg(long, value_name = "GLOB,...")]
+    outputs: Vec<String>,
+    /// The library for the unit [default: that beside this command]
+    #[arg(long, value_name = "FILE")]
+    runtime: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Fmi {
+    /// FMI 2.0
+    #[value(name = "2")]
+    Two,
+    /// FMI 3.0
+    #[value(name = "3")]
+    Three,
+}
+
+pub(super) fn run(args: &ExportArgs, messages: &mut Messages) -> Result<Ending, Failure> {
+    let library = runtime(args.runtime.as_deref())?;
+    let experiment = args.model.experiment(None, messages)?;
+    let request = request(&experiment)?;
+    let recorder = Recorder::new(&DiskWorld);
+    let simulation = match Simulation::compile(&recorder, &request) {
+        Ok(simulation) => simulation,
+        Err(error) => {
+            messages.sources = (*error.sources).clone();
+            return Err(Failure { diagnostics: error.diagnostics });
+        }
+    };
+    messages.sources = simulation.sources().clone();
+    messages.say(&simulation.diagnostics);
+    let interface = Interface::new(&simulation, &args.outputs).map_err(|name| unknown(&simulation, &name))?;
+    let mut packed = recorder.packed(&request, &args.outputs, "");
+    packed.token = token(&packed);
+    let path = args.output_file.clone().unwrap_or_else(|| format!("{}.fmu", interface.class).into());
+    files::ending(&path, "a unit", &["fmu"])?;
+    let description = described(&request, &interface.class);
+    let unit = Contents { interface: &interface, packed: &packed, description, fmi: args.fmi };
+    let bytes = unit.write(&library, &picture(&request))?;
+    let count = |c: Causality| interface.ports.iter().filter(|p| p.causality == c).count();
+    messages.remark(&format!(
+        "wrote {}: FMI {}, Co-Simulation, {} parameters, {} inputs, {} outputs, {} MB",
+        path.display(),
+        if args.fmi == Fmi::Two { "2.0" } else { "3.0" },
+        count(Causality::Parameter),
+        count(Causality::Input),
+        count(Causality::Output),
+        number::rounded(bytes.len() as f64 / 1e6, 2)
+    ));
+    let mut file = NewFile::create(&path)?;
+    file.write_all(&bytes).map_err(|e| files::access(&path, "written", &e))?;
+    file.finish()?;
+    Ok(Ending::Fine)
+}
+
+fn unknown(simulation: &Simulation, pattern: &str) -> Failure {
+    let d = Diagnostic::new(Code::BadArgument, format!("`--outputs {pattern}` matches no variable"));
+    let names: Vec<String> = simulation.variables().into_iter().map(|s| s.name).collect();
+    match nearest(pattern, names.iter().map(String::as_str)) {
+        Some(near) => d.help(format!("did you mean `{near}`?")),
+        None => d,
+    }
+    .into()
+}
+
+/// Marks description and texts as belonging together: the same for the same unit.
+fn token(packed: &Packed) -> String {
+    let mut words = [0_u64; 2];
+    for (seed, word) in (1..).zip(&mut words) {
+        let mut hasher = FxHasher::default();
+        hasher.write_u64(seed);
+        hasher.write(packed.json().as_bytes());
+        hasher.write(env!("CARGO_PKG_VERSION").as_bytes());
+        *word = hasher.finish();
+    }
+    let digits = format!("{:016x}{:016x}", words[0], words[1]);
+    let parts = [&digits[..8], &digits[8..12], &digits[12..16], &digits[16..20], &digits[20..]];
+    format!("{{{}}}", parts.join("-"))
+}
+
+fn picture(request: &crate::Request) -> String {
+    graph(&DiskWorld, request).value.map_or_else(String::new, |(class, graph)| network::write(&graph, &class))
+}
+
+/// The library that lies beside the command, where it was built, or where it was installed.
+fn runtime(given: Option<&Path>) -> Result<Vec<u8>, Failure> {
+    let candidates: Vec<PathBuf> = match given {
+        Some(path) => vec![path.to_owned()],
+        None => {
+            let here = std::env::current_exe().ok().and_then(|p| p.parent().map(Path::to_owned)).unwrap_or_default();
+            let name = format!("{}bramah_fmu{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+            vec![here.join(&name), here.join("../lib/bramah").join(&name), here.join("../lib").join(&name)]
+        }
+    };
+    if let Some(bytes) = candidates.iter().find_map(|path| std::fs::read(path).ok()) {
+        return Ok(bytes);
+    }
+    let text = format!("the library for units is not there: `{}`", candidates[0].display());
+    let d = Diagnostic::new(Code::FileAccess, text);
+    Err(d
+        .help("release archives have it; from source: `cargo build --release -p bramah-fmu`, then `--runtime FILE`")
+        .into())
+}
+
+/// What goes into a unit.
+struct Contents<'a> {
+    interface: &'a Interface,
+    packed: &'a Packed,
+    description: String,
+    fmi: Fmi,
+}
+
+impl Contents<'_> {
+    fn write(&self, library: &[u8], picture: &str) -> Result<Vec<u8>, Failure> {
+        let failed =
+            |e: &dyn std::fmt::Display| Failure::new(Code::FileAccess, format!("the unit cannot be packed: {e}"));
+        let version = if self.fmi == Fmi::Two { Version::Two } else { Version::Three };
+        let description = description::write(self.interface, version, &self.packed.token, &self.description);
+        let page = if self.fmi == Fmi::Two { "documentation/_main.html" } else { "documentation/index.html" };
+        let licences = [include_str!("../../LICENSE-MIT"), include_str!("../../LICENSE-APACHE")].join("\n\n");
+        let mut zip = ZipWriter::new(std::io::Cursor::new(Vec::new()));
+        // the same circuit gives the same bytes: no times
+        let options = SimpleFileOptions::default()
+            .compression_method(CompressionMethod::Deflated)
+            .last_modified_time(zip::DateTime::default())
+            .unix_permissions(0o644);
+        let (texts, page_text) = (self.packed.json(), self.page(picture));
+        let entries: [(String, &[u8], u32); 5] = [
+            ("modelDescription.xml".to_owned(), description.as_bytes(), 0o644),
+            (format!("resources/{}", packed::FILE), texts.as_bytes(), 0o644),
+            (page.to_owned(), page_text.as_bytes(), 0o644),
+            ("documentation/licenses/license.txt".to_owned(), licences.as_bytes(), 0o644),
+            (self.binary(), library, 0o755),
+        ];
+        for (name, bytes, mode) in entries {
+            zip.start_file(name, options.unix_permissions(mode)).map_err(|e| failed(&e))?;
+            zip.write_all(bytes).map_err(|e| failed(&e))?;
+        }
+        Ok(zip.finish().map_err(|e| failed(&e))?.into_inner())
+    }
+
+    /// Where a simulator looks for the library of this machine.
+    fn binary(&self) -> String {
+        let (arch, os) = (std::env::consts::ARCH, std::env::consts::OS);
+        let folder = match (self.fmi, os) {
+            (Fmi::Two, "macos") => "darwin64".to_owned(),
+            (Fmi::Two, "windows") => "win64".to_owned(),
+            (Fmi::Two, _) => "linux64".to_owned(),
+            (Fmi::Three, "macos") => format!("{arch}-darwin"),
+            (Fmi::Three, os) => format!("{arch}-{os}"),
+        };
+        format!("binaries/{folder}/{IDENTIFIER}{}", std::env::consts::DLL_SUFFIX)
+    }
+
+    /// The network, and the parameters with their values.
+    fn page(&self, picture: &str) -> String {
+        let class = escape(&self.interface.class);
+        let mut out = format!(
+            "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{class}</title>\n<style>body {{ font: 14px \
+             sans-serif; margin: 24px; max-width: 1100px }} svg {{ max-width: 100%; height: auto }} td, th {{ padding: 2px 14px \
+             2px 0; text-align: left }}</style></head>\n<body><h1>{class}</h1>\n<p>{}</p>\n{picture}\n",
+            escape(&self.description)
+        );
+        let parts =
+            [("Parameters", Causality::Parameter), ("Inputs", Causality::Input), ("Outputs", Causality::Output)];
+        for (title, causality) in parts {
+            let ports: Vec<_> = self.interface.ports.iter().filter(|p| p.causality == causality).collect();
+            if ports.is_empty() {
+                continue;
+            }
+            let _ = writeln!(out, "<h2>{title}</h2>\n<table><tr><th>name<th>value<th>unit<th>description</tr>");
+            for p in ports {
+                let value = p.start.map_or_else(String::new, |v| number::rounded(v, 9));
+                let cells = [&p.signal.name, &value, &p.signal.unit, &p.signal.description];
+                let cells: String = cells.iter().map(|c| format!("<td>{}", escape(c))).collect();
+                let _ = writeln!(out, "<tr>{cells}</tr>");
+            }
+            out.push_str("</table>\n");
+        }
+        let _ = write!(out, "<p>Written by bramah {}.</p>\n</body></html>\n", env!("CARGO_PKG_VERSION"));
+        out
+    }
+}
