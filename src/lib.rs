@@ -170,7 +170,7 @@ pub use results::{Kind, Signal, Trajectory};
 pub use solve::{Control, End, Interpolation, Progress, Settings, State, Statistics};
 
 #[cfg(feature = "analysis")]
-pub use analysis::identify::{Identified, identify};
+pub use analysis::identify::{Asked as IdentifyOptions, Identified, Method as IdentifyMethod, identify, identify_as};
 #[cfg(feature = "analysis")]
 pub use analysis::sensitivity::Sensitivity;
 #[cfg(feature = "gap")]

@@ -118,3 +118,17 @@ fn a_value_outside_its_range_is_refused_as_the_command_does() {
     simulation.set("a", 3.0).expect("within the new limit");
     assert_eq!(simulation.get("a").expect("a parameter"), 3.0);
 }
+
+#[test]
+fn a_state_from_behind_the_stop_time_goes_on() {
+    let text = "model Lag Real y(start = 1, fixed = true); equation der(y) = -y; annotation(experiment(StopTime = 1)); end Lag;";
+    let mut lag = Simulation::from_text(text).unwrap();
+    let state = lag.stop_time(2.0).run().unwrap().state;
+    lag.stop_time(1.0);
+    let mut run = lag.stepping_from(&state).unwrap();
+    let y = run.probe("y").unwrap();
+    run.step(1.0).unwrap();
+    assert!((run.get(y) - (-3.0_f64).exp()).abs() < 1e-4);
+    let other = Simulation::from_text("model M Real x; equation x = time; end M;").unwrap();
+    assert!(other.stepping_from(&state).is_err());
+}

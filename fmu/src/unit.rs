@@ -7,6 +7,18 @@ use bramah::{Error, InputPort, Interpolation, Probe, Simulation, State, Stepping
 use std::collections::BTreeMap;
 use std::path::Path;
 
+/// Deeply nested models recurse; a simulator's stack may be too small for the deepest that are accepted.
+const STACK: usize = 1 << 28;
+
+/// Acts on a thread with a deep stack.
+fn deep<T: Send>(act: impl FnOnce() -> T + Send) -> T {
+    std::thread::scope(|scope| {
+        let thread = std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, act);
+        let thread = thread.expect("a thread can be started");
+        thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+    })
+}
+
 /// A stepping run, or why it could not begin.
 struct Begun<'a>(Result<Stepping<'a>, Error>);
 
@@ -85,7 +97,7 @@ impl Unit {
         if packed.token != token {
             return Err("the token is not that of this unit: description and binary do not belong together".to_owned());
         }
-        let simulation = Simulation::compile(&packed, &packed.request()).map_err(|e| e.full())?;
+        let simulation = deep(|| Simulation::compile(&packed, &packed.request())).map_err(|e| e.full())?;
         let interface = Interface::new(&simulation, &packed.outputs)?;
         Ok(Unit { fresh: simulation.clone(), simulation, interface, given: BTreeMap::new(), run: None, ready: false })
     }

@@ -15,18 +15,28 @@ from .model import Model
 from .result import framed
 
 
-def identify(study: str | os.PathLike[str] | Study, data: str | os.PathLike[str] | None = None) -> Identified:
+def identify(
+    study: str | os.PathLike[str] | Study,
+    data: str | os.PathLike[str] | None = None,
+    *,
+    method: str = "auto",
+    starts: int = 1,
+    seed: int = 1,
+) -> Identified:
     """Finds the parameters that a study lists from its recordings.
 
     Args:
         study: a study file (docs/study.md), or a `Study`.
         data: the folder of the recordings; that of the study where left out.
+        method: "output" compares runs from the inputs alone with the signals, "inverse" the force that the measured motion
+            needs with the measured one; "auto" takes the inverse model where forces or torques are measured.
+        starts: search from so many places, the values of the model first, and keep the best end; `seed` draws them.
 
     Raises:
         Error: study, model or recordings are wrong (E601, E604, E902); the message says where and what to do.
     """
     files, path = _files(study, data)
-    return Identified(*_bramah.identify(files, path))
+    return Identified(*_bramah.identify(files, path, method, starts, seed))
 
 
 def gap(
@@ -278,9 +288,9 @@ class Study:
         lines = ["", "[[recordings]]", f"file = {_toml(name)}", f"role = {_toml(role)}"]
         return lines + ([] if time is None else [f"time = {_toml(time)}"])
 
-    def identify(self) -> Identified:
+    def identify(self, *, method: str = "auto", starts: int = 1, seed: int = 1) -> Identified:
         """Finds the parameters that have tolerances or bounds: as `bramah.identify`."""
-        return identify(self)
+        return identify(self, method=method, starts=starts, seed=seed)
 
     def gap(self, *, effect: str | None = None, progress: bool | Callable[[str], None] = False) -> Verdict:
         """Diagnoses the gap between model and recordings: as `bramah.gap`."""

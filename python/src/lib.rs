@@ -6,6 +6,7 @@ mod model;
 mod run;
 mod stepper;
 mod study;
+mod threads;
 
 use pyo3::prelude::*;
 

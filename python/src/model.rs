@@ -3,6 +3,7 @@
 use crate::errors::raised;
 use crate::run::{Plan, Run, Saved};
 use crate::stepper;
+use crate::threads::{deep, pooled};
 use bramah::internals::compile::graph;
 use bramah::internals::diag::render::{Format, render};
 use bramah::internals::plot::network;
@@ -12,7 +13,6 @@ use bramah::{Diagnostic, Error, Kind, Override, Request, Signal, Simulation};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use rayon::prelude::*;
 
 /// The name under which messages show a text without a file.
 const TEXT: &str = "model.mo";
@@ -74,30 +74,31 @@ fn compiled(text: Option<&String>, request: &Request) -> Result<Simulation, Erro
 
 impl Core {
     fn new(text: Option<String>, request: Request) -> Result<Self, Error> {
-        Ok(Core { simulation: compiled(text.as_ref(), &request)?, text, request })
+        Ok(Core { simulation: deep(|| compiled(text.as_ref(), &request))?, text, request })
     }
 
     /// The same with other values: without compiling again where that is possible.
     fn with(&self, values: &[(String, Value)]) -> Result<Self, Error> {
         let mut changed = self.clone();
         let parameters = self.simulation.parameters();
-        let mut again = Vec::new();
+        let mut again = false;
         for (name, value) in values {
             let parameter = parameters.iter().find(|p| p.signal.name == *name);
             let number = parameter.filter(|p| !p.structural).and_then(|p| number(value, &p.signal));
             match number {
                 Some(number) => drop(changed.simulation.set(name, number)?),
-                None => again.push(Override { name: name.clone(), value: value.text() }),
+                None => again = true,
             }
         }
-        if again.is_empty() {
-            return Ok(changed);
+        // what makes this model again, for pickling and for values that need the compiler
+        let overrides = &mut changed.request.overrides;
+        overrides.retain(|o| !values.iter().any(|(name, _)| *name == o.name));
+        overrides.extend(values.iter().map(|(n, v)| Override { name: n.clone(), value: v.text() }));
+        if again {
+            // names of arrays, texts, structural parameters and inputs go through the compiler, as `--set` does
+            return Core::new(self.text.clone(), changed.request);
         }
-        // names of arrays, texts, structural parameters and inputs go through the compiler, as `--set` does
-        let mut request = self.request.clone();
-        request.overrides.retain(|o| !values.iter().any(|(name, _)| *name == o.name));
-        request.overrides.extend(values.iter().map(|(n, v)| Override { name: n.clone(), value: v.text() }));
-        Core::new(self.text.clone(), request)
+        Ok(changed)
     }
 
     /// With values and trajectories of inputs, ready to run.
@@ -215,19 +216,6 @@ impl Core {
         Run::of(py, &ready, from_state.map(|s| &s.state), progress)
     }
 
-    /// Many runs on all cores: for each list of values a run, or what went wrong.
-    fn sweep(&self, py: Python<'_>, points: Vec<Vec<(String, Value)>>, plan: Plan) -> PyResult<Vec<Py<PyAny>>> {
-        let ran: Vec<Result<_, Error>> =
-            py.detach(|| points.par_iter().map(|values| self.ready(values, &plan).and_then(|s| s.run())).collect());
-        let of = |outcome: Result<bramah::Outcome, Error>| -> PyResult<Py<PyAny>> {
-            match outcome {
-                Ok(outcome) => Ok(Py::new(py, Run::new(py, outcome, self.simulation.sources()))?.into_any()),
-                Err(error) => Ok(raised(py, &error).into_value(py).into_any()),
-            }
-        };
-        ran.into_iter().map(of).collect()
-    }
-
     /// The linear model at a time, or at the steady state from there.
     #[pyo3(signature = (values, at, steady, inputs, outputs))]
     fn linearize<'py>(
@@ -291,7 +279,8 @@ impl Core {
     ) -> PyResult<Bound<'py, PyDict>> {
         let found = py.detach(|| {
             let names: Vec<&str> = parameters.iter().map(String::as_str).collect();
-            self.ready(&values, &plan)?.sensitivity(&names)
+            let simulation = self.ready(&values, &plan)?;
+            pooled(|| simulation.sensitivity(&names))
         });
         let found = found.map_err(|e| raised(py, &e))?;
         let dict = PyDict::new(py);

@@ -10,7 +10,7 @@ use bramah::{Control, End, Error, Interpolation, Outcome, Progress, Signal, Simu
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBytes, PyDict};
 
 /// Calls of the solver's progress between two looks whether the user pressed Ctrl-C.
 const LOOK: u32 = 16;
@@ -92,6 +92,21 @@ pub struct Saved {
 
 #[pymethods]
 impl Saved {
+    /// From what `parts` gave, for pickling.
+    #[new]
+    fn new(names: Vec<String>, bytes: Vec<u8>) -> PyResult<Self> {
+        let state = State::from_bytes(names, &bytes);
+        state.map(|state| Saved { state }).ok_or_else(|| PyValueError::new_err("these bytes are no state"))
+    }
+
+    fn __getnewargs__<'py>(&self, py: Python<'py>) -> (Vec<String>, Bound<'py, PyBytes>) {
+        (self.state.names.clone(), PyBytes::new(py, &self.state.bytes()))
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<bramah.State at {} s, {} variables>", self.state.time, self.state.names.len())
+    }
+
     /// Seconds.
     #[getter]
     fn time(&self) -> f64 {

@@ -3,11 +3,13 @@
 #![allow(clippy::disallowed_methods, reason = "notes how long a diagnosis took")]
 
 use crate::errors::raised;
+use crate::threads::pooled;
 use bramah::internals::diag::render::{Format, render};
 use bramah::internals::gap::study::{Unusable, question};
 use bramah::internals::study::Study;
 use bramah::world::{DiskWorld, MemoryWorld, Overlay};
-use bramah::{Diagnosis, Error, Sources};
+use bramah::{Diagnosis, Error, IdentifyMethod, IdentifyOptions, Sources};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -20,10 +22,28 @@ fn world(files: Vec<(String, String)>) -> Overlay<'static> {
     Overlay { base: &DiskWorld, files: held }
 }
 
-/// JSON report, words and warnings of a fit.
+/// JSON report, words and warnings of a fit by `auto`, `output` or `inverse`, from so many starts.
 #[pyfunction]
-pub fn identify(py: Python<'_>, files: Vec<(String, String)>, study: String) -> PyResult<(String, String, String)> {
-    let found = py.detach(|| bramah::identify(&world(files), Path::new(&study))).map_err(|e| raised(py, &e))?;
+pub fn identify(
+    py: Python<'_>,
+    files: Vec<(String, String)>,
+    study: String,
+    method: &str,
+    starts: usize,
+    seed: u64,
+) -> PyResult<(String, String, String)> {
+    let method = match method {
+        "auto" => IdentifyMethod::Auto,
+        "output" => IdentifyMethod::Output,
+        "inverse" => IdentifyMethod::Inverse,
+        other => {
+            let text = format!("the method is \"auto\", \"output\" or \"inverse\", not {other:?}");
+            return Err(PyValueError::new_err(text));
+        }
+    };
+    let options = IdentifyOptions { method, starts, seed };
+    let found = py.detach(|| pooled(|| bramah::identify_as(&world(files), Path::new(&study), &options)));
+    let found = found.map_err(|e| raised(py, &e))?;
     let json = serde_json::to_string(&found.report).expect("numbers and texts always serialize");
     Ok((json, found.words, said(&Sources::default(), &found.diagnostics)))
 }
@@ -44,7 +64,7 @@ pub fn diagnose(
 ) -> PyResult<Found> {
     let begun = std::time::Instant::now();
     let mut stopped = None;
-    let found = py.detach(|| -> Result<Found, Error> {
+    let work = || -> Result<Found, Error> {
         let world = world(files);
         let mut sources = Sources::default();
         let failed = |diagnostics, sources| Error { diagnostics, sources: Arc::new(sources) };
@@ -83,7 +103,8 @@ pub fn diagnose(
         let fixed = diagnosis.corrected();
         let warnings = [diagnosis.diagnostics(), &fixed.diagnostics].concat();
         Ok((json, diagnosis.words(), diagnosis.report(), fixed.value, said(&sources, &warnings)))
-    });
+    };
+    let found = py.detach(|| pooled(work));
     match stopped {
         Some(error) => Err(error),
         None => found.map_err(|e| raised(py, &e)),

@@ -1,8 +1,7 @@
 //! Co-simulation: a run that the caller takes from step to step, setting inputs and reading variables in between.
 
 use super::simulation::Simulation;
-use crate::diag::Diagnostic;
-use crate::diag::Error;
+use crate::diag::{Code, Diagnostic, Error};
 use crate::solve::driver::{self, Driver, Stop};
 use crate::solve::{End, State, Statistics};
 
@@ -64,6 +63,10 @@ pub struct Stepping<'a> {
 impl<'a> Stepping<'a> {
     pub(super) fn new(simulation: &'a Simulation, from: Option<&State>) -> Result<Self, Error> {
         let (system, settings) = (&simulation.model().system, simulation.asked());
+        if let Some(state) = from.filter(|s| !s.fits(system)) {
+            let text = format!("the state of another model cannot be taken: it has {} variables", state.names.len());
+            return Err(simulation.errors(vec![Diagnostic::new(Code::BadArgument, text)]));
+        }
         let driver = driver::start(system, settings, simulation.driven(), from);
         let mut driver = driver.map_err(|stop| simulation.errors(stop.diagnostics))?;
         driver.observe();
@@ -126,7 +129,7 @@ impl<'a> Stepping<'a> {
         }
         if !time.is_finite() || time < self.time() {
             let text = format!("a step from {} s to {time} s", self.time());
-            return Err(self.simulation.errors(vec![Diagnostic::new(crate::diag::Code::BadArgument, text)]));
+            return Err(self.simulation.errors(vec![Diagnostic::new(Code::BadArgument, text)]));
         }
         let changes = std::mem::take(&mut self.changes);
         let moved = self.driver.advance(&changes, time);

@@ -182,6 +182,8 @@ pub fn start<'a>(
     let resumed = from.is_some();
     let (mut driver, mut model, solved) = prepare(system, settings, inputs, from.map(From::State), None, None);
     solved.map_err(stop_at_start)?;
+    // the caller says how far each step goes: a state from behind the stop time is a start like others
+    driver.until = driver.until.max(driver.t + (settings.stop_time - settings.start_time).abs());
     driver.begin(&mut model, resumed)?;
     driver.integrator(model)?;
     Ok(driver)
@@ -449,7 +451,9 @@ impl<'a> Driver<'a, '_> {
         let start = (self.t, self.restart.y(), self.restart.yp());
         let ida = Ida::new(model, &pattern, lu, roots, &tolerances, start);
         let mut ida = ida.map_err(|f| self.refused(&f))?;
-        let span = self.settings.stop_time - self.t;
+        // a caller who steps may go on from behind the stop time
+        let ahead = self.settings.stop_time - self.t;
+        let span = if ahead > 0.0 { ahead } else { self.settings.stop_time - self.settings.start_time };
         let unseen = system.dae.states.is_empty() || follows_time(&system.dae);
         let longest = self.settings.longest_step.min(if unseen { span / 500.0 } else { f64::INFINITY });
         let recorded = &ida.watch().playback.delays;

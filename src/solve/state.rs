@@ -22,6 +22,12 @@ pub struct State {
 }
 
 impl State {
+    /// Whether it is of a model with these variables.
+    pub fn fits(&self, system: &System) -> bool {
+        let variables = &system.dae.variables;
+        self.names.len() == variables.len() && self.names.iter().zip(variables).all(|(n, v)| *n == v.name)
+    }
+
     /// The state as bytes, for a model with the same variables.
     pub fn bytes(&self) -> Vec<u8> {
         let counts = [self.values.len() as f64];

@@ -34,7 +34,7 @@ pub use residuals::{Dependence, ResidualTest};
 pub use runs::Broken;
 pub use separate::{Blind, Separation};
 pub use starts::Starts;
-pub use study::{Identified, identify};
+pub use study::{Asked, Identified, identify, identify_as};
 
 use crate::analysis::noise;
 use crate::compile::Model;

@@ -36,6 +36,31 @@ pub struct Identified {
 /// # Errors
 /// What is wrong with the study, its model or its recordings; that runs fail.
 pub fn identify(world: &dyn World, study: &Path) -> Result<Identified, Error> {
+    identify_as(world, study, &Asked::default())
+}
+
+/// How parameters are searched for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Asked {
+    /// Against which errors.
+    pub method: Method,
+    /// From so many places, the values of the model first.
+    pub starts: usize,
+    /// Draws the places.
+    pub seed: u64,
+}
+
+impl Default for Asked {
+    fn default() -> Self {
+        Asked { method: Method::Auto, starts: 1, seed: 1 }
+    }
+}
+
+/// The same with a choice of method and starts.
+///
+/// # Errors
+/// As [`identify`].
+pub fn identify_as(world: &dyn World, study: &Path, asked: &Asked) -> Result<Identified, Error> {
     let mut said = Said::default();
     let read = Study::read(world, study, &mut said.sources);
     let study = said.take(read)?;
@@ -50,8 +75,8 @@ pub fn identify(world: &dyn World, study: &Path) -> Result<Identified, Error> {
     };
     let train = load(Role::Train, &mut said)?;
     let problem = Problem::new(&model, &bound, &train).map_err(|d| said.error(d))?;
-    let found = Identification::new(&problem, &train, Method::Auto).map_err(|d| said.error(vec![d]))?;
-    let fit = found.fit().map_err(|d| said.error(vec![d]))?;
+    let found = Identification::new(&problem, &train, asked.method).map_err(|d| said.error(vec![d]))?;
+    let fit = found.fit_from(asked.starts, asked.seed).map_err(|d| said.error(vec![d]))?;
     let held = if bound.has(Role::Held) { load(Role::Held, &mut said)? } else { Vec::new() };
     let held = match held.is_empty() {
         true => Vec::new(),
