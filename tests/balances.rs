@@ -18,7 +18,7 @@ use bramah::internals::compile::flatten;
 use bramah::internals::flat::FlatModel;
 use bramah::results::Trajectory;
 use bramah::world::{MemoryWorld, World};
-use bramah::{Request, Simulation};
+use bramah::{Interpolation, Request, Simulation};
 use disk::Disk;
 use rig::{column, last};
 use std::collections::BTreeMap;
@@ -102,6 +102,15 @@ struct Circuit {
     closed: bool,
     /// Its oil carries heat, and so more than the work of its pressure: tests/thermo_hydraulics.rs keeps that account.
     thermal: bool,
+}
+
+/// Inputs without a value of their own are 0 unless a test says otherwise.
+fn at_rest(simulation: &mut Simulation) {
+    let dae = simulation.model().dae.clone();
+    let variables = dae.inputs.iter().map(|v| &dae.variables[v.index()]);
+    for input in variables.filter(|v| v.binding.is_none() && v.start.is_none()) {
+        simulation.input(&input.name, &[0.0], &[0.0], Interpolation::Held).expect("an input");
+    }
 }
 
 impl Circuit {
@@ -188,6 +197,7 @@ impl Circuit {
         let request = Request { source: "watched.mo".into(), ..Request::default() };
         let compiled = Simulation::compile(&world, &request);
         let mut simulation = compiled.unwrap_or_else(|e| panic!("{}: {e}\n{text}", self.class));
+        at_rest(&mut simulation);
         set(&mut simulation);
         let t = simulation.run().unwrap_or_else(|e| panic!("{}: {e}", self.class)).trajectory;
         (last(&t, "swelling") != 0.0).then_some(t)

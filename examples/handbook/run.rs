@@ -4,7 +4,7 @@ use bramah::internals::plot::figure::Figure;
 use bramah::internals::plot::select::{Choice, Run, figure};
 use bramah::internals::plot::svg;
 use bramah::results::{Globs, Trajectory};
-use bramah::{Error, Simulation};
+use bramah::{Code, Error, Simulation};
 use std::collections::BTreeMap;
 
 /// More panels than this are not drawn unasked.
@@ -21,12 +21,14 @@ pub struct Runs {
 }
 
 impl Runs {
-    /// The trajectory of a shipped example; nothing where it fails, which is remembered.
+    /// The trajectory of a shipped example; nothing where its inputs have no values, or where it fails, which is remembered.
     pub fn of(&mut self, class: &str) -> Option<&Trajectory> {
         if !self.done.contains_key(class) {
             let run = Simulation::shipped(class).and_then(|s| s.run());
             let kept = match run {
                 Ok(outcome) => Some(outcome.trajectory),
+                // its inputs are recordings
+                Err(error) if error.diagnostics.iter().all(|d| d.code == Code::NoInput) => None,
                 Err(error) => {
                     self.failed.push(format!("{class}: {error}"));
                     None

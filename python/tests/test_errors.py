@@ -185,3 +185,11 @@ def test_a_model_after_an_error():
     for wrong in ({"kk": 1}, {"k": -1}, {"k": "1 bar"}, {"h": 1}):
         raises(lambda: model.simulate(1.0, **wrong))
         assert model.simulate(1.0)["h"][-1] == before == pytest.approx(level(1), rel=1e-4)
+
+
+def test_an_input_without_a_value_is_an_error():
+    model = br.load("model M input Real u; Real x(start = 0, fixed = true); equation der(x) = u; end M;")
+    with pytest.raises(br.Error) as said:
+        model.simulate(1.0)
+    assert said.value.code == "E106"
+    assert model.simulate(1.0, inputs={"u": 2.0})["x"][-1] == pytest.approx(2.0)

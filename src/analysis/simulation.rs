@@ -8,7 +8,8 @@ use crate::compile::Model;
 use crate::diag::{Code, Diagnostic, Error};
 use crate::expr::VarId;
 use crate::flat::{Type, Variability};
-use crate::solve::{Settings, State};
+use crate::results::Trajectory;
+use crate::solve::{Control, Settings, State};
 use std::borrow::Cow;
 use std::sync::atomic::AtomicBool;
 
@@ -26,7 +27,10 @@ impl Simulation {
         settings.stop_time = time.unwrap_or(settings.start_time);
         settings.interval = (settings.stop_time - settings.start_time) / 200.0;
         settings.wanted.clear();
-        Ok(until.run()?.state)
+        // inputs without a value count as 0: they may be what the model is to be linear in
+        let mut nothing = Trajectory::new(Vec::new());
+        let run = until.run_into(None, &mut Control::default(), &mut nothing)?;
+        if run.end.is_success() { Ok(run.state) } else { Err(self.errors(run.diagnostics)) }
     }
 
     /// The linear model at a state: x' = A x + B u, y = C x + D u, in deviations. `inputs` are top-level inputs or

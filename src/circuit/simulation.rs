@@ -225,7 +225,7 @@ impl Simulation {
     /// Runs from the initial values.
     ///
     /// # Errors
-    /// The diagnostics of a run that did not reach its end.
+    /// `E106` when an input has no value; the diagnostics of a run that did not reach its end.
     pub fn run(&self) -> Result<Outcome, Error> {
         self.run_with(None, &mut Control::default())
     }
@@ -244,6 +244,7 @@ impl Simulation {
     /// As [`Simulation::run`]; `E507` when it was stopped, `E508` when the callback panicked.
     pub fn run_with(&self, from: Option<&State>, control: &mut Control<'_>) -> Result<Outcome, Error> {
         let mut trajectory = Trajectory::new(self.columns());
+        self.may_run(from)?;
         let run = self.run_into(from, control, &mut trajectory)?;
         if !run.end.is_success() {
             return Err(self.errors(run.diagnostics));
@@ -256,6 +257,7 @@ impl Simulation {
     /// # Errors
     /// `E508` when the callback panicked.
     pub fn run_kept(&self, from: Option<&State>, control: &mut Control<'_>) -> Result<Outcome, Error> {
+        self.may_run(from)?;
         let mut trajectory = Trajectory::new(self.columns());
         let run = self.run_into(from, control, &mut trajectory)?;
         Ok(Outcome::new(run, trajectory))
@@ -288,6 +290,7 @@ impl Simulation {
         mut on_row: impl FnMut(f64, &[f64]) -> ControlFlow<()> + Send,
     ) -> Result<Outcome, Error> {
         let mut rows = Rows { on_row: &mut on_row, conduct: Conduct::default() };
+        self.may_run(from)?;
         let run = self.run_into(from, &mut Control::default(), &mut rows)?;
         if let Some(complaint) = rows.conduct.complaint(run.time) {
             return Err(self.error(complaint));
@@ -314,7 +317,32 @@ impl Simulation {
         Stepping::new(self, Some(state))
     }
 
-    fn run_into(&self, from: Option<&State>, control: &mut Control<'_>, sink: &mut dyn Sink) -> Result<Run, Error> {
+    /// Every input has a value: one given, its own, or that of the state from which the run goes on.
+    fn may_run(&self, from: Option<&State>) -> Result<(), Error> {
+        if from.is_some() {
+            return Ok(());
+        }
+        let own = |v: VarId| {
+            let variable = &self.model.dae.variables[v.index()];
+            variable.binding.is_some() || variable.start.is_some()
+        };
+        let given = |v: VarId| self.inputs.iter().any(|i| i.variable == v);
+        let missing = self.model.dae.inputs.iter().filter(|v| !given(**v) && !own(**v));
+        let said = |v: &VarId| {
+            let variable = &self.model.dae.variables[v.index()];
+            let d = Diagnostic::new(Code::NoInput, format!("the input `{}` has no value", variable.name));
+            d.at(variable.origin.span, "declared here").help("give it values over time, or a start value in the model")
+        };
+        let diagnostics: Vec<Diagnostic> = missing.map(said).collect();
+        if diagnostics.is_empty() { Ok(()) } else { Err(self.errors(diagnostics)) }
+    }
+
+    pub(crate) fn run_into(
+        &self,
+        from: Option<&State>,
+        control: &mut Control<'_>,
+        sink: &mut dyn Sink,
+    ) -> Result<Run, Error> {
         let mut conduct = Conduct::default();
         let mut reselect = |choice: &StateChoice| self.model.with_states(choice);
         let mut watched = control.progress.as_mut().map(|report| {

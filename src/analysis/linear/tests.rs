@@ -203,9 +203,12 @@ fn the_written_form_simulates() {
 /// of where its run, cut at `stop`, ends.
 fn largest_error(class: &str, stop: Option<f64>, inputs: &[&str], rho: &[&str], least: f64) -> f64 {
     let request = Request { source: class.into(), ..Request::default() };
-    let mut simulation = Simulation::compile(&MemoryWorld::default(), &request).expect("ships");
-    stop.map(|t| simulation.stop_time(t));
-    let state = simulation.run().expect("runs").state;
+    let simulation = Simulation::compile(&MemoryWorld::default(), &request).expect("ships");
+    let state = match stop {
+        None => simulation.state_at(Some(simulation.clone().settings().stop_time)),
+        Some(stop) => simulation.state_at(Some(stop)),
+    };
+    let state = state.expect("runs");
     let chosen = Chosen::scheduled(&simulation.model().flat, &strings(inputs), &strings(rho)).expect("fits");
     let around = chosen.quantities().map(|v| {
         let now = state.values[v.index()];
