@@ -119,6 +119,10 @@ make_parts() {
     local shell
     mkdir -p "$work/bin" "$work/completions"
     install -m 755 "$binary" "$work/bin/bramah"
+    # the library inside the units that `bramah export` writes; lies beside the command
+    local library=${binary%/*}/libbramah_fmu.so
+    [ -f "$library" ] || fail "there is no $library: cargo build --release -p bramah-fmu" 2
+    install -m 644 "$library" "$work/bin/"
     for shell in bash zsh fish; do
         "$work/bin/bramah" completions "$shell" >"$work/completions/$shell" </dev/null
     done
@@ -158,6 +162,7 @@ archive() {
     root=$work/$name
     mkdir -p "$root/completions"
     install -m 755 "$work/bin/bramah" packaging/install.sh "$root/"
+    install -m 644 "$work/bin/libbramah_fmu.so" "$root/"
     install -m 644 LICENSE-MIT LICENSE-APACHE "$work/THIRD-PARTY.txt" "$work/bramah.1" "$root/"
     install -m 644 "$work/completions/bash" "$root/completions/bramah.bash"
     install -m 644 "$work/completions/zsh" "$root/completions/_bramah"
@@ -219,6 +224,8 @@ package() {
     mkdir -p "$root/DEBIAN" "$root/usr/bin" "$root"/usr/share/{bash-completion/completions,zsh/vendor-completions} \
         "$root"/usr/share/{fish/vendor_completions.d,man/man1} "$doc"
     install -m 755 "$work/bin/bramah" "$root/usr/bin/"
+    mkdir -p "$root/usr/lib/bramah"
+    install -m 644 "$work/bin/libbramah_fmu.so" "$root/usr/lib/bramah/"
     install -m 644 "$work/completions/bash" "$root/usr/share/bash-completion/completions/bramah"
     install -m 644 "$work/completions/zsh" "$root/usr/share/zsh/vendor-completions/_bramah"
     install -m 644 "$work/completions/fish" "$root/usr/share/fish/vendor_completions.d/bramah.fish"

@@ -53,6 +53,8 @@ explain_code() { run explain E103 >explain.txt && has E103 explain.txt; }
 
 explain_class() { run explain Hydraulic.Cylinder >explain.txt && has port_1 explain.txt; }
 
+export_unit() { run export press/Press.mo -o press.fmu --outputs line.p && [ "$(head -c 2 press.fmu)" = PK ]; }
+
 # A model that is wrong must be refused, with status 1.
 refuse() {
     local status=0
@@ -90,6 +92,7 @@ try 'plot press.csv: SVG' plot_svg
 try 'plot press.csv: PNG' plot_png
 try 'explain E103' explain_code
 try 'explain Hydraulic.Cylinder' explain_class
+try 'export a unit for other tools' export_unit
 try 'fmt --check press/Press.mo' run fmt --check press/Press.mo
 try 'lsp: initialize, shutdown' lsp
 if [ -d "$examples/first_circuit" ]; then try 'simulate examples/first_circuit/Press.mo' first_circuit; fi

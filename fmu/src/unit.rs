@@ -6,6 +6,7 @@ use bramah::internals::fmi::{Causality, Interface, Packed, packed};
 use bramah::{Error, InputPort, Interpolation, Probe, Simulation, State, Stepping};
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 
 /// Deeply nested models recurse; a simulator's stack may be too small for the deepest that are accepted.
 const STACK: usize = 1 << 28;
@@ -72,6 +73,9 @@ pub struct Snapshot {
     ready: bool,
 }
 
+/// What was compiled in this process, by token: instances of one unit share its code. A token is a digest of the texts.
+static COMPILED: Mutex<BTreeMap<String, (Simulation, Interface)>> = Mutex::new(BTreeMap::new());
+
 /// An instance.
 pub struct Unit {
     /// As it was compiled.
@@ -91,6 +95,19 @@ impl Unit {
     /// # Errors
     /// What a user reads.
     pub fn new(resources: &Path, token: &str) -> Result<Self, String> {
+        let mut compiled = COMPILED.lock().unwrap_or_else(PoisonError::into_inner);
+        let (simulation, interface) = match compiled.get(token) {
+            Some(known) => known.clone(),
+            None => {
+                let made = Self::compile(resources, token)?;
+                compiled.insert(token.to_owned(), made.clone());
+                made
+            }
+        };
+        Ok(Unit { fresh: simulation.clone(), simulation, interface, given: BTreeMap::new(), run: None, ready: false })
+    }
+
+    fn compile(resources: &Path, token: &str) -> Result<(Simulation, Interface), String> {
         let file = resources.join(packed::FILE);
         let text = std::fs::read_to_string(&file).map_err(|why| format!("`{}`: {why}", file.display()))?;
         let packed = Packed::from_json(&text).map_err(|why| format!("`{}`: {why}", file.display()))?;
@@ -99,7 +116,7 @@ impl Unit {
         }
         let simulation = deep(|| Simulation::compile(&packed, &packed.request())).map_err(|e| e.full())?;
         let interface = Interface::new(&simulation, &packed.outputs)?;
-        Ok(Unit { fresh: simulation.clone(), simulation, interface, given: BTreeMap::new(), run: None, ready: false })
+        Ok((simulation, interface))
     }
 
     /// Times in seconds and the relative tolerance of the run to come.
