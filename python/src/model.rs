@@ -13,6 +13,7 @@ use bramah::{Diagnostic, Error, Kind, Override, Request, Signal, Simulation};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::sync::{Arc, OnceLock};
 
 /// The name under which messages show a text without a file.
 const TEXT: &str = "model.mo";
@@ -22,6 +23,8 @@ const TEXT: &str = "model.mo";
 #[derive(Clone)]
 pub struct Core {
     pub simulation: Simulation,
+    /// What can be set, looked up once for all models that differ in values only.
+    settable: Arc<OnceLock<Vec<bramah::Parameter>>>,
     text: Option<String>,
     request: Request,
 }
@@ -74,13 +77,14 @@ fn compiled(text: Option<&String>, request: &Request) -> Result<Simulation, Erro
 
 impl Core {
     fn new(text: Option<String>, request: Request) -> Result<Self, Error> {
-        Ok(Core { simulation: deep(|| compiled(text.as_ref(), &request))?, text, request })
+        let simulation = deep(|| compiled(text.as_ref(), &request))?;
+        Ok(Core { simulation, settable: Arc::default(), text, request })
     }
 
     /// The same with other values: without compiling again where that is possible.
     fn with(&self, values: &[(String, Value)]) -> Result<Self, Error> {
         let mut changed = self.clone();
-        let parameters = self.simulation.parameters();
+        let parameters = self.settable.get_or_init(|| self.simulation.parameters());
         let mut again = false;
         for (name, value) in values {
             let parameter = parameters.iter().find(|p| p.signal.name == *name);

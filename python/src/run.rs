@@ -65,8 +65,8 @@ impl Plan {
     /// Patterns choose among the variables that change; a plain name may also be a parameter.
     fn record(&self, simulation: &mut Simulation) -> Result<(), Error> {
         if self.outputs.is_empty() {
-            let changing: Vec<String> = simulation.variables().into_iter().map(|s| s.name).collect();
-            return simulation.record(&changing.iter().map(String::as_str).collect::<Vec<_>>()).map(drop);
+            simulation.record_variables();
+            return Ok(());
         }
         let all: Vec<String> = simulation.variables().into_iter().map(|s| s.name).collect();
         let mut chosen: Vec<&str> = Vec::new();

@@ -66,9 +66,20 @@ impl Simulation {
 
     /// Variables that change during a run, without protected ones.
     pub fn variables(&self) -> Vec<Signal> {
+        solve::signals(&self.model().dae, &self.changing())
+    }
+
+    /// Chooses to record the variables that change during a run, without parameters and protected ones.
+    pub fn record_variables(&mut self) -> &mut Self {
+        let changing = self.changing();
+        self.settings().wanted = changing;
+        self
+    }
+
+    fn changing(&self) -> Vec<VarId> {
         let dae = &self.model().dae;
         let changes = |v: &VarId| dae.variables[v.index()].variability > Variability::Parameter && dae.is_shown(*v);
-        solve::signals(dae, &self.all().filter(changes).collect::<Vec<_>>())
+        self.all().filter(changes).collect()
     }
 
     fn all(&self) -> impl Iterator<Item = VarId> {
