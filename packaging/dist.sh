@@ -1,6 +1,8 @@
 #!/usr/bin/env bash
 # Makes the files of a release from a built binary: packaging/dist.sh VERSION BINARY OUTDIR
 #
+# The library for units, libbramah_fmu.so, lies beside BINARY; it goes into both, stripped.
+#
 #   bramah-VERSION-x86_64-linux.tar.gz   for install.sh, or to unpack by hand
 #   bramah_VERSION_amd64.deb             for Debian and Ubuntu
 #   *.sha256                             the checksum of each
@@ -29,6 +31,8 @@ version=$1
 # Debian sorts 1.0.0~rc.1 before 1.0.0, as it is meant, and 1.0.0-rc.1 after it.
 deb_version=${version/-/\~}
 binary=$(realpath "$2")
+unit_library=${binary%/*}/libbramah_fmu.so
+[ -f "$unit_library" ] || fail "there is no $unit_library: \`cargo build --release -p bramah-fmu\` makes it" 2
 mkdir -p "$3"
 out=$(realpath "$3")
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -41,7 +45,7 @@ trap 'rm -rf "$work"' EXIT
 
 need_tools() {
     local tool
-    for tool in objdump tar gzip sha256sum dpkg-deb cargo; do
+    for tool in objdump strip tar gzip sha256sum dpkg-deb cargo; do
         command -v "$tool" >/dev/null || fail "\`$tool\` is needed (Debian: binutils, dpkg, coreutils; cargo from rustup)" 2
     done
 }
@@ -62,11 +66,20 @@ check_binary() {
     [ "$said" = "bramah $version" ] || fail "$binary is \`${said%%$'\n'*}\`, not bramah $version"
 }
 
-# Lines `LIBRARY VERSION` of all that the loader will look for, for example `libm.so.6 GLIBC_2.35`: the loader refuses
-# the program when one is missing, so this table of the file, not its list of symbols, decides.
+check_library() {
+    local name
+    objdump -f "$unit_library" 2>/dev/null | grep -q 'file format elf64-x86-64' || fail "$unit_library is no library for x86_64"
+    for name in fmi2DoStep fmi3DoStep; do
+        # not `grep -q`, which ends before objdump has written everything
+        objdump -T "$unit_library" | grep " $name$" >/dev/null || fail "$unit_library is no library for units: it has no $name"
+    done
+}
+
+# Lines `LIBRARY VERSION` of all that the loader will look for, for example `libm.so.6 GLIBC_2.35`, for the program and the
+# library: the loader refuses them when one is missing, so this table of the file, not its list of symbols, decides.
 references() {
-    objdump -p "$binary" | awk '/required from/ { sub(":", "", $3); library = $3; next }
-        /^Version definitions/ { library = "" } library != "" && NF == 4 { print library, $4 }'
+    objdump -p "$binary" "$unit_library" | awk '/required from/ { sub(":", "", $3); library = $3; next }
+        /^Version definitions|file format/ { library = "" } library != "" && NF == 4 { print library, $4 }'
 }
 
 # newest PREFIX: the newest version of `references` with that prefix, `GLIBC_` or `GCC_`.
@@ -82,7 +95,7 @@ depends() {
             libgcc_s.so.1) list+=", libgcc-s1 (>= $(newest GCC_ | cut -d. -f1-2))" ;;
             *) fail "no package of Debian is known here for $library: add it to \`depends\` of packaging/dist.sh" ;;
         esac
-    done < <(objdump -p "$binary" | awk '$1 == "NEEDED" { print $2 }' | sort)
+    done < <(objdump -p "$binary" "$unit_library" | awk '$1 == "NEEDED" { print $2 }' | sort -u)
     printf '%s\n' "$list"
 }
 
@@ -119,10 +132,7 @@ make_parts() {
     local shell
     mkdir -p "$work/bin" "$work/completions"
     install -m 755 "$binary" "$work/bin/bramah"
-    # the library inside the units that `bramah export` writes; lies beside the command
-    local library=${binary%/*}/libbramah_fmu.so
-    [ -f "$library" ] || fail "there is no $library: cargo build --release -p bramah-fmu" 2
-    install -m 644 "$library" "$work/bin/"
+    strip --strip-unneeded -o "$work/bin/libbramah_fmu.so" "$unit_library"
     for shell in bash zsh fish; do
         "$work/bin/bramah" completions "$shell" >"$work/completions/$shell" </dev/null
     done
@@ -247,6 +257,7 @@ package() {
 need_tools
 need_date
 check_binary
+check_library
 depends >/dev/null
 make_parts
 archive

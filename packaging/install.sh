@@ -160,8 +160,11 @@ arrange() {
     mkdir -p "$stage/bin" "$share/bash-completion/completions" "$share/zsh/site-functions" "$share/fish/vendor_completions.d" \
         "$share/man/man1" "$share/doc/bramah" "$share/bramah"
     mv "$root/bramah" "$stage/bin/bramah"
-    mkdir -p "$stage/lib/bramah"
-    mv "$root/libbramah_fmu.so" "$stage/lib/bramah/"
+    # Archives before `bramah export` have no library for units.
+    if [ -f "$root/libbramah_fmu.so" ]; then
+        mkdir "$stage/lib" "$stage/lib/bramah"
+        mv "$root/libbramah_fmu.so" "$stage/lib/bramah/"
+    fi
     mv "$root/completions/bramah.bash" "$share/bash-completion/completions/bramah"
     mv "$root/completions/_bramah" "$share/zsh/site-functions/_bramah"
     mv "$root/completions/bramah.fish" "$share/fish/vendor_completions.d/bramah.fish"

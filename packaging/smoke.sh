@@ -53,7 +53,11 @@ explain_code() { run explain E103 >explain.txt && has E103 explain.txt; }
 
 explain_class() { run explain Hydraulic.Cylinder >explain.txt && has port_1 explain.txt; }
 
-export_unit() { run export press/Press.mo -o press.fmu --outputs line.p && [ "$(head -c 2 press.fmu)" = PK ]; }
+# Names in a ZIP file stand there as they are.
+export_unit() {
+    run export press/Press.mo -o press.fmu --outputs line.p && [ "$(head -c 2 press.fmu)" = PK ] &&
+        has modelDescription.xml press.fmu && has binaries/x86_64-linux/bramah.so press.fmu
+}
 
 # A model that is wrong must be refused, with status 1.
 refuse() {

@@ -3,6 +3,7 @@
 #![allow(clippy::disallowed_methods, reason = "reads its resources")]
 
 use bramah::internals::fmi::{Causality, Interface, Packed, packed};
+use bramah::results::Kind;
 use bramah::{Error, InputPort, Interpolation, Probe, Simulation, State, Stepping};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -145,14 +146,13 @@ impl Unit {
     pub fn get(&mut self, reference: u32) -> Result<f64, String> {
         let Some(port) = (reference as usize).checked_sub(1) else { return Ok(self.time()) };
         let name = self.name(port)?;
-        if self.run.is_none() {
-            match self.interface.ports[port].causality {
-                Causality::Parameter | Causality::Calculated => {
-                    return self.simulation.get(&name).map_err(|e| e.full());
-                }
-                Causality::Input if self.given.contains_key(&port) => return Ok(self.given[&port]),
-                _ => {}
+        match self.interface.ports[port].causality {
+            Causality::Parameter | Causality::Calculated if self.run.is_none() => {
+                return self.simulation.get(&name).map_err(|e| e.full());
             }
+            // the run takes it over with its next step
+            Causality::Input if self.given.contains_key(&port) => return Ok(self.given[&port]),
+            _ => {}
         }
         let run = self.begun()?;
         let probe = match run.probes[port] {
@@ -170,6 +170,11 @@ impl Unit {
     pub fn set(&mut self, reference: u32, value: f64) -> Result<(), String> {
         let port = (reference as usize).checked_sub(1).ok_or("the time cannot be set")?;
         let name = self.name(port)?;
+        if let Kind::Enumeration(literals) = &self.interface.ports[port].signal.kind
+            && !(1..=literals.len()).any(|literal| literal as f64 == value)
+        {
+            return Err(format!("`{name}` cannot be {value}: its values are 1 to {}", literals.len()));
+        }
         match self.interface.ports[port].causality {
             Causality::Parameter if !self.ready => {
                 self.simulation.set(&name, value).map_err(|e| e.full())?;
@@ -250,6 +255,12 @@ impl Unit {
     /// The state is of another model.
     pub fn restore(&mut self, snapshot: &Snapshot) -> Result<(), String> {
         self.given.clone_from(&snapshot.given);
+        // parameters that were set after the snapshot go back as well; times and tolerance stay
+        let settings = self.simulation.settings();
+        let (start, stop, tolerance) = (settings.start_time, settings.stop_time, settings.tolerance);
+        self.simulation = self.fresh.clone();
+        let settings = self.simulation.settings();
+        (settings.start_time, settings.stop_time, settings.tolerance) = (start, stop, tolerance);
         for (&port, &value) in &snapshot.given {
             if self.interface.ports[port].causality == Causality::Parameter {
                 self.simulation.set(&self.interface.ports[port].signal.name, value).map_err(|e| e.full())?;

@@ -87,6 +87,9 @@ pub(super) fn run(args: &ExportArgs, messages: &mut Messages) -> Result<Ending, 
     let description = described(&request, &interface.class);
     let unit = Contents { interface: &interface, packed: &packed, description, fmi: args.fmi };
     let bytes = unit.write(&library, &picture(&request))?;
+    let mut file = NewFile::create(&path)?;
+    file.write_all(&bytes).map_err(|e| files::access(&path, "written", &e))?;
+    file.finish()?;
     let count = |c: Causality| interface.ports.iter().filter(|p| p.causality == c).count();
     messages.remark(&format!(
         "wrote {}: FMI {}, Co-Simulation, {} parameters, {} inputs, {} outputs, {} MB",
@@ -97,9 +100,6 @@ pub(super) fn run(args: &ExportArgs, messages: &mut Messages) -> Result<Ending, 
         count(Causality::Output),
         number::rounded(bytes.len() as f64 / 1e6, 2)
     ));
-    let mut file = NewFile::create(&path)?;
-    file.write_all(&bytes).map_err(|e| files::access(&path, "written", &e))?;
-    file.finish()?;
     Ok(Ending::Fine)
 }
 

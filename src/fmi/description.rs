@@ -31,7 +31,7 @@ pub fn write(interface: &Interface, version: Version, token: &str, description: 
          generationTool=\"bramah {}\" variableNamingConvention=\"structured\"{}>",
         if three { "3.0" } else { "2.0" },
         escape(&interface.class),
-        escape(description),
+        line(description),
         env!("CARGO_PKG_VERSION"),
         if three { "" } else { " numberOfEventIndicators=\"0\"" },
     );
@@ -68,6 +68,11 @@ pub fn write(interface: &Interface, version: Version, token: &str, description: 
     structure(&mut out, interface, three);
     out.push_str("  </ModelStructure>\n</fmiModelDescription>\n");
     out
+}
+
+/// A description on one line.
+fn line(text: &str) -> String {
+    escape(&text.split_whitespace().collect::<Vec<_>>().join(" "))
 }
 
 /// Units as powers of the base units, and the units for people as factors of them.
@@ -178,7 +183,7 @@ fn head(port: &Port, reference: usize) -> String {
         let _ = write!(out, " initial=\"{initial}\"");
     }
     if !port.signal.description.is_empty() {
-        let _ = write!(out, " description=\"{}\"", escape(&port.signal.description));
+        let _ = write!(out, " description=\"{}\"", line(&port.signal.description));
     }
     out
 }
@@ -199,8 +204,9 @@ fn number_attributes(port: &Port) -> String {
         }
     }
     let whole = signal.kind != Kind::Real;
+    let largest = if whole { f64::from(i32::MAX) } else { LARGEST };
     for (name, limit) in [("min", port.min), ("max", port.max)] {
-        if let Some(limit) = limit.filter(|l| l.abs() < LARGEST) {
+        if let Some(limit) = limit.filter(|l| l.abs() < largest) {
             let _ = write!(out, " {name}=\"{}\"", text(limit, whole));
         }
     }
