@@ -9,7 +9,6 @@
 set -eu
 
 here=$(cd "$(dirname "$0")" && pwd)
-python=${PYTHON:-python3}
 wheel=
 if [ $# -gt 0 ] && [ "$1" != "--" ]; then
     wheel=$(cd "$(dirname "$1")" && pwd)/$(basename "$1")
@@ -18,23 +17,8 @@ if [ $# -gt 0 ] && [ "$1" != "--" ]; then
 fi
 [ "${1:-}" != "--" ] || shift
 
-skipped() {
-    echo "skipped: $1"
-    exit 0
-}
-
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-trap 'exit 130' INT TERM
-# nothing of the caller's environment, and nothing written beside the source
-unset PYTHONPATH PYTHONHOME
-export PYTHONDONTWRITEBYTECODE=1 PIP_DISABLE_PIP_VERSION_CHECK=1
-
-"$python" -c 'import sys; sys.exit(sys.version_info < (3, 10))' 2>/dev/null || skipped "$python is not Python 3.10 or newer"
-"$python" -m venv "$work/venv" >"$work/log" 2>&1 || skipped "$python makes no virtual environments (on Debian: python3-venv)"
-bin=$work/venv/bin
-"$bin/pip" install --quiet --retries 1 --timeout 20 pytest >"$work/log" 2>&1 ||
-    skipped "PyPI cannot be reached: $(grep -v '^ *$' "$work/log" | tail -n 1)"
+. "$here/../tests/venv.sh"
+fresh_venv pytest
 
 if [ -z "$wheel" ]; then
     "$bin/pip" install --quiet 'maturin>=1.9,<2'

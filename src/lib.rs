@@ -162,7 +162,7 @@ pub mod editor;
 #[doc(hidden)]
 pub mod cli;
 
-pub use circuit::{Circuit, InputPort, Outcome, Parameter, Probe, Simulation, Stepping};
+pub use circuit::{Circuit, InputPort, Outcome, OwnedStepping, Parameter, Probe, Simulation, Stepping};
 pub use compile::Request;
 pub use diag::{Code, Diagnostic, Error, Severity, Sources};
 pub use instance::Override;
@@ -174,7 +174,7 @@ pub use analysis::identify::{Asked as IdentifyOptions, Identified, Method as Ide
 #[cfg(feature = "analysis")]
 pub use analysis::sensitivity::Sensitivity;
 #[cfg(feature = "gap")]
-pub use gap::{Diagnosis, Stage, Verdict, diagnose};
+pub use gap::{DiagnoseOptions, Diagnosis, Stage, Verdict, diagnose, diagnose_as};
 
 /// Linear models, as [`Simulation::linearize`] gives them.
 #[cfg(feature = "analysis")]

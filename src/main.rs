@@ -7,11 +7,11 @@
 #[global_allocator]
 static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 
-/// Deeply nested models recurse; the main thread's stack is too small for the deepest that are accepted.
-const STACK: usize = 1 << 28;
-
 fn main() -> std::process::ExitCode {
-    let worker = std::thread::Builder::new().name("bramah".to_owned()).stack_size(STACK).spawn(bramah::cli::main);
+    let worker = std::thread::Builder::new()
+        .name("bramah".to_owned())
+        .stack_size(bramah::internals::compile::STACK)
+        .spawn(bramah::cli::main);
     match worker.map(std::thread::JoinHandle::join) {
         Ok(Ok(code)) => code,
         // The panic hook has said what happened.

@@ -158,7 +158,7 @@ unsafe fn get_state(instance: *mut c_void, place: *mut *mut c_void) -> c_int {
     // SAFETY: as the caller promises.
     unsafe {
         with(instance, |c| {
-            let snapshot = c.unit.snapshot()?;
+            let snapshot = c.unit.snapshot();
             let Some(place) = place.as_mut() else { return Err("there is no place for the state".to_owned()) };
             match place.cast::<Snapshot>().as_mut() {
                 Some(old) => *old = snapshot,

@@ -4,57 +4,16 @@
 
 use bramah::internals::fmi::{Causality, Interface, Packed, packed};
 use bramah::results::Kind;
-use bramah::{Error, InputPort, Interpolation, Probe, Simulation, State, Stepping};
+use bramah::{InputPort, Interpolation, OwnedStepping, Probe, Simulation, State};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
-/// Deeply nested models recurse; a simulator's stack may be too small for the deepest that are accepted.
-const STACK: usize = 1 << 28;
-
-/// Acts on a thread with a deep stack.
-fn deep<T: Send>(act: impl FnOnce() -> T + Send) -> T {
-    std::thread::scope(|scope| {
-        let thread = std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, act);
-        let thread = thread.expect("a thread can be started");
-        thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
-    })
-}
-
-/// A stepping run, or why it could not begin.
-struct Begun<'a>(Result<Stepping<'a>, Error>);
-
-self_cell::self_cell!(
-    struct Cell {
-        owner: Simulation,
-        #[not_covariant]
-        dependent: Begun,
-    }
-);
-
 /// A run under way, with what was looked up in it, by port.
 struct Run {
-    cell: Cell,
+    stepping: OwnedStepping,
     probes: Vec<Option<Probe>>,
     inputs: Vec<Option<InputPort>>,
-}
-
-impl Run {
-    fn begin(simulation: Simulation, ports: usize, from: Option<&State>) -> Result<Self, Error> {
-        let mut cell =
-            Cell::new(simulation, |s| Begun(from.map_or_else(|| s.stepping(), |state| s.stepping_from(state))));
-        match cell.with_dependent_mut(|_, run| run.0.as_ref().err().cloned()) {
-            Some(error) => Err(error),
-            None => Ok(Run { cell, probes: vec![None; ports], inputs: vec![None; ports] }),
-        }
-    }
-
-    fn act<T>(&mut self, act: impl FnOnce(&mut Stepping<'_>) -> Result<T, Error>) -> Result<T, Error> {
-        self.cell.with_dependent_mut(|_, run| match &mut run.0 {
-            Ok(run) => act(run),
-            Err(error) => Err(error.clone()),
-        })
-    }
 }
 
 /// How the last call ended, where it did not fail.
@@ -115,7 +74,7 @@ impl Unit {
         if packed.token != token {
             return Err("the token is not that of this unit: description and binary do not belong together".to_owned());
         }
-        let simulation = deep(|| Simulation::compile(&packed, &packed.request())).map_err(|e| e.full())?;
+        let simulation = Simulation::compile(&packed, &packed.request()).map_err(|e| e.full())?;
         let interface = Interface::new(&simulation, &packed.outputs)?;
         Ok((simulation, interface))
     }
@@ -134,7 +93,7 @@ impl Unit {
     /// Where the run stands, in seconds.
     pub fn time(&mut self) -> f64 {
         match &mut self.run {
-            Some(run) => run.act(|r| Ok(r.time())).unwrap_or(f64::NAN),
+            Some(run) => run.stepping.with(|r| r.time()),
             None => self.simulation.settings().start_time,
         }
     }
@@ -157,10 +116,10 @@ impl Unit {
         let run = self.begun()?;
         let probe = match run.probes[port] {
             Some(probe) => probe,
-            None => run.act(|r| r.probe(&name)).map_err(|e| e.full())?,
+            None => run.stepping.with(|r| r.probe(&name)).map_err(|e| e.full())?,
         };
         run.probes[port] = Some(probe);
-        run.act(|r| Ok(r.get(probe))).map_err(|e| e.full())
+        Ok(run.stepping.with(|r| r.get(probe)))
     }
 
     /// Sets a parameter before the start, or an input.
@@ -185,14 +144,10 @@ impl Unit {
                 let run = self.begun()?;
                 let input = match run.inputs[port] {
                     Some(input) => input,
-                    None => run.act(|r| r.input(&name)).map_err(|e| e.full())?,
+                    None => run.stepping.with(|r| r.input(&name)).map_err(|e| e.full())?,
                 };
                 run.inputs[port] = Some(input);
-                run.act(|r| {
-                    r.set(input, value);
-                    Ok(())
-                })
-                .map_err(|e| e.full())?;
+                run.stepping.with(|r| r.set(input, value));
             }
             Causality::Input => self.run = None,
             Causality::Parameter => return Err(format!("the parameter `{name}` keeps its value after the start")),
@@ -218,16 +173,14 @@ impl Unit {
     /// Why the run cannot go on.
     pub fn step_to(&mut self, time: f64) -> Result<Went, String> {
         let run = self.begun()?;
-        run.act(|r| r.step_to(time)).map_err(|e| e.full())?;
-        let terminated = run.act(|r| Ok(r.terminated().is_some())).map_err(|e| e.full())?;
-        Ok(if terminated { Went::Terminated } else { Went::On })
+        run.stepping.with(|r| r.step_to(time)).map_err(|e| e.full())?;
+        Ok(if run.stepping.with(|r| r.terminated().is_some()) { Went::Terminated } else { Went::On })
     }
 
     /// Warnings since the last call.
     pub fn warnings(&mut self) -> Vec<String> {
         let Some(run) = &mut self.run else { return Vec::new() };
-        let found = run.act(|r| Ok(r.warnings())).unwrap_or_default();
-        found.into_iter().map(|d| d.message).collect()
+        run.stepping.with(|r| r.warnings()).into_iter().map(|d| d.message).collect()
     }
 
     /// Back to where it was after instantiation.
@@ -238,15 +191,9 @@ impl Unit {
     }
 
     /// A state to come back to.
-    ///
-    /// # Errors
-    /// There are no initial values.
-    pub fn snapshot(&mut self) -> Result<Snapshot, String> {
-        let state = match &mut self.run {
-            Some(run) => Some(run.act(|r| Ok(r.state())).map_err(|e| e.full())?),
-            None => None,
-        };
-        Ok(Snapshot { given: self.given.clone(), state, ready: self.ready })
+    pub fn snapshot(&mut self) -> Snapshot {
+        let state = self.run.as_mut().map(|run| run.stepping.with(|r| r.state()));
+        Snapshot { given: self.given.clone(), state, ready: self.ready }
     }
 
     /// Goes back to a state.
@@ -269,8 +216,7 @@ impl Unit {
         self.ready = snapshot.ready;
         self.run = None;
         if let Some(state) = &snapshot.state {
-            let simulation = self.prepared()?;
-            self.run = Some(Run::begin(simulation, self.interface.ports.len(), Some(state)).map_err(|e| e.full())?);
+            self.run = Some(self.begin(Some(state))?);
         }
         Ok(())
     }
@@ -313,10 +259,15 @@ impl Unit {
     /// The run; it begins with what was set so far.
     fn begun(&mut self) -> Result<&mut Run, String> {
         if self.run.is_none() {
-            let simulation = self.prepared()?;
-            self.run = Some(Run::begin(simulation, self.interface.ports.len(), None).map_err(|e| e.full())?);
+            self.run = Some(self.begin(None)?);
         }
         self.run.as_mut().ok_or_else(|| "the run has not begun".to_owned())
+    }
+
+    fn begin(&mut self, from: Option<&State>) -> Result<Run, String> {
+        let ports = self.interface.ports.len();
+        let stepping = OwnedStepping::new(self.prepared()?, from).map_err(|e| e.full())?;
+        Ok(Run { stepping, probes: vec![None; ports], inputs: vec![None; ports] })
     }
 
     /// The simulation with the inputs that were set, for the initial values.

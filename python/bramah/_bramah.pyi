@@ -121,7 +121,7 @@ class Model:
     def stepper(self, values: _Values, from_state: State | None) -> Stepper: ...
 
 def identify(
-    files: list[tuple[str, str]], study: str, method: str, starts: int, seed: int
+    files: list[tuple[str, str]], study: str, data: str | None, method: str, starts: int, seed: int
 ) -> tuple[str, str, str]: ...
 def diagnose(
     files: list[tuple[str, str]],

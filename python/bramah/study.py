@@ -35,8 +35,8 @@ def identify(
     Raises:
         Error: study, model or recordings are wrong (E601, E604, E902); the message says where and what to do.
     """
-    files, path = _files(study, data)
-    return Identified(*_bramah.identify(files, path, method, starts, seed))
+    files, path = _files(study)
+    return Identified(*_bramah.identify(files, path, _folder(data), method, starts, seed))
 
 
 def gap(
@@ -60,47 +60,26 @@ def gap(
     """
     if not callable(progress) and not isinstance(progress, bool):
         raise TypeError(f"progress is True, False or a function, not of type {type(progress).__name__}")
-    files, path = ([], os.fspath(study)) if not isinstance(study, Study) else (study._files, study._path)
+    files, path = _files(study)
     show = progress if callable(progress) else (_print if progress else None)
-    folder = None if data is None else _folder(data)
-    return Verdict(*_bramah.diagnose(files, path, folder, effect, show))
+    return Verdict(*_bramah.diagnose(files, path, _folder(data), effect, show))
 
 
 def _print(stage: str) -> None:
     print(stage, flush=True)
 
 
-def _folder(data: str | os.PathLike[str]) -> str:
+def _folder(data: str | os.PathLike[str] | None) -> str | None:
+    if data is None:
+        return None
     folder = os.fspath(data)
     if not os.path.isdir(folder):
         raise NotADirectoryError(f"there is no folder {folder!r} of recordings")
     return folder
 
 
-def _files(study: str | os.PathLike[str] | Study, data: str | os.PathLike[str] | None) -> tuple[list[tuple[str, str]], str]:
-    if isinstance(study, Study):
-        return study._files, study._path
-    path = os.fspath(study)
-    if data is None or not os.path.isfile(path):
-        return [], path
-    # recordings are looked for beside the study: it is moved, and keeps its model
-    with open(path, encoding="utf-8") as file:
-        text = file.read()
-    moved = os.path.join(_folder(data), os.path.basename(path))
-    return [(moved, _with_model_from(text, os.path.dirname(os.path.abspath(path))))], moved
-
-
-def _with_model_from(text: str, folder: str) -> str:
-    """The study with the path of its model read from another folder."""
-    lines = text.split("\n")
-    for i, line in enumerate(lines):
-        if line.lstrip().startswith("["):
-            break
-        key, equals, value = line.partition("=")
-        if equals and key.strip() == "model":
-            name = value.split("#")[0].strip().strip("\"'")
-            lines[i] = f"model = {_toml(os.path.join(folder, name))}"
-    return "\n".join(lines)
+def _files(study: str | os.PathLike[str] | Study) -> tuple[list[tuple[str, str]], str]:
+    return (study._files, study._path) if isinstance(study, Study) else ([], os.fspath(study))
 
 
 class Identified:

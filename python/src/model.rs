@@ -3,9 +3,8 @@
 use crate::errors::raised;
 use crate::run::{Plan, Run, Saved};
 use crate::stepper;
-use crate::threads::{deep, pooled};
-use bramah::internals::compile::graph;
-use bramah::internals::diag::render::{Format, render};
+use crate::threads::pooled;
+use bramah::internals::diag::render::full;
 use bramah::internals::plot::network;
 use bramah::internals::units::{Unit, quantity};
 use bramah::world::{DiskWorld, MemoryWorld, Overlay};
@@ -77,7 +76,7 @@ fn compiled(text: Option<&String>, request: &Request) -> Result<Simulation, Erro
 
 impl Core {
     fn new(text: Option<String>, request: Request) -> Result<Self, Error> {
-        let simulation = deep(|| compiled(text.as_ref(), &request))?;
+        let simulation = compiled(text.as_ref(), &request)?;
         Ok(Core { simulation, settable: Arc::default(), text, request })
     }
 
@@ -113,7 +112,7 @@ impl Core {
     }
 
     fn messages_of(&self, diagnostics: &[Diagnostic]) -> String {
-        render(self.simulation.sources(), diagnostics, Format::Human, 100, false).trim_end().to_owned()
+        full(self.simulation.sources(), diagnostics)
     }
 }
 
@@ -193,12 +192,7 @@ impl Core {
 
     /// The network as SVG.
     fn network(&self) -> String {
-        let world = match &self.text {
-            Some(text) => MemoryWorld::single(TEXT, text.clone()),
-            None => MemoryWorld::default(),
-        };
-        let world = Overlay { base: &DiskWorld, files: world };
-        graph(&world, &self.request).value.map_or_else(String::new, |(class, graph)| network::write(&graph, &class))
+        network::write(&self.simulation.model().graph, &self.class_name())
     }
 
     /// The same model with other values.

@@ -2,7 +2,7 @@
 
 use crate::errors::raised;
 use crate::model::{Quantity, quantity_of};
-use bramah::internals::diag::render::{Format, render};
+use bramah::internals::diag::render::full;
 use bramah::internals::plot::select::{Choice, Run as Drawn, UnitSystem, figure};
 use bramah::internals::plot::{html, svg};
 use bramah::results::{CsvWriter, Globs};
@@ -134,7 +134,7 @@ pub struct Run {
 impl Run {
     pub fn new(py: Python<'_>, outcome: Outcome, sources: &Sources) -> Self {
         let Outcome { trajectory, end, state, statistics, diagnostics } = outcome;
-        let messages = render(sources, &diagnostics, Format::Human, 100, false).trim_end().to_owned();
+        let messages = full(sources, &diagnostics);
         // the vectors become the arrays: nothing is copied
         let array = |v: Vec<f64>| PyArray1::from_vec(py, v).unbind();
         Run {

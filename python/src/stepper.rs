@@ -2,25 +2,14 @@
 
 use crate::errors::raised;
 use crate::run::Saved;
-use bramah::{Error, InputPort, Probe, Simulation, State, Stepping};
+use bramah::{Error, InputPort, OwnedStepping, Probe, Simulation, State};
 use pyo3::prelude::*;
 use std::collections::HashMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-struct Begun<'a>(Result<Stepping<'a>, Error>);
-
-self_cell::self_cell!(
-    /// A stepping run with the simulation that it reads.
-    struct Cell {
-        owner: Simulation,
-        #[not_covariant]
-        dependent: Begun,
-    }
-);
-
 /// The run, with inputs and variables looked up once.
 struct Inner {
-    cell: Cell,
+    run: OwnedStepping,
     inputs: HashMap<String, InputPort>,
     probes: HashMap<String, Probe>,
 }
@@ -33,14 +22,8 @@ pub struct Core {
 
 impl Core {
     pub fn begin(py: Python<'_>, simulation: Simulation, from: Option<State>) -> PyResult<Self> {
-        let mut cell = py.detach(|| {
-            Cell::new(simulation, |s| Begun(from.as_ref().map_or_else(|| s.stepping(), |state| s.stepping_from(state))))
-        });
-        let failed = cell.with_dependent_mut(|_, run| run.0.as_ref().err().cloned());
-        match failed {
-            Some(error) => Err(raised(py, &error)),
-            None => Ok(Core { inner: Mutex::new(Inner { cell, inputs: HashMap::new(), probes: HashMap::new() }) }),
-        }
+        let run = py.detach(|| OwnedStepping::new(simulation, from.as_ref())).map_err(|e| raised(py, &e))?;
+        Ok(Core { inner: Mutex::new(Inner { run, inputs: HashMap::new(), probes: HashMap::new() }) })
     }
 
     /// A thread that panicked has left the run as it was before its step.
@@ -50,18 +33,11 @@ impl Core {
 }
 
 impl Inner {
-    fn act<T>(&mut self, act: impl FnOnce(&mut Stepping<'_>) -> Result<T, Error>) -> Result<T, Error> {
-        self.cell.with_dependent_mut(|_, run| match &mut run.0 {
-            Ok(run) => act(run),
-            Err(error) => Err(error.clone()),
-        })
-    }
-
     fn input(&mut self, name: &str) -> Result<InputPort, Error> {
         if let Some(port) = self.inputs.get(name) {
             return Ok(*port);
         }
-        let port = self.act(|run| run.input(name))?;
+        let port = self.run.with(|run| run.input(name))?;
         self.inputs.insert(name.to_owned(), port);
         Ok(port)
     }
@@ -70,7 +46,7 @@ impl Inner {
         if let Some(probe) = self.probes.get(name) {
             return Ok(*probe);
         }
-        let probe = self.act(|run| run.probe(name))?;
+        let probe = self.run.with(|run| run.probe(name))?;
         self.probes.insert(name.to_owned(), probe);
         Ok(probe)
     }
@@ -80,8 +56,8 @@ impl Inner {
 impl Core {
     /// Seconds.
     #[getter]
-    fn time(&self, py: Python<'_>) -> PyResult<f64> {
-        self.inner().act(|run| Ok(run.time())).map_err(|e| raised(py, &e))
+    fn time(&self) -> f64 {
+        self.inner().run.with(|run| run.time())
     }
 
     /// Sets inputs, goes on by so many seconds.
@@ -90,12 +66,9 @@ impl Core {
             let mut inner = self.inner();
             for (name, value) in &inputs {
                 let port = inner.input(name)?;
-                inner.act(|run| {
-                    run.set(port, *value);
-                    Ok(())
-                })?;
+                inner.run.with(|run| run.set(port, *value));
             }
-            inner.act(|run| run.step(seconds))
+            inner.run.with(|run| run.step(seconds))
         });
         stepped.map_err(|e| raised(py, &e))
     }
@@ -104,17 +77,16 @@ impl Core {
     fn get(&self, py: Python<'_>, name: &str) -> PyResult<f64> {
         let mut inner = self.inner();
         let probe = inner.probe(name).map_err(|e| raised(py, &e))?;
-        inner.act(|run| Ok(run.get(probe))).map_err(|e| raised(py, &e))
+        Ok(inner.run.with(|run| run.get(probe)))
     }
 
     /// Everything needed to go on from here.
-    fn state(&self, py: Python<'_>) -> PyResult<Saved> {
-        let state = self.inner().act(|run| Ok(run.state())).map_err(|e| raised(py, &e))?;
-        Ok(Saved { state })
+    fn state(&self) -> Saved {
+        Saved { state: self.inner().run.with(|run| run.state()) }
     }
 
     /// What the model said when it ended the run, or nothing.
-    fn terminated(&self, py: Python<'_>) -> PyResult<Option<String>> {
-        self.inner().act(|run| Ok(run.terminated().map(str::to_owned))).map_err(|e| raised(py, &e))
+    fn terminated(&self) -> Option<String> {
+        self.inner().run.with(|run| run.terminated().map(str::to_owned))
     }
 }

@@ -4,16 +4,13 @@
 
 use crate::errors::raised;
 use crate::threads::pooled;
-use bramah::internals::diag::render::{Format, render};
-use bramah::internals::gap::study::{Unusable, question};
-use bramah::internals::study::Study;
+use bramah::internals::diag::render::full;
 use bramah::world::{DiskWorld, MemoryWorld, Overlay};
-use bramah::{Diagnosis, Error, IdentifyMethod, IdentifyOptions, Sources};
+use bramah::{DiagnoseOptions, Error, IdentifyMethod, IdentifyOptions, Stage, diagnose_as};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::ops::ControlFlow;
 use std::path::Path;
-use std::sync::Arc;
 
 /// Files that Python holds, over those of the disk.
 fn world(files: Vec<(String, String)>) -> Overlay<'static> {
@@ -24,10 +21,12 @@ fn world(files: Vec<(String, String)>) -> Overlay<'static> {
 
 /// JSON report, words and warnings of a fit by `auto`, `output` or `inverse`, from so many starts.
 #[pyfunction]
+#[pyo3(signature = (files, study, data, method, starts, seed))]
 pub fn identify(
     py: Python<'_>,
     files: Vec<(String, String)>,
     study: String,
+    data: Option<String>,
     method: &str,
     starts: usize,
     seed: u64,
@@ -42,10 +41,12 @@ pub fn identify(
         }
     };
     let options = IdentifyOptions { method, starts, seed };
-    let found = py.detach(|| pooled(|| bramah::identify_as(&world(files), Path::new(&study), &options)));
+    let data = data.as_deref().map(Path::new);
+    let found = py.detach(|| pooled(|| bramah::identify_as(&world(files), Path::new(&study), data, &options)));
     let found = found.map_err(|e| raised(py, &e))?;
     let json = serde_json::to_string(&found.report).expect("numbers and texts always serialize");
-    Ok((json, found.words, said(&Sources::default(), &found.diagnostics)))
+    let messages = found.messages();
+    Ok((json, found.words, messages))
 }
 
 /// What a diagnosis came to: JSON verdict, words, HTML report, corrected model, warnings.
@@ -66,22 +67,7 @@ pub fn diagnose(
     let mut stopped = None;
     let work = || -> Result<Found, Error> {
         let world = world(files);
-        let mut sources = Sources::default();
-        let failed = |diagnostics, sources| Error { diagnostics, sources: Arc::new(sources) };
-        let data = data.as_deref().map(Path::new);
-        let read = Study::read(&world, Path::new(&study), &mut sources);
-        let Some(read) = read.value else { return Err(failed(read.diagnostics, sources)) };
-        let question = match question(&world, &read, data, &mut sources) {
-            Ok(question) => question,
-            Err(Unusable { diagnostics, sources: of_model, .. }) => {
-                return Err(failed(diagnostics, of_model.unwrap_or(sources)));
-            }
-        };
-        let held = match question.held(data, &mut sources) {
-            Ok(held) => held,
-            Err(diagnostics) => return Err(failed(diagnostics, sources)),
-        };
-        let mut show = |stage: bramah::Stage| {
+        let mut show = |stage: Stage| {
             let asked = Python::attach(|py| {
                 py.check_signals()?;
                 progress.as_ref().map_or(Ok(()), |p| p.call1(py, (stage.to_string(),)).map(drop))
@@ -94,23 +80,17 @@ pub fn diagnose(
                 }
             }
         };
-        let mut diagnosis = match Diagnosis::new(question, held, effect.as_deref(), &mut show) {
-            Ok(diagnosis) => diagnosis,
-            Err(diagnostics) => return Err(failed(diagnostics, sources)),
-        };
+        let options = DiagnoseOptions { data: data.as_deref().map(Path::new), effect: effect.as_deref() };
+        let (mut diagnosis, sources) = diagnose_as(&world, Path::new(&study), options, &mut show)?;
         diagnosis.took(begun.elapsed().as_secs_f64());
         let json = serde_json::to_string(diagnosis.verdict()).expect("numbers and texts always serialize");
         let fixed = diagnosis.corrected();
         let warnings = [diagnosis.diagnostics(), &fixed.diagnostics].concat();
-        Ok((json, diagnosis.words(), diagnosis.report(), fixed.value, said(&sources, &warnings)))
+        Ok((json, diagnosis.words(), diagnosis.report(), fixed.value, full(&sources, &warnings)))
     };
     let found = py.detach(|| pooled(work));
     match stopped {
         Some(error) => Err(error),
         None => found.map_err(|e| raised(py, &e)),
     }
-}
-
-fn said(sources: &Sources, diagnostics: &[bramah::Diagnostic]) -> String {
-    render(sources, diagnostics, Format::Human, 100, false).trim_end().to_owned()
 }

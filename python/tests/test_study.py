@@ -168,6 +168,11 @@ def test_tolerances(nominal, frames):
     assert set(study(nominal, frames[0], tolerances={"mass.m": 0.2, "spring.c": "exact"}).identify().values) == {"mass.m"}
 
 
+def test_warnings_are_printed_with_the_result(nominal, frames):
+    found = study(nominal, frames[0].assign(w=0.0), signals={**TIED["signals"], "spring.f": ("w", "N")}).identify()
+    assert "W605" in found.messages and "`spring.f`" in found.messages
+
+
 def test_empty_cells(nominal, frames):
     third = frames[0].index % 3 > 0
     some = frames[0].assign(s=frames[0].s.where(third))

@@ -40,6 +40,19 @@ pub struct Moved {
     pub size: f64,
 }
 
+impl Moved {
+    /// A parameter whose value is among the values of all parameters.
+    pub fn of(model: &Model, variable: VarId, values: &[f64]) -> Self {
+        let system = &model.system;
+        let value = values[system.layout.var(variable)];
+        let size = if value == 0.0 { system.nominal(variable, values) } else { value.abs() };
+        Moved { variable, name: model.flat.variables[variable.index()].name.clone(), value, size }
+    }
+}
+
+/// Relative tolerance of runs whose derivatives are wanted, at most.
+pub const TOLERANCE: f64 = 1e-9;
+
 /// Step of the differences as a part of a parameter's size.
 const STEP: f64 = 1e-4;
 

@@ -1,7 +1,7 @@
 //! What a [`Simulation`] can be asked beyond a run.
 
 use super::linear::{self, Choice, Chosen, StateSpace};
-use super::sensitivity::{Moved, Sensitivity, sensitivity};
+use super::sensitivity::{Moved, Sensitivity, TOLERANCE, sensitivity};
 use super::steady;
 use crate::Simulation;
 use crate::compile::Model;
@@ -12,9 +12,6 @@ use crate::results::Trajectory;
 use crate::solve::{Control, Settings, State};
 use std::borrow::Cow;
 use std::sync::atomic::AtomicBool;
-
-/// Relative tolerance of runs whose derivatives are wanted, at most.
-const TIGHT: f64 = 1e-9;
 
 impl Simulation {
     /// The state of a run at a time in seconds, or at its start.
@@ -91,7 +88,7 @@ impl Simulation {
             variable.ty == Type::Real && variable.variability == Variability::Continuous
         };
         let wanted = self.asked().wanted.iter().copied().filter(moves).collect();
-        let settings = Settings { tolerance: self.asked().tolerance.min(TIGHT), wanted, ..self.asked().clone() };
+        let settings = Settings { tolerance: self.asked().tolerance.min(TOLERANCE), wanted, ..self.asked().clone() };
         sensitivity(self.model(), &settings, &moved, &AtomicBool::new(false))
             .map_err(|why| self.errors(vec![Diagnostic::new(Code::StepTooSmall, format!("a run failed: {why}"))]))
     }
@@ -117,10 +114,7 @@ impl Simulation {
             let text = format!("`{name}` is no parameter that can move during runs");
             return Err(self.errors(vec![Diagnostic::new(Code::BadSet, text)]));
         }
-        let (system, values) = (&self.model().system, self.parameter_values());
-        let value = values[system.layout.var(variable)];
-        let size = if value == 0.0 { system.nominal(variable, &values) } else { value.abs() };
-        Ok(Moved { variable, name: name.to_owned(), value, size })
+        Ok(Moved::of(self.model(), variable, &self.parameter_values()))
     }
 }
 

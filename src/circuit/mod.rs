@@ -4,10 +4,12 @@
 //! the same instance. [`Simulation`] is a compiled model with the settings of a run; clones share the compiled code.
 
 mod callback;
+mod owned;
 mod parameters;
 mod simulation;
 mod stepping;
 
+pub use owned::OwnedStepping;
 pub use parameters::Parameter;
 pub use simulation::{Outcome, Simulation};
 pub use stepping::{InputPort, Probe, Stepping};

@@ -2,7 +2,7 @@
 
 use super::callback::{Conduct, Rows};
 use super::stepping::Stepping;
-use crate::compile::{Model, Request, compile};
+use crate::compile::{Model, Request, compile, deep};
 use crate::diag::{Code, Diagnostic, Error, Sources};
 use crate::expr::VarId;
 use crate::flat::Variability;
@@ -55,7 +55,7 @@ impl Simulation {
     /// # Errors
     /// The diagnostics of the first stage that finds something wrong.
     pub fn compile(world: &dyn World, request: &Request) -> Result<Self, Error> {
-        let outcome = compile(world, request, &lower::Options::default());
+        let outcome = deep(|| compile(world, request, &lower::Options::default()));
         let sources = Arc::new(outcome.sources);
         match outcome.value {
             Some(model) => {
@@ -322,18 +322,8 @@ impl Simulation {
         if from.is_some() {
             return Ok(());
         }
-        let own = |v: VarId| {
-            let variable = &self.model.dae.variables[v.index()];
-            variable.binding.is_some() || variable.start.is_some()
-        };
-        let given = |v: VarId| self.inputs.iter().any(|i| i.variable == v);
-        let missing = self.model.dae.inputs.iter().filter(|v| !given(**v) && !own(**v));
-        let said = |v: &VarId| {
-            let variable = &self.model.dae.variables[v.index()];
-            let d = Diagnostic::new(Code::NoInput, format!("the input `{}` has no value", variable.name));
-            d.at(variable.origin.span, "declared here").help("give it values over time, or a start value in the model")
-        };
-        let diagnostics: Vec<Diagnostic> = missing.map(said).collect();
+        let help = |_: &str| vec!["give it values over time, or a start value in the model".to_owned()];
+        let diagnostics = solve::missing_inputs(&self.model.dae, &self.inputs, help);
         if diagnostics.is_empty() { Ok(()) } else { Err(self.errors(diagnostics)) }
     }
 

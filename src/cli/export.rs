@@ -16,7 +16,6 @@ use super::model::{described, request};
 use super::request::ModelArgs;
 use super::{Ending, Failure};
 use crate::Simulation;
-use crate::compile::graph;
 use crate::diag::{Code, Diagnostic, nearest};
 use crate::fmi::description::{self, IDENTIFIER, Version};
 use crate::fmi::{Causality, Interface, Packed, Recorder, packed};
@@ -86,7 +85,7 @@ pub(super) fn run(args: &ExportArgs, messages: &mut Messages) -> Result<Ending, 
     files::ending(&path, "a unit", &["fmu"])?;
     let description = described(&request, &interface.class);
     let unit = Contents { interface: &interface, packed: &packed, description, fmi: args.fmi };
-    let bytes = unit.write(&library, &picture(&request))?;
+    let bytes = unit.write(&library, &network::write(&simulation.model().graph, &interface.class))?;
     let mut file = NewFile::create(&path)?;
     file.write_all(&bytes).map_err(|e| files::access(&path, "written", &e))?;
     file.finish()?;
@@ -126,10 +125,6 @@ fn token(packed: &Packed) -> String {
     let digits = format!("{:016x}{:016x}", words[0], words[1]);
     let parts = [&digits[..8], &digits[8..12], &digits[12..16], &digits[16..20], &digits[20..]];
     format!("{{{}}}", parts.join("-"))
-}
-
-fn picture(request: &crate::Request) -> String {
-    graph(&DiskWorld, request).value.map_or_else(String::new, |(class, graph)| network::write(&graph, &class))
 }
 
 /// The library that lies beside the command, where it was built, or where it was installed.

@@ -10,7 +10,7 @@ use crate::experiment::{Experiment, Hold, InputMap};
 use crate::expr::VarId;
 use crate::flat::{Type, Variable};
 use crate::results::{Strictness, Trajectory, number, read_csv};
-use crate::solve::{Input, Interpolation};
+use crate::solve::{Input, Interpolation, missing_inputs};
 use crate::structure::Dae;
 use crate::units::Unit;
 
@@ -130,19 +130,14 @@ fn convert(values: &mut [f64], unit: &str, target: &Variable, entry: &InputMap) 
 
 /// Every input is driven, or has a value of its own.
 /// Says which inputs have neither a recording nor a value of their own.
-pub(super) fn all_driven(dae: &Dae, inputs: &[Input]) -> Result<(), Failure> {
-    let own = |v: &Variable| v.binding.is_some() || v.start.is_some();
-    let missing = dae.inputs.iter().filter(|v| !inputs.iter().any(|i| i.variable == **v));
-    let missing: Vec<&Variable> = missing.map(|v| &dae.variables[v.index()]).filter(|v| !own(v)).collect();
-    let diagnostics: Vec<Diagnostic> = missing
-        .iter()
-        .map(|v| {
-            Diagnostic::new(Code::NoInput, format!("the input `{}` has no value", v.name))
-                .at(v.origin.span, "declared here")
-                .help(format!("drive it by a recording: --input bench.csv --map '{}=COLUMN'", v.name))
-                .help(format!("or give it a constant value: --set {}=0", v.name))
-        })
-        .collect();
+fn all_driven(dae: &Dae, inputs: &[Input]) -> Result<(), Failure> {
+    let help = |name: &str| {
+        vec![
+            format!("drive it by a recording: --input bench.csv --map '{name}=COLUMN'"),
+            format!("or give it a constant value: --set {name}=0"),
+        ]
+    };
+    let diagnostics = missing_inputs(dae, inputs, help);
     if diagnostics.is_empty() { Ok(()) } else { Err(Failure { diagnostics }) }
 }
 

@@ -8,7 +8,7 @@ use super::messages::Messages;
 use super::recorder::{Target, write_text};
 use super::request::ModelArgs;
 use super::{Ending, Failure, columns, files, interrupt, model, plot};
-use crate::analysis::sensitivity::{Moved, Sensitivity, sensitivity};
+use crate::analysis::sensitivity::{Moved, Sensitivity, TOLERANCE, sensitivity};
 use crate::compile::Model;
 use crate::diag::{Code, Diagnostic};
 use crate::experiment::seconds;
@@ -70,7 +70,7 @@ pub(super) fn run(args: &SensitivityArgs, messages: &mut Messages) -> Result<End
         settings.stop_time = stop;
         settings.interval = (stop - settings.start_time) / 500.0;
     }
-    settings.tolerance = settings.tolerance.min(1e-9);
+    settings.tolerance = settings.tolerance.min(TOLERANCE);
     let found = sensitivity(&model, &settings, &moved, interrupt::flag())
         .map_err(|why| Failure::new(Code::StepTooSmall, format!("a run failed: {why}")))?;
     let by_runs = differences(&found);
@@ -98,9 +98,8 @@ fn variables(args: &SensitivityArgs, model: &Model) -> Result<Vec<VarId>, Failur
 }
 
 fn parameters(args: &SensitivityArgs, model: &Model) -> Result<Vec<Moved>, Failure> {
-    let system = &model.system;
-    let mut values = system.layout.values();
-    system.evaluate_parameters(&mut values, &[]);
+    let mut values = model.system.layout.values();
+    model.system.evaluate_parameters(&mut values, &[]);
     let globs = Globs::new(&args.parameters);
     let flat = &model.flat;
     let fits = |v: VarId| {
@@ -112,11 +111,7 @@ fn parameters(args: &SensitivityArgs, model: &Model) -> Result<Vec<Moved>, Failu
     let all = (0..u32::try_from(flat.variables.len()).expect("fewer than 2^32 variables")).map(VarId);
     let moved: Vec<Moved> = all
         .filter(|v| fits(*v))
-        .map(|v| {
-            let value = values[system.layout.var(v)];
-            let size = if value == 0.0 { system.nominal(v, &values) } else { value.abs() };
-            Moved { variable: v, name: flat.variables[v.index()].name.clone(), value, size }
-        })
+        .map(|v| Moved::of(model, v, &values))
         .filter(|m| m.size.is_finite() && m.size < 1e30)
         .collect();
     if moved.is_empty() {

@@ -1,6 +1,9 @@
 //! The pipeline: from files to a flat model, a DAE and a system ready to run. Every command and test goes this way.
 
+mod deep;
 mod messages;
+
+pub use deep::{STACK, deep};
 
 use crate::diag::{Checked, Code, Diagnostic, Sources};
 use crate::expr::VarId;

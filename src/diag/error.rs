@@ -1,6 +1,6 @@
 //! Diagnostics with their texts, as the error of a function.
 
-use super::render::{Format, render};
+use super::render::{Format, full, render};
 use super::{Diagnostic, Sources};
 use std::fmt;
 use std::sync::Arc;
@@ -15,13 +15,10 @@ pub struct Error {
     pub sources: Arc<Sources>,
 }
 
-/// Characters a line of [`Error::full`].
-const WIDTH: usize = 100;
-
 impl Error {
     /// What the command prints: with the text concerned, causes and help.
     pub fn full(&self) -> String {
-        render(&self.sources, &self.diagnostics, Format::Human, WIDTH, false).trim_end().to_owned()
+        full(&self.sources, &self.diagnostics)
     }
 }
 

@@ -47,6 +47,14 @@ pub fn render(sources: &Sources, diagnostics: &[Diagnostic], format: Format, wid
     out
 }
 
+/// Characters a line of [`full`].
+const WIDTH: usize = 100;
+
+/// What the command prints, without colour: with the text concerned, causes and help.
+pub fn full(sources: &Sources, diagnostics: &[Diagnostic]) -> String {
+    render(sources, diagnostics, Format::Human, WIDTH, false).trim_end().to_owned()
+}
+
 /// One line a diagnostic, without colour: what tests and editors read.
 pub fn short_list(sources: &Sources, diagnostics: &[Diagnostic]) -> String {
     render(sources, diagnostics, Format::Short, usize::MAX, false)

@@ -3,7 +3,7 @@
 use crate::Simulation;
 use crate::circuit::Parameter;
 use crate::results::{Globs, Signal};
-use rustc_hash::FxHashMap;
+use rustc_hash::FxHashSet;
 
 /// What a variable is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,8 +66,8 @@ impl Interface {
                 .iter()
                 .map(|s| Port { start: simulation.start_of(&s.name).ok(), ..Port::new(s.clone(), Causality::Input) }),
         );
-        let seen: FxHashMap<&str, ()> = inputs.iter().map(|s| (s.name.as_str(), ())).collect();
-        let others = variables.iter().filter(|s| !seen.contains_key(s.name.as_str()));
+        let seen: FxHashSet<&str> = inputs.iter().map(|s| s.name.as_str()).collect();
+        let others = variables.iter().filter(|s| !seen.contains(s.name.as_str()));
         ports.extend(
             others.map(|s| Port::new(s.clone(), if is_output(s) { Causality::Output } else { Causality::Local })),
         );

@@ -11,7 +11,7 @@ use std::sync::{Mutex, PoisonError};
 /// The file in `resources/`.
 pub const FILE: &str = "model.json";
 
-/// A request with everything that was read for it, under paths without the folders above all of them.
+/// A request with everything that was read for it, under the paths that it had.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Packed {
     /// Marks unit and description as belonging together.

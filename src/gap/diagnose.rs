@@ -24,13 +24,22 @@ pub struct Diagnosis<'a> {
     verdict: Verdict,
 }
 
+/// How a gap is diagnosed.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct DiagnoseOptions<'a> {
+    /// The folder of the recordings; that of the study where there is none.
+    pub data: Option<&'a Path>,
+    /// This effect alone is fitted, and taken even where a search would refuse it: `Effects.SensorLag@p`.
+    pub effect: Option<&'a str>,
+}
+
 /// Reads a study, and diagnoses the gap between its model and its recordings.
 ///
 /// ```no_run
 /// use bramah::world::DiskWorld;
 ///
 /// # fn main() -> Result<(), bramah::Error> {
-/// let diagnosis = bramah::gap::diagnose(&DiskWorld, "rig/study.toml".as_ref())?;
+/// let diagnosis = bramah::diagnose(&DiskWorld, "rig/study.toml".as_ref())?;
 /// println!("{}", diagnosis.words());
 /// for effect in &diagnosis.verdict().effects {
 ///     println!("{} at {}", effect.effect, effect.places[0].place);
@@ -42,22 +51,40 @@ pub struct Diagnosis<'a> {
 /// # Errors
 /// What is wrong with the study, its model or its recordings.
 pub fn diagnose<'a>(world: &'a dyn World, study: &Path) -> Result<Diagnosis<'a>, Error> {
+    let silent = &mut |_| ControlFlow::Continue(());
+    diagnose_as(world, study, DiagnoseOptions::default(), silent).map(|(diagnosis, _)| diagnosis)
+}
+
+/// The same with a choice of folder and effect; `progress` hears of each stage and can stop the search. With the texts that
+/// the warnings of the diagnosis point into.
+///
+/// # Errors
+/// As [`diagnose`]; `E507` where `progress` stopped it.
+pub fn diagnose_as<'a>(
+    world: &'a dyn World,
+    study: &Path,
+    options: DiagnoseOptions<'_>,
+    progress: Progress<'_>,
+) -> Result<(Diagnosis<'a>, Sources), Error> {
+    let data = options.data;
     let mut sources = Sources::default();
     let failed = |diagnostics, sources| Error { diagnostics, sources: Arc::new(sources) };
     let read = Study::read(world, study, &mut sources);
     let Some(study) = read.value else { return Err(failed(read.diagnostics, sources)) };
-    let asked = match question(world, &study, None, &mut sources) {
+    let asked = match question(world, &study, data, &mut sources) {
         Ok(asked) => asked,
         Err(Unusable { diagnostics, sources: of_model, .. }) => {
             return Err(failed(diagnostics, of_model.unwrap_or(sources)));
         }
     };
-    let held = match asked.held(None, &mut sources) {
+    let held = match asked.held(data, &mut sources) {
         Ok(held) => held,
         Err(diagnostics) => return Err(failed(diagnostics, sources)),
     };
-    let silent = &mut |_| ControlFlow::Continue(());
-    Diagnosis::new(asked, held, None, silent).map_err(|diagnostics| failed(diagnostics, sources))
+    match Diagnosis::new(asked, held, options.effect, progress) {
+        Ok(diagnosis) => Ok((diagnosis, sources)),
+        Err(diagnostics) => Err(failed(diagnostics, sources)),
+    }
 }
 
 impl<'a> Diagnosis<'a> {

@@ -31,6 +31,6 @@ pub mod verdict;
 pub mod whiteness;
 pub mod words;
 
-pub use diagnose::{Diagnosis, diagnose};
+pub use diagnose::{DiagnoseOptions, Diagnosis, diagnose, diagnose_as};
 pub use select::search::Stage;
 pub use verdict::Verdict;

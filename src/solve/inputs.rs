@@ -2,8 +2,10 @@
 
 use super::modes::same_time;
 use super::past::Delays;
+use crate::diag::{Code, Diagnostic};
 use crate::expr::VarId;
 use crate::lower::Layout;
+use crate::structure::Dae;
 use std::sync::Arc;
 
 /// How an input runs between its samples.
@@ -27,6 +29,21 @@ pub struct Input {
     pub values: Arc<[f64]>,
     /// Between samples.
     pub interpolation: Interpolation,
+}
+
+/// E106 for each input of the model that has neither a trajectory nor a value of its own; `help` says what to do about the
+/// one of this name.
+pub fn missing_inputs(dae: &Dae, inputs: &[Input], help: impl Fn(&str) -> Vec<String>) -> Vec<Diagnostic> {
+    let said = |v: &VarId| {
+        let variable = &dae.variables[v.index()];
+        let has_value =
+            variable.binding.is_some() || variable.start.is_some() || inputs.iter().any(|i| i.variable == *v);
+        let d = || Diagnostic::new(Code::NoInput, format!("the input `{}` has no value", variable.name));
+        (!has_value).then(|| {
+            help(&variable.name).into_iter().fold(d().at(variable.origin.span, "declared here"), Diagnostic::help)
+        })
+    };
+    dae.inputs.iter().filter_map(said).collect()
 }
 
 impl Input {

@@ -29,7 +29,7 @@ mod tangents;
 mod vectors;
 
 pub use checkpoint::Checkpoint;
-pub use inputs::{Input, Interpolation};
+pub use inputs::{Input, Interpolation, missing_inputs};
 pub use output::{Sink, signals};
 pub use past::Past;
 pub use point::Point;

@@ -247,8 +247,7 @@ impl Parser<'_> {
         Ok(Unit::of(symbol))
     }
 
-    /// A whole exponent directly behind a symbol, or after `^`; else 1.
-    /// A whole number, or one with a half: `2`, `-1`, `0.5`.
+    /// The exponent behind a symbol or `^`: a whole number, or one with a half (`2`, `-1`, `0.5`); 1 where there is none.
     fn exponent(&mut self) -> Result<f64, UnitError> {
         for (symbol, exponent) in [('\u{b2}', 2.0), ('\u{b3}', 3.0)] {
             if let Some(rest) = self.rest.strip_prefix(symbol) {

@@ -2,6 +2,7 @@
 
 use super::{Identification, Method, Problem, Report, doubts, fit_words};
 use crate::compile::compile;
+use crate::diag::render::full;
 use crate::diag::{Checked, Diagnostic, Error, Sources};
 use crate::lower::Options;
 use crate::study::{Recording, Role, Study};
@@ -18,6 +19,15 @@ pub struct Identified {
     pub words: String,
     /// Warnings about study, recordings and fit.
     pub diagnostics: Vec<Diagnostic>,
+    /// The texts that these point into.
+    pub sources: Arc<Sources>,
+}
+
+impl Identified {
+    /// The warnings as the command prints them.
+    pub fn messages(&self) -> String {
+        full(&self.sources, &self.diagnostics)
+    }
 }
 
 /// Reads a study, and finds the parameters that it lists from its recordings.
@@ -36,7 +46,7 @@ pub struct Identified {
 /// # Errors
 /// What is wrong with the study, its model or its recordings; that runs fail.
 pub fn identify(world: &dyn World, study: &Path) -> Result<Identified, Error> {
-    identify_as(world, study, &Asked::default())
+    identify_as(world, study, None, &Asked::default())
 }
 
 /// How parameters are searched for.
@@ -56,11 +66,11 @@ impl Default for Asked {
     }
 }
 
-/// The same with a choice of method and starts.
+/// The same with a choice of method and starts, and with recordings from another folder than that of the study.
 ///
 /// # Errors
 /// As [`identify`].
-pub fn identify_as(world: &dyn World, study: &Path, asked: &Asked) -> Result<Identified, Error> {
+pub fn identify_as(world: &dyn World, study: &Path, data: Option<&Path>, asked: &Asked) -> Result<Identified, Error> {
     let mut said = Said::default();
     let read = Study::read(world, study, &mut said.sources);
     let study = said.take(read)?;
@@ -70,7 +80,7 @@ pub fn identify_as(world: &dyn World, study: &Path, asked: &Asked) -> Result<Ide
     };
     let bound = said.take(study.bind(&model.flat))?;
     let load = |role, said: &mut Said| -> Result<Vec<Recording>, Error> {
-        let loaded = bound.load(world, None, role, &mut said.sources);
+        let loaded = bound.load(world, data, role, &mut said.sources);
         said.take(loaded)
     };
     let train = load(Role::Train, &mut said)?;
@@ -88,6 +98,7 @@ pub fn identify_as(world: &dyn World, study: &Path, asked: &Asked) -> Result<Ide
         report: Report::new(&problem, &found, &fit, &held, &[]),
         words: fit_words(&problem, &fit, &held),
         diagnostics: said.diagnostics,
+        sources: Arc::new(said.sources),
     })
 }
 

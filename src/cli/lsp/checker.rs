@@ -8,6 +8,7 @@ use crossbeam_channel::{Receiver, Sender, unbounded};
 
 use super::files::{Cache, Open};
 use super::texts;
+use crate::compile::STACK;
 use crate::editor::hints::Facts;
 use crate::editor::messages::{Message, of_models};
 
@@ -57,7 +58,7 @@ impl Checker {
         let (outbox, results) = unbounded();
         let newest = Newest::default();
         let known = newest.clone();
-        std::thread::spawn(move || {
+        let work = move || {
             let mut facts = Facts::default();
             for job in inbox {
                 let wanted = || known.is(&job);
@@ -68,7 +69,9 @@ impl Checker {
                     return;
                 }
             }
-        });
+        };
+        let thread = std::thread::Builder::new().stack_size(STACK).spawn(work);
+        thread.expect("a thread can be started");
         Checker { jobs, results, newest }
     }
 

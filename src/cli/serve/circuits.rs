@@ -2,21 +2,21 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::super::inputs::all_driven;
 use super::super::model::described;
 use super::folder::Folder;
-use super::http::{Answer, Ask, Refusal, said};
+use super::http::{Answer, Ask, Refusal};
 use super::jobs::{Job, Jobs, Made};
 use crate::Simulation;
 use crate::circuit::Parameter;
 use crate::compile::{Request, graph};
+use crate::diag::render::full;
 use crate::diag::{Code, Diagnostic, nearest};
 use crate::experiment::seconds;
 use crate::instance::Override;
 use crate::plot::select::{Choice, Run, UnitSystem, figure, shown_unit, shown_values};
 use crate::plot::{html, network};
 use crate::results::{Globs, Kind, Signal, number};
-use crate::solve::{Control, Progress};
+use crate::solve::{Control, Progress, missing_inputs};
 use crate::world::DiskWorld;
 
 /// Digits of values that the page shows: as many as the reader of a data sheet needs, and the text is what is sent back.
@@ -62,35 +62,27 @@ struct Offered {
 /// What a circuit offers; its network also where it is wrong.
 pub(super) fn open(folder: &Folder, ask: &Ask) -> Result<Answer, Refusal> {
     let request = folder.request(ask.value("source"), ask.value("class"))?;
-    let (picture, class) = drawn(&request);
     let simulation = match Simulation::compile(&DiskWorld, &request) {
         Ok(simulation) => simulation,
         Err(error) => {
-            let messages = said(&error.diagnostics, &error.sources);
-            let wrong = serde_json::json!({ "messages": messages, "picture": picture });
+            let drawn = graph(&DiskWorld, &request).value.map(|(class, graph)| network::write(&graph, &class));
+            let wrong = serde_json::json!({ "messages": error.full(), "picture": drawn.unwrap_or_default() });
             return Ok(Answer::json(&wrong).with_status(422));
         }
     };
-    let settings = simulation.clone().settings().clone();
+    let (settings, class) = (simulation.asked(), simulation.model().flat.class.clone());
     Ok(Answer::json(&Circuit {
         source: ask.value("source").to_owned(),
-        class: class.clone(),
         description: described(&request, &class),
-        picture,
-        messages: said(&simulation.diagnostics, simulation.sources()),
+        picture: network::write(&simulation.model().graph, &class),
+        class,
+        messages: full(simulation.sources(), &simulation.diagnostics),
         start: settings.start_time,
         stop: settings.stop_time,
         parameters: simulation.parameters().iter().map(offered).collect(),
         variables: simulation.variables().iter().map(named).collect(),
         inputs: simulation.inputs().iter().map(named).collect(),
     }))
-}
-
-fn drawn(request: &Request) -> (String, String) {
-    match graph(&DiskWorld, request).value {
-        Some((class, graph)) => (network::write(&graph, &class), class),
-        None => (String::new(), request.model.clone().unwrap_or_default()),
-    }
 }
 
 fn named(signal: &Signal) -> Named {
@@ -160,23 +152,22 @@ pub(super) fn run(folder: &Folder, ask: &Ask, jobs: &Jobs) -> Result<Answer, Ref
 fn simulated(request: &Request, wanted: &Wanted, stop: Option<f64>, job: &Job) -> Result<Made, String> {
     job.at("compiling", None);
     let compiled = Simulation::compile(&DiskWorld, request);
-    let mut simulation = compiled.map_err(|error| said(&error.diagnostics, &error.sources))?;
+    let mut simulation = compiled.map_err(|error| error.full())?;
     if let Some(stop) = stop {
         simulation.stop_time(stop);
     }
     let patterns = Globs::new(&wanted.variables);
     all_given(&simulation)?;
     record(&mut simulation, &patterns)?;
-    let settings = simulation.settings().clone();
-    let length = settings.stop_time - settings.start_time;
+    let (start, length) = (simulation.asked().start_time, simulation.asked().stop_time - simulation.asked().start_time);
     let mut progress = |now: &Progress| {
-        job.at("simulating", Some((now.time - settings.start_time) / length));
+        job.at("simulating", Some((now.time - start) / length));
         true
     };
     let mut control = Control { interrupt: Some(job.stop()), progress: Some(&mut progress), ..Control::default() };
     let mut outcome = simulation.run_kept(None, &mut control).map_err(|error| error.to_string())?;
     job.at("drawing", None);
-    let messages = said(&outcome.diagnostics, simulation.sources());
+    let messages = full(simulation.sources(), &outcome.diagnostics);
     let trajectory = &mut outcome.trajectory;
     let units = if wanted.units == "engineering" { UnitSystem::Engineering } else { UnitSystem::AsGiven };
     units.apply(trajectory);
@@ -204,10 +195,9 @@ fn simulated(request: &Request, wanted: &Wanted, stop: Option<f64>, job: &Job) -
 
 /// Every input has a value of its own; the page has fields for them.
 fn all_given(simulation: &Simulation) -> Result<(), String> {
-    let Err(mut failure) = all_driven(&simulation.model().dae, &[]) else { return Ok(()) };
-    let help = "give it a constant value below \"Inputs\", or recorded ones in a study";
-    failure.diagnostics.iter_mut().for_each(|d| d.help = vec![help.to_owned()]);
-    Err(said(&failure.diagnostics, simulation.sources()))
+    let help = |_: &str| vec!["give it a constant value below \"Inputs\", or recorded ones in a study".to_owned()];
+    let missing = missing_inputs(&simulation.model().dae, &[], help);
+    if missing.is_empty() { Ok(()) } else { Err(full(simulation.sources(), &missing)) }
 }
 
 /// Records what matches the patterns; without any, what the simulation records by itself.
@@ -222,7 +212,7 @@ fn record(simulation: &mut Simulation, patterns: &Globs) -> Result<(), String> {
             Some(near) => d.help(format!("did you mean `{near}`?")),
             None => d.help("`*` stands for any text: `cyl.*`"),
         };
-        return Err(said(&[d], simulation.sources()));
+        return Err(full(simulation.sources(), &[d]));
     }
     let chosen: Vec<&str> = all.iter().map(String::as_str).filter(|n| patterns.matches(n)).collect();
     simulation.record(&chosen).map(drop).map_err(|error| error.to_string())

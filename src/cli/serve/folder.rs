@@ -8,8 +8,9 @@ use serde::Serialize;
 use super::super::model::source;
 use super::super::{Failure, files};
 use super::guard;
-use super::http::{Refusal, said};
+use super::http::Refusal;
 use crate::compile::{Request, runnable};
+use crate::diag::render::full;
 use crate::diag::{Code, Sources};
 use crate::shipped::Shipped;
 use crate::world::{DiskWorld, World};
@@ -101,7 +102,7 @@ impl Folder {
                     class: r.class,
                     description: r.description,
                 })),
-                Err(why) => troubles.push(Trouble { source: file, messages: said(&why, &Sources::default()) }),
+                Err(why) => troubles.push(Trouble { source: file, messages: full(&Sources::default(), &why) }),
             }
         }
         Contents {

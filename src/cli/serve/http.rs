@@ -9,7 +9,7 @@ use serde::de::DeserializeOwned;
 use tiny_http::{Header, Method, Request, Response};
 
 use super::guard;
-use crate::diag::render::{Format, render};
+use crate::diag::render::full;
 use crate::diag::{Diagnostic, Sources};
 
 /// What the page itself may load.
@@ -18,9 +18,6 @@ const POLICY: &str = "default-src 'self'; style-src 'self' 'unsafe-inline'; img-
 /// What the page of a job may load: its own script and nothing else.
 const ALONE: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:; \
                      frame-ancestors 'self'; sandbox allow-scripts allow-downloads";
-
-/// Characters a line of messages.
-const WIDTH: usize = 100;
 
 /// A request.
 pub(super) struct Ask {
@@ -113,7 +110,7 @@ impl Refusal {
 
     /// What is wrong with the texts of the user.
     pub fn of(diagnostics: &[Diagnostic], sources: &Sources) -> Self {
-        Refusal { status: 422, messages: said(diagnostics, sources) }
+        Refusal { status: 422, messages: full(sources, diagnostics) }
     }
 }
 
@@ -121,11 +118,6 @@ impl From<super::Failure> for Refusal {
     fn from(failure: super::Failure) -> Self {
         Refusal::of(&failure.diagnostics, &Sources::default())
     }
-}
-
-/// Diagnostics as on a terminal, without colour.
-pub(super) fn said(diagnostics: &[Diagnostic], sources: &Sources) -> String {
-    render(sources, diagnostics, Format::Human, WIDTH, false).trim_end().to_owned()
 }
 
 #[derive(Serialize)]

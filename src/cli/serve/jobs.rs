@@ -8,8 +8,8 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use super::STACK;
 use super::http::{Answer, Ask, Refusal};
+use crate::compile::STACK;
 
 /// So many jobs may run at the same time: a page with a slider begins one after the other.
 const RUNNING: usize = 8;

@@ -20,6 +20,7 @@ use include_dir::{Dir, include_dir};
 use tiny_http::Server;
 
 use super::{Ending, Failure, files};
+use crate::compile::STACK;
 use crate::diag::{Code, Diagnostic};
 use folder::Folder;
 use http::{Answer, Ask, Refusal};
@@ -30,8 +31,6 @@ use studies::Uploads;
 const PORT: u16 = 8737;
 /// Requests that are answered at the same time; what takes long is a job with a thread of its own.
 const THREADS: usize = 4;
-/// Deeply nested models recurse.
-const STACK: usize = 1 << 28;
 
 /// Open circuits and studies in a browser: networks, sliders, plots, diagnosis
 #[derive(Args, Debug)]

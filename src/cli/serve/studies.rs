@@ -9,8 +9,9 @@ use serde::{Deserialize, Serialize};
 
 use super::super::files;
 use super::folder::{Folder, unusable};
-use super::http::{Answer, Ask, Refusal, said};
+use super::http::{Answer, Ask, Refusal};
 use super::jobs::{File, Job, Jobs, Made};
+use crate::diag::render::full;
 use crate::diag::{Code, Diagnostic, Sources};
 use crate::gap::Diagnosis;
 use crate::gap::study::{Question, Unusable, question};
@@ -247,8 +248,8 @@ fn parsed(folder: &Folder, given: &Text, sources: &mut Sources) -> Result<Study,
 pub(super) fn compare(folder: &Folder, ask: &Ask, uploads: &Uploads, jobs: &Jobs) -> Result<Answer, Refusal> {
     begin(folder, ask, uploads, jobs, |question, sources, job| {
         job.at("simulating along the recordings", None);
-        let warnings = said(&question.diagnostics, sources);
-        let figure = question.compared().map_err(|d| said(&d, sources))?;
+        let warnings = full(sources, &question.diagnostics);
+        let figure = question.compared().map_err(|d| full(sources, &d))?;
         Ok(Made { messages: warnings, page: html::write(&figure, &[]), files: Vec::new() })
     })
 }
@@ -256,12 +257,12 @@ pub(super) fn compare(folder: &Folder, ask: &Ask, uploads: &Uploads, jobs: &Jobs
 /// Diagnoses the gap.
 pub(super) fn diagnose(folder: &Folder, ask: &Ask, uploads: &Uploads, jobs: &Jobs) -> Result<Answer, Refusal> {
     begin(folder, ask, uploads, jobs, |question, sources, job| {
-        let held = question.held(None, sources).map_err(|d| said(&d, sources))?;
+        let held = question.held(None, sources).map_err(|d| full(sources, &d))?;
         let mut progress = |stage: crate::gap::Stage| {
             job.at(stage.to_string(), None);
             if job.stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
-        let mut diagnosis = Diagnosis::new(question, held, None, &mut progress).map_err(|d| said(&d, sources))?;
+        let mut diagnosis = Diagnosis::new(question, held, None, &mut progress).map_err(|d| full(sources, &d))?;
         diagnosis.took(job.seconds());
         let report = diagnosis.report();
         let verdict = serde_json::to_string_pretty(diagnosis.verdict()).expect("numbers and texts always serialize");
@@ -270,7 +271,7 @@ pub(super) fn diagnose(folder: &Folder, ask: &Ask, uploads: &Uploads, jobs: &Job
         let fixed = diagnosis.corrected();
         files.extend(fixed.value.map(|text| File { name: "fixed.mo", text }));
         let warnings = [diagnosis.diagnostics(), &fixed.diagnostics].concat();
-        let messages = format!("{}\n\n{}", said(&warnings, sources), diagnosis.words());
+        let messages = format!("{}\n\n{}", full(sources, &warnings), diagnosis.words());
         Ok(Made { messages: messages.trim().to_owned(), page: report, files })
     })
 }
@@ -297,7 +298,7 @@ fn begin(
         match question(&world, &study, None, &mut sources) {
             Ok(question) => work(question, &mut sources, job),
             Err(Unusable { diagnostics, sources: of_model, .. }) => {
-                Err(said(&diagnostics, of_model.as_ref().unwrap_or(&sources)))
+                Err(full(of_model.as_ref().unwrap_or(&sources), &diagnostics))
             }
         }
     })
@@ -354,7 +355,7 @@ pub(super) fn save(folder: &Folder, ask: &Ask, uploads: &Uploads) -> Result<Answ
         for (name, text) in &written {
             if std::fs::read(folder.inside(name)?).is_ok_and(|there| there != text.as_bytes()) {
                 let d = Diagnostic::new(Code::FileAccess, format!("`{name}` is there already, with other content"));
-                return Err(Refusal { status: 409, messages: said(&[d], &Sources::default()) });
+                return Err(Refusal { status: 409, messages: full(&Sources::default(), &[d]) });
             }
         }
     }
