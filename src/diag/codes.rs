@@ -69,6 +69,7 @@ codes! {
     AutomaticInner = "N025", Note, "an `inner` component was added";
     Restricted = "E027", Error, "a class holds or extends what its kind does not allow";
     Shadowed = "N026", Note, "a class of the user hides one that ships with bramah";
+    BadMockUp = "E029", Error, "a functional mock-up unit cannot be used";
     OtherVersion = "W028", Warning, "a library of another version than the model says";
     // 1xx ports
     OpenPort = "E103", Error, "a port is not connected";

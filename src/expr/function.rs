@@ -13,6 +13,11 @@ pub trait External: std::fmt::Debug + Send + Sync {
 
     /// The derivatives of all outputs by one argument, as a function of the same arguments; `None` where they are 0.
     fn partial(&self, input: usize) -> Option<Arc<dyn External>>;
+
+    /// What went wrong where it had no number, if anyone said so.
+    fn trouble(&self) -> Option<String> {
+        None
+    }
 }
 
 /// A handle of such a function; two are equal where they are the same one.
@@ -22,6 +27,16 @@ pub struct Handle(pub Arc<dyn External>);
 impl PartialEq for Handle {
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.0, &other.0)
+    }
+}
+
+impl Function {
+    /// What went wrong in a function that is carried out in Rust, if it said so.
+    pub fn trouble(&self) -> Option<String> {
+        self.body.iter().find_map(|statement| match statement {
+            Stmt::Assign(_, Term::External(function, ..)) => function.0.trouble(),
+            _ => None,
+        })
     }
 }
 

@@ -1,9 +1,12 @@
 //! Functions of others' C code that are carried out in Rust: what stands behind `external "C"` of the Modelica Standard
-//! Library's tables, texts and random numbers. [`builtin`] has them by the names of the C functions.
+//! Library's tables, texts and random numbers, and behind units of other tools (`mockup`). [`builtin`] has them by the names
+//! of the C functions.
 
 mod curve;
 mod fourier;
 mod linear;
+#[cfg(feature = "fmi")]
+pub mod mockup;
 mod options;
 mod random;
 mod strings;
@@ -43,6 +46,9 @@ pub enum Object {
     Times(Arc<TimeTable>),
     /// A map.
     Surface(Arc<Surface>),
+    /// A unit of another tool.
+    #[cfg(feature = "fmi")]
+    MockUp(Arc<mockup::Pool>),
 }
 
 /// How a C function is carried out.
@@ -55,6 +61,8 @@ pub enum Builtin {
     Function(fn(&[Given]) -> Option<Arc<dyn External>>),
     /// It makes values of known values: the result, then the output arguments.
     Values(fn(&[Given]) -> Option<Vec<Given>>),
+    /// It makes an object of a unit of another tool: its file, kind and texts.
+    MockUp,
     /// It does something that no model can see.
     Nothing,
 }
@@ -64,8 +72,20 @@ pub const NO_NAME: &str = "NoName";
 
 /// A C function by its name.
 pub fn builtin(name: &str) -> Option<Builtin> {
-    use Builtin::{Function, Nothing, Object, Values};
+    use Builtin::{Function, MockUp, Nothing, Object, Values};
     Some(match name {
+        "bramah_mockup" => MockUp,
+        "bramah_mockup_free" => Nothing,
+        #[cfg(feature = "fmi")]
+        "bramah_mockup_begin" => Function(|g| of_mockup(g, mockup::Task::Begin)),
+        #[cfg(feature = "fmi")]
+        "bramah_mockup_start" => Function(|g| of_mockup(g, mockup::Task::Start)),
+        #[cfg(feature = "fmi")]
+        "bramah_mockup_advance" => Function(|g| of_mockup(g, mockup::Task::Advance)),
+        #[cfg(feature = "fmi")]
+        "bramah_mockup_evaluate" => Function(|g| of_mockup(g, mockup::Task::Evaluate)),
+        #[cfg(feature = "fmi")]
+        "bramah_mockup_event" => Function(|g| of_mockup(g, mockup::Task::Event)),
         "ModelicaStandardTables_CombiTable1D_init2" | "ModelicaStandardTables_CombiTable1D_init3" => Object(curves),
         "ModelicaStandardTables_CombiTimeTable_init2" | "ModelicaStandardTables_CombiTimeTable_init3" => Object(times),
         "ModelicaStandardTables_CombiTable2D_init2" | "ModelicaStandardTables_CombiTable2D_init3" => Object(map),
@@ -166,6 +186,14 @@ fn times_of(given: &[Given]) -> Option<Arc<TimeTable>> {
 fn map_of(given: &[Given]) -> Option<Arc<Surface>> {
     match given.first()? {
         Given::Object(Object::Surface(table)) => Some(table.clone()),
+        _ => None,
+    }
+}
+
+#[cfg(feature = "fmi")]
+fn of_mockup(given: &[Given], task: mockup::Task) -> Option<Arc<dyn External>> {
+    match given.first()? {
+        Given::Object(Object::MockUp(pool)) => Some(Arc::new(mockup::Function::new(pool.clone(), task))),
         _ => None,
     }
 }

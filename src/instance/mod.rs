@@ -297,6 +297,9 @@ pub struct Instance<'a, 'l> {
     functions: Vec<ClassRef<'a>>,
     /// Tables read from files, by file and name.
     tables: FxHashMap<(FileId, String), Rc<Matrix>>,
+    /// Units of other tools, by file and kind.
+    #[cfg(feature = "fmi")]
+    units: FxHashMap<(String, String), building::mockup::Opened>,
     /// Parameters will take other values without compiling again.
     pub varied: bool,
     /// Joined stream variables.

@@ -291,26 +291,44 @@ impl<'a> Library<'a> {
         if let Some(&file) = self.data.get(name) {
             return Ok(file);
         }
-        let (path, text) = self.read_data(name)?;
+        let (path, text) = self.read_data(name, |world, path| world.read(path))?;
         let file = self.sources.add(path.display().to_string(), text);
         self.data.insert(name.to_owned(), file);
         Ok(file)
     }
 
-    fn read_data(&mut self, name: &str) -> Result<(PathBuf, String), String> {
+    /// The bytes of a file that a model names, as [`Library::data`].
+    ///
+    /// # Errors
+    /// Why it cannot be read.
+    pub fn bytes(&mut self, name: &str) -> Result<Vec<u8>, String> {
+        self.read_data(name, |world, path| world.bytes(path)).map(|(_, bytes)| bytes)
+    }
+
+    /// Enters a class that was made of a file: the first of its text.
+    pub fn generated(&mut self, path: &str, text: &str) -> Option<ClassId> {
+        let class = self.parse(path, text).classes.first()?;
+        Some(self.enter(class, None))
+    }
+
+    fn read_data<T>(
+        &mut self,
+        name: &str,
+        read: impl Fn(&dyn World, &Path) -> Result<T, String>,
+    ) -> Result<(PathBuf, T), String> {
         if let Some(address) = name.strip_prefix("modelica://") {
             let (package, rest) = address.split_once('/').unwrap_or((address, ""));
             let id = self.find(package).ok_or_else(|| format!("there is no package `{package}`"))?;
             let folder = self.entries[id.0 as usize].folder.clone();
             let folder = folder.ok_or_else(|| format!("the package `{package}` has no folder"))?;
             let path = folder.path.join(rest);
-            return folder.world.read(&path).map(|text| (path, text));
+            return read(folder.world, &path).map(|text| (path, text));
         }
         let Some(folder) = &self.data_folder else { return Err("there are no files here".to_owned()) };
         let (beside, path) = (folder.path.join(name), PathBuf::from(name));
-        let found = folder.world.read(&beside).map(|text| (beside.clone(), text));
+        let found = read(folder.world, &beside).map(|text| (beside.clone(), text));
         // The message speaks of the first place; a file that is there but unreadable must not be passed over in words.
-        found.or_else(|why| folder.world.read(&path).map(|text| (path, text)).map_err(|_| why))
+        found.or_else(|why| read(folder.world, &path).map(|text| (path, text)).map_err(|_| why))
     }
 
     /// A class by its full dotted name.

@@ -63,6 +63,17 @@ impl Stop {
     fn new(end: End, diagnostic: Diagnostic) -> Self {
         Stop { end, diagnostics: vec![diagnostic] }
     }
+
+    /// With what functions outside the equations have said.
+    fn with_troubles(mut self, system: &System) -> Self {
+        let mut troubles: Vec<String> =
+            system.dae.exprs.functions.iter().filter_map(crate::expr::function::Function::trouble).collect();
+        troubles.dedup();
+        if let Some(first) = self.diagnostics.first_mut() {
+            first.notes.extend(troubles);
+        }
+        self
+    }
 }
 
 type Flow = Result<(), Stop>;
@@ -181,7 +192,7 @@ pub fn start<'a>(
 ) -> Result<Driver<'a, 'a>, Stop> {
     let resumed = from.is_some();
     let (mut driver, mut model, solved) = prepare(system, settings, inputs, from.map(From::State), None, None);
-    solved.map_err(stop_at_start)?;
+    solved.map_err(|d| stop_at_start(d).with_troubles(system))?;
     // the caller says how far each step goes: a state from behind the stop time is a start like others
     driver.until = driver.until.max(driver.t + (settings.stop_time - settings.start_time).abs());
     driver.begin(&mut model, resumed)?;
@@ -325,6 +336,7 @@ impl<'a> Driver<'a, '_> {
         let end = match end {
             Ok(()) => End::Reached,
             Err(stop) => {
+                let stop = stop.with_troubles(self.system);
                 self.diagnostics.extend(stop.diagnostics);
                 stop.end
             }

@@ -21,6 +21,10 @@ impl World for DiskWorld {
         })
     }
 
+    fn bytes(&self, path: &Path) -> Result<Vec<u8>, String> {
+        std::fs::read(path).map_err(|e| reason(&e))
+    }
+
     fn list(&self, path: &Path) -> Option<Vec<(String, bool)>> {
         let mut entries: Vec<(String, bool)> = std::fs::read_dir(path)
             .ok()?

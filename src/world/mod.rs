@@ -1,8 +1,12 @@
 //! The only door to files: stages below `cli` see the outside through a [`World`].
 
 mod disk;
+#[cfg(feature = "fmi")]
+mod folder;
 
 pub use disk::DiskWorld;
+#[cfg(feature = "fmi")]
+pub use folder::Folder;
 #[cfg(feature = "cli")]
 pub(crate) use disk::reason;
 
@@ -16,6 +20,14 @@ pub trait World: Sync {
     /// # Errors
     /// A sentence saying why it cannot be read (missing, not UTF-8, no permission).
     fn read(&self, path: &Path) -> Result<String, String>;
+
+    /// The bytes of a file that is no text.
+    ///
+    /// # Errors
+    /// A sentence saying why they cannot be read.
+    fn bytes(&self, path: &Path) -> Result<Vec<u8>, String> {
+        self.read(path).map(String::into_bytes)
+    }
 
     /// Names of the entries of a folder with whether each is a folder, sorted; `None` if it is no folder.
     fn list(&self, path: &Path) -> Option<Vec<(String, bool)>>;
@@ -70,6 +82,10 @@ pub struct Overlay<'a> {
 impl World for Overlay<'_> {
     fn read(&self, path: &Path) -> Result<String, String> {
         self.files.read(path).or_else(|_| self.base.read(path))
+    }
+
+    fn bytes(&self, path: &Path) -> Result<Vec<u8>, String> {
+        self.files.bytes(path).or_else(|_| self.base.bytes(path))
     }
 
     fn list(&self, path: &Path) -> Option<Vec<(String, bool)>> {

@@ -67,6 +67,8 @@ pub fn instantiate<'a, 'l>(library: &'l mut Library<'a>, request: &ModelRequest)
         operator_records: Vec::new(),
         functions: Vec::new(),
         tables: FxHashMap::default(),
+        #[cfg(feature = "fmi")]
+        units: FxHashMap::default(),
         given_elements: Vec::new(),
         eval: state::State::default(),
     };
@@ -265,6 +267,8 @@ impl<'a> Instance<'a, '_> {
             _ => (declared, own),
         };
         let found = self.class_at(view, &component.class)?;
+        #[cfg(feature = "fmi")]
+        let found = self.with_unit(found, &reached.args, declared.name.span)?;
         self.check_redeclaration(declared, own, component, &found);
         self.check_chain(declared, own, &reached.redeclarations, &found);
         let plan = Plan {

@@ -3,6 +3,8 @@
 pub mod components;
 pub(in crate::instance) mod expandable;
 pub(in crate::instance) mod given;
+#[cfg(feature = "fmi")]
+pub(in crate::instance) mod mockup;
 pub(in crate::instance) mod numbers;
 pub(in crate::instance) mod outer;
 pub mod overconstrained;

@@ -138,6 +138,10 @@ impl<'a> Instance<'a, '_> {
         let values: Vec<Option<Val>> = call.arguments.iter().map(|a| self.input_of_c(a)).collect();
         let given: Vec<Given> = values.iter().map(|v| self.given(v.as_ref())).collect();
         match how {
+            #[cfg(feature = "fmi")]
+            Builtin::MockUp => self.mock_up(&given, place),
+            #[cfg(not(feature = "fmi"))]
+            Builtin::MockUp => self.fail(Code::Unsupported, "this build has no functional mock-up units", place.call),
             Builtin::Nothing => Some(Val::Tuple(Vec::new().into())),
             Builtin::Object(make) => {
                 let given = self.table_given(given, place)?;
@@ -351,6 +355,8 @@ impl Object {
             Object::Curves(table) => Arc::as_ptr(table).addr(),
             Object::Times(table) => Arc::as_ptr(table).addr(),
             Object::Surface(table) => Arc::as_ptr(table).addr(),
+            #[cfg(feature = "fmi")]
+            Object::MockUp(pool) => Arc::as_ptr(pool).addr(),
         }
     }
 }

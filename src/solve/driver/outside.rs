@@ -21,6 +21,10 @@ impl Driver<'_, '_> {
     /// # Errors
     /// As a run that ends before.
     pub fn advance(&mut self, inputs: &[(usize, f64)], t: f64) -> Flow {
+        self.go_to(inputs, t).map_err(|stop| stop.with_troubles(self.system))
+    }
+
+    fn go_to(&mut self, inputs: &[(usize, f64)], t: f64) -> Flow {
         // first: whether the integrator's past still serves depends on how far the next step may go
         self.until = t;
         let values = &self.ida().equations().values;

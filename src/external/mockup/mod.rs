@@ -1,0 +1,104 @@
+//! Functional mock-up units (FMUs) of other tools as components of a circuit.
+//!
+//! A unit becomes a Modelica class ([`text`]), compiled like any other, whose equations call the functions of the unit
+//! ([`functions`]). `archive` unpacks its file, `description` reads what it says of itself, `native` calls its library,
+//! `pool` keeps its instances. The crate `fmi` does much of this, but panics where a library lacks a function, unpacks
+//! archives without limit and sends a unit's words to a log; so this is written by hand.
+
+mod archive;
+mod description;
+mod functions;
+mod native;
+mod pool;
+mod text;
+
+pub use description::Kind;
+pub use functions::{Function, Task};
+pub use pool::Pool;
+
+use archive::Archive;
+use description::Description;
+use native::Code;
+use std::fmt;
+use std::sync::{Arc, OnceLock};
+
+/// Why a unit cannot be used, as the end of a sentence about it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Trouble(String);
+
+impl fmt::Display for Trouble {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl From<String> for Trouble {
+    fn from(text: String) -> Self {
+        Trouble(text)
+    }
+}
+
+impl From<&str> for Trouble {
+    fn from(text: &str) -> Self {
+        Trouble(text.to_owned())
+    }
+}
+
+/// A unit that was read, for one of its kinds. Its library is loaded when it is first needed: whoever only looks at a
+/// circuit runs nothing of it.
+pub struct MockUp {
+    bytes: Vec<u8>,
+    description: Description,
+    kind: Kind,
+    code: OnceLock<Result<Arc<Code>, Trouble>>,
+}
+
+impl MockUp {
+    /// Reads a unit. `kind` is `auto`, `cs` or `me`; `auto` is Co-Simulation where the unit has it.
+    ///
+    /// # Errors
+    /// What is wrong with the file, or that it has no such kind.
+    pub fn open(bytes: Vec<u8>, kind: &str) -> Result<Self, Trouble> {
+        let mut archive = Archive::open(&bytes)?;
+        let description = Description::read(&archive.description()?)?;
+        let has = |kind| description.offer(kind).is_some();
+        let kind = match kind {
+            "auto" if has(Kind::CoSimulation) => Kind::CoSimulation,
+            "auto" if has(Kind::ModelExchange) => Kind::ModelExchange,
+            "auto" => return Err("it offers neither Co-Simulation nor Model Exchange".into()),
+            "cs" => Kind::CoSimulation,
+            "me" => Kind::ModelExchange,
+            other => return Err(format!("`kind` is \"auto\", \"cs\" or \"me\", not \"{other}\"").into()),
+        };
+        let offer = description.offer(kind).ok_or_else(|| format!("it does not offer {}", kind.name()))?;
+        archive.library(description.version, &offer.identifier)?;
+        Ok(MockUp { bytes, description, kind, code: OnceLock::new() })
+    }
+
+    /// Its library, from the first use on.
+    fn code(&self) -> Result<Arc<Code>, Trouble> {
+        let load = || {
+            let identifier = &self.description.offer(self.kind).ok_or("it has lost its kind")?.identifier;
+            let unpacked = Archive::open(&self.bytes)?.unpack(self.description.version, identifier)?;
+            Code::load(unpacked, &self.description).map(Arc::new)
+        };
+        self.code.get_or_init(load).clone()
+    }
+
+    /// Its class in Modelica, which extends `FMU` and has its name.
+    pub fn class(&self) -> String {
+        text::class(&self.description, self.kind)
+    }
+
+    /// What the equations of one component call. `texts` are the values of its texts, a line `INDEX=VALUE` each.
+    pub fn pool(self: &Arc<Self>, texts: &str) -> Pool {
+        let line = |l: &str| {
+            let (index, value) = l.split_once('=')?;
+            Some((index.parse().ok()?, value.to_owned()))
+        };
+        let texts: Vec<(usize, String)> = texts.lines().filter_map(line).collect();
+        let known = self.description.texts();
+        let texts = texts.into_iter().filter(|(i, _)| known.contains(i)).collect();
+        Pool::new(self.clone(), texts)
+    }
+}

@@ -1,0 +1,583 @@
+//! The functions of a unit's library, and all `unsafe` that calling them needs. Source: the headers of FMI 2.0.4 and 3.0.2.
+//!
+//! What a unit does behind its functions cannot be guarded: a library that writes where it should not can bring the whole
+//! process down, as it would in any tool that loads it.
+
+#![allow(unsafe_code, reason = "calls functions of C by pointers that their library gives")]
+
+use super::Trouble;
+use super::archive::Unpacked;
+use super::description::{Description, Kind, Passed, Version};
+use libloading::Library;
+use std::ffi::{CStr, CString, c_char, c_int, c_void};
+use std::path::Path;
+use std::ptr;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// An instance, as a unit names it.
+type Raw = *mut c_void;
+/// What nearly all functions give back.
+type Status = c_int;
+
+/// A table of functions that a library may have.
+macro_rules! functions {
+    ($(#[$doc:meta])* $table:ident { $($field:ident: $symbol:literal fn($($arg:ty),*) $(-> $back:ty)?;)* }) => {
+        $(#[$doc])*
+        #[derive(Debug)]
+        struct $table { $($field: Option<unsafe extern "C" fn($($arg),*) $(-> $back)?>,)* }
+
+        impl $table {
+            fn load(library: &Library) -> Self {
+                // SAFETY: the types are those of the standard's headers for functions of these names.
+                unsafe { $table { $($field: library.get(concat!($symbol, "\0").as_bytes()).ok().map(|s| *s),)* } }
+            }
+        }
+    };
+}
+
+functions! {
+    /// FMI 2.0
+    Two {
+        instantiate: "fmi2Instantiate"
+            fn(*const c_char, c_int, *const c_char, *const c_char, *const Callbacks, c_int, c_int) -> Raw;
+        free: "fmi2FreeInstance" fn(Raw);
+        setup: "fmi2SetupExperiment" fn(Raw, c_int, f64, f64, c_int, f64) -> Status;
+        enter_initialization: "fmi2EnterInitializationMode" fn(Raw) -> Status;
+        exit_initialization: "fmi2ExitInitializationMode" fn(Raw) -> Status;
+        reset: "fmi2Reset" fn(Raw) -> Status;
+        get_real: "fmi2GetReal" fn(Raw, *const u32, usize, *mut f64) -> Status;
+        get_integer: "fmi2GetInteger" fn(Raw, *const u32, usize, *mut i32) -> Status;
+        get_boolean: "fmi2GetBoolean" fn(Raw, *const u32, usize, *mut c_int) -> Status;
+        set_real: "fmi2SetReal" fn(Raw, *const u32, usize, *const f64) -> Status;
+        set_integer: "fmi2SetInteger" fn(Raw, *const u32, usize, *const i32) -> Status;
+        set_boolean: "fmi2SetBoolean" fn(Raw, *const u32, usize, *const c_int) -> Status;
+        set_string: "fmi2SetString" fn(Raw, *const u32, usize, *const *const c_char) -> Status;
+        do_step: "fmi2DoStep" fn(Raw, f64, f64, c_int) -> Status;
+        enter_event: "fmi2EnterEventMode" fn(Raw) -> Status;
+        new_states: "fmi2NewDiscreteStates" fn(Raw, *mut EventInfo) -> Status;
+        enter_continuous: "fmi2EnterContinuousTimeMode" fn(Raw) -> Status;
+        completed: "fmi2CompletedIntegratorStep" fn(Raw, c_int, *mut c_int, *mut c_int) -> Status;
+        set_time: "fmi2SetTime" fn(Raw, f64) -> Status;
+        set_states: "fmi2SetContinuousStates" fn(Raw, *const f64, usize) -> Status;
+        get_states: "fmi2GetContinuousStates" fn(Raw, *mut f64, usize) -> Status;
+        get_derivatives: "fmi2GetDerivatives" fn(Raw, *mut f64, usize) -> Status;
+        get_indicators: "fmi2GetEventIndicators" fn(Raw, *mut f64, usize) -> Status;
+        directional: "fmi2GetDirectionalDerivative"
+            fn(Raw, *const u32, usize, *const u32, usize, *const f64, *mut f64) -> Status;
+    }
+}
+
+functions! {
+    /// FMI 3.0
+    Three {
+        instantiate_me: "fmi3InstantiateModelExchange"
+            fn(*const c_char, *const c_char, *const c_char, bool, bool, *mut c_void, Log) -> Raw;
+        instantiate_cs: "fmi3InstantiateCoSimulation"
+            fn(*const c_char, *const c_char, *const c_char, bool, bool, bool, bool, *const u32, usize, *mut c_void, Log,
+               *const c_void) -> Raw;
+        free: "fmi3FreeInstance" fn(Raw);
+        enter_initialization: "fmi3EnterInitializationMode" fn(Raw, bool, f64, f64, bool, f64) -> Status;
+        exit_initialization: "fmi3ExitInitializationMode" fn(Raw) -> Status;
+        reset: "fmi3Reset" fn(Raw) -> Status;
+        get_float64: "fmi3GetFloat64" fn(Raw, *const u32, usize, *mut f64, usize) -> Status;
+        get_float32: "fmi3GetFloat32" fn(Raw, *const u32, usize, *mut f32, usize) -> Status;
+        get_int8: "fmi3GetInt8" fn(Raw, *const u32, usize, *mut i8, usize) -> Status;
+        get_uint8: "fmi3GetUInt8" fn(Raw, *const u32, usize, *mut u8, usize) -> Status;
+        get_int16: "fmi3GetInt16" fn(Raw, *const u32, usize, *mut i16, usize) -> Status;
+        get_uint16: "fmi3GetUInt16" fn(Raw, *const u32, usize, *mut u16, usize) -> Status;
+        get_int32: "fmi3GetInt32" fn(Raw, *const u32, usize, *mut i32, usize) -> Status;
+        get_uint32: "fmi3GetUInt32" fn(Raw, *const u32, usize, *mut u32, usize) -> Status;
+        get_int64: "fmi3GetInt64" fn(Raw, *const u32, usize, *mut i64, usize) -> Status;
+        get_uint64: "fmi3GetUInt64" fn(Raw, *const u32, usize, *mut u64, usize) -> Status;
+        get_boolean: "fmi3GetBoolean" fn(Raw, *const u32, usize, *mut u8, usize) -> Status;
+        set_float64: "fmi3SetFloat64" fn(Raw, *const u32, usize, *const f64, usize) -> Status;
+        set_float32: "fmi3SetFloat32" fn(Raw, *const u32, usize, *const f32, usize) -> Status;
+        set_int8: "fmi3SetInt8" fn(Raw, *const u32, usize, *const i8, usize) -> Status;
+        set_uint8: "fmi3SetUInt8" fn(Raw, *const u32, usize, *const u8, usize) -> Status;
+        set_int16: "fmi3SetInt16" fn(Raw, *const u32, usize, *const i16, usize) -> Status;
+        set_uint16: "fmi3SetUInt16" fn(Raw, *const u32, usize, *const u16, usize) -> Status;
+        set_int32: "fmi3SetInt32" fn(Raw, *const u32, usize, *const i32, usize) -> Status;
+        set_uint32: "fmi3SetUInt32" fn(Raw, *const u32, usize, *const u32, usize) -> Status;
+        set_int64: "fmi3SetInt64" fn(Raw, *const u32, usize, *const i64, usize) -> Status;
+        set_uint64: "fmi3SetUInt64" fn(Raw, *const u32, usize, *const u64, usize) -> Status;
+        set_boolean: "fmi3SetBoolean" fn(Raw, *const u32, usize, *const u8, usize) -> Status;
+        set_string: "fmi3SetString" fn(Raw, *const u32, usize, *const *const c_char, usize) -> Status;
+        do_step: "fmi3DoStep" fn(Raw, f64, f64, bool, *mut bool, *mut bool, *mut bool, *mut f64) -> Status;
+        enter_event: "fmi3EnterEventMode" fn(Raw) -> Status;
+        update: "fmi3UpdateDiscreteStates"
+            fn(Raw, *mut bool, *mut bool, *mut bool, *mut bool, *mut bool, *mut f64) -> Status;
+        enter_continuous: "fmi3EnterContinuousTimeMode" fn(Raw) -> Status;
+        completed: "fmi3CompletedIntegratorStep" fn(Raw, bool, *mut bool, *mut bool) -> Status;
+        set_time: "fmi3SetTime" fn(Raw, f64) -> Status;
+        set_states: "fmi3SetContinuousStates" fn(Raw, *const f64, usize) -> Status;
+        get_states: "fmi3GetContinuousStates" fn(Raw, *mut f64, usize) -> Status;
+        get_derivatives: "fmi3GetContinuousStateDerivatives" fn(Raw, *mut f64, usize) -> Status;
+        get_indicators: "fmi3GetEventIndicators" fn(Raw, *mut f64, usize) -> Status;
+        directional: "fmi3GetDirectionalDerivative"
+            fn(Raw, *const u32, usize, *const u32, usize, *const f64, usize, *mut f64, usize) -> Status;
+    }
+}
+
+/// `fmi3LogMessageCallback`
+type Log = unsafe extern "C" fn(*mut c_void, Status, *const c_char, *const c_char);
+
+/// `fmi2CallbackFunctions`. The logger takes more arguments than its type says; it is only handed on.
+#[repr(C)]
+#[derive(Debug)]
+struct Callbacks {
+    logger: unsafe extern "C" fn(),
+    allocate: unsafe extern "C" fn(usize, usize) -> *mut c_void,
+    free: unsafe extern "C" fn(*mut c_void),
+    step_finished: *const c_void,
+    environment: *mut c_void,
+}
+
+/// `fmi2EventInfo`
+#[repr(C)]
+#[derive(Default)]
+struct EventInfo {
+    again: c_int,
+    terminate: c_int,
+    nominals_changed: c_int,
+    values_changed: c_int,
+    next_defined: c_int,
+    next: f64,
+}
+
+unsafe extern "C" {
+    fn calloc(count: usize, size: usize) -> *mut c_void;
+    fn free(block: *mut c_void);
+    /// In `logger.c`.
+    fn bramah_mockup_logger();
+}
+
+/// What a unit said last, at the address that it hands back.
+type Said = Mutex<Vec<String>>;
+
+/// Lines of a unit that are kept.
+const KEPT: usize = 20;
+
+/// Called by `logger.c`.
+///
+/// # Safety
+/// `environment` is null or the address that the instance was given; `message` is null or a text of C.
+#[unsafe(no_mangle)]
+unsafe extern "C" fn bramah_mockup_said(environment: *mut c_void, status: Status, message: *const c_char) {
+    if environment.is_null() || message.is_null() {
+        return;
+    }
+    // SAFETY: what the caller promises; the box behind it lives as long as the instance.
+    let (said, message) = unsafe { (&*environment.cast_const().cast::<Said>(), CStr::from_ptr(message)) };
+    let mut lines = said.lock().unwrap_or_else(PoisonError::into_inner);
+    // what is in order is not worth a line
+    if status != 0 {
+        if lines.len() == KEPT {
+            lines.remove(0);
+        }
+        lines.push(message.to_string_lossy().trim().chars().take(500).collect());
+    }
+}
+
+/// `fmi3LogMessageCallback`, see [`bramah_mockup_said`].
+unsafe extern "C" fn log(environment: *mut c_void, status: Status, _: *const c_char, message: *const c_char) {
+    // SAFETY: what the caller promises.
+    unsafe { bramah_mockup_said(environment, status, message) }
+}
+
+#[derive(Debug)]
+enum Functions {
+    Two(Two),
+    Three(Three),
+}
+
+/// A loaded library.
+#[derive(Debug)]
+pub struct Code {
+    functions: Functions,
+    token: CString,
+    resources: Option<CString>,
+    // after the functions, which point into it, and before the folder in which it lies
+    _library: Library,
+    _unpacked: Unpacked,
+}
+
+impl Code {
+    /// Loads the library of a unit.
+    ///
+    /// # Errors
+    /// The machine cannot load it.
+    pub fn load(unpacked: Unpacked, description: &Description) -> Result<Self, Trouble> {
+        // SAFETY: the library's initializers run, as they would in any tool that loads the unit.
+        let library = unsafe { Library::new(&unpacked.library) };
+        let library = library.map_err(|why| format!("its library cannot be loaded: {why}"))?;
+        let functions = match description.version {
+            Version::Two => Functions::Two(Two::load(&library)),
+            Version::Three => Functions::Three(Three::load(&library)),
+        };
+        let token = CString::new(description.token.as_str()).map_err(|_| "its token holds a zero")?;
+        let resources = unpacked.resources.as_deref().map(|path| resources(path, description.version));
+        Ok(Code { functions, token, resources, _library: library, _unpacked: unpacked })
+    }
+}
+
+/// The folder of resources as each standard wants it: an address, or a path with a separator at its end.
+fn resources(path: &Path, version: Version) -> CString {
+    let path = path.to_string_lossy();
+    let text = match version {
+        Version::Two => {
+            let plain = |b: u8| b.is_ascii_alphanumeric() || b"/-_.~".contains(&b);
+            let path: String = path
+                .bytes()
+                .map(|b| if plain(b) { char::from(b).to_string() } else { format!("%{b:02X}") })
+                .collect();
+            format!("file://{path}")
+        }
+        Version::Three => format!("{path}{}", std::path::MAIN_SEPARATOR),
+    };
+    CString::new(text).unwrap_or_default()
+}
+
+/// What came out of an event.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Update {
+    /// To be asked once more.
+    pub again: bool,
+    /// The unit wants the run to end.
+    pub terminate: bool,
+    /// States have new values.
+    pub states_changed: bool,
+    /// The next event of known time.
+    pub next: Option<f64>,
+}
+
+/// An instance of a unit.
+pub struct Instance {
+    code: Arc<Code>,
+    raw: Raw,
+    said: Box<Said>,
+    _callbacks: Box<Callbacks>,
+}
+
+// SAFETY: one thread at a time uses an instance, which the standards ask for; nothing of it belongs to a thread.
+unsafe impl Send for Instance {}
+
+impl std::fmt::Debug for Instance {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Instance").finish_non_exhaustive()
+    }
+}
+
+/// Calls a function by its field in both tables, with its arguments for each; its status is judged by the caller.
+macro_rules! call {
+    ($self:ident, two $two:ident($($a:expr),*), three $three:ident($($b:expr),*)) => {
+        match &$self.code.functions {
+            Functions::Two(f) => {
+                let function = f.$two.ok_or_else(|| missing(stringify!($two)))?;
+                // SAFETY: the instance lives, and the arguments are those of the header.
+                $self.judge(stringify!($two), unsafe { function($self.raw, $($a),*) })
+            }
+            Functions::Three(f) => {
+                let function = f.$three.ok_or_else(|| missing(stringify!($three)))?;
+                // SAFETY: the instance lives, and the arguments are those of the header.
+                $self.judge(stringify!($three), unsafe { function($self.raw, $($b),*) })
+            }
+        }
+    };
+}
+
+fn missing(function: &str) -> Trouble {
+    format!("its library has no function for `{}`", function.replace('_', " ")).into()
+}
+
+impl Instance {
+    /// A new instance.
+    ///
+    /// # Errors
+    /// The unit refuses; with what it says.
+    pub fn new(code: &Arc<Code>, name: &str, kind: Kind) -> Result<Self, Trouble> {
+        let said: Box<Said> = Box::default();
+        let environment = ptr::from_ref::<Said>(&said).cast_mut().cast::<c_void>();
+        let callbacks = Box::new(Callbacks {
+            logger: bramah_mockup_logger,
+            allocate: calloc,
+            free,
+            step_finished: ptr::null(),
+            environment,
+        });
+        let name = CString::new(name).unwrap_or_default();
+        let (token, place) = (code.token.as_ptr(), code.resources.as_deref().map_or(ptr::null(), CStr::as_ptr));
+        // with logging on: some units say nothing otherwise, not even why they fail
+        // SAFETY: texts and callbacks live as long as the instance needs them; the types are those of the headers.
+        let raw = unsafe {
+            match (&code.functions, kind) {
+                (Functions::Two(f), _) => {
+                    let kind = c_int::from(kind == Kind::CoSimulation);
+                    let make = f.instantiate.ok_or_else(|| missing("instantiate"))?;
+                    make(name.as_ptr(), kind, token, place, &raw const *callbacks, 0, 1)
+                }
+                (Functions::Three(f), Kind::ModelExchange) => {
+                    let make = f.instantiate_me.ok_or_else(|| missing("instantiate_me"))?;
+                    make(name.as_ptr(), token, place, false, true, environment, log)
+                }
+                (Functions::Three(f), Kind::CoSimulation) => {
+                    let make = f.instantiate_cs.ok_or_else(|| missing("instantiate_cs"))?;
+                    let (none, never) = (ptr::null(), ptr::null());
+                    make(name.as_ptr(), token, place, false, true, false, false, none, 0, environment, log, never)
+                }
+            }
+        };
+        if raw.is_null() {
+            return Err(with_words("it cannot be instantiated".to_owned(), &said));
+        }
+        Ok(Instance { code: code.clone(), raw, said, _callbacks: callbacks })
+    }
+
+    /// An error unless the unit was content; with what it said.
+    fn judge(&self, function: &str, status: Status) -> Result<(), Trouble> {
+        let how = match status {
+            0 | 1 => {
+                self.said.lock().unwrap_or_else(PoisonError::into_inner).clear();
+                return Ok(());
+            }
+            2 => "was discarded",
+            3 => "failed",
+            4 => "failed for good",
+            _ => "did not end",
+        };
+        Err(with_words(format!("its function for `{}` {how}", function.replace('_', " ")), &self.said))
+    }
+
+    /// Enters the mode in which inputs can be set and outputs read before the start, at this time (s).
+    ///
+    /// # Errors
+    /// The unit refuses.
+    pub fn enter_initialization(&mut self, start: f64) -> Result<(), Trouble> {
+        if let Functions::Two(f) = &self.code.functions {
+            let setup = f.setup.ok_or_else(|| missing("setup"))?;
+            // SAFETY: the instance lives.
+            self.judge("setup", unsafe { setup(self.raw, 0, 0.0, start, 0, 0.0) })?;
+        }
+        call!(self, two enter_initialization(), three enter_initialization(false, 0.0, start, false, 0.0))
+    }
+
+    /// Leaves it.
+    ///
+    /// # Errors
+    /// The unit refuses.
+    pub fn exit_initialization(&mut self) -> Result<(), Trouble> {
+        call!(self, two exit_initialization(), three exit_initialization())
+    }
+
+    /// Back to how it was made.
+    ///
+    /// # Errors
+    /// The unit refuses.
+    pub fn reset(&mut self) -> Result<(), Trouble> {
+        call!(self, two reset(), three reset())
+    }
+
+    /// Goes from a time to another (s).
+    ///
+    /// # Errors
+    /// The unit refuses, or wants the run to end.
+    pub fn step(&mut self, from: f64, to: f64) -> Result<(), Trouble> {
+        let (mut event, mut terminate, mut early, mut last) = (false, false, false, from);
+        call!(self, two do_step(from, to - from, 1), three do_step(from, to - from, true, &raw mut event, &raw mut terminate, &raw mut early, &raw mut last))?;
+        if terminate {
+            return Err(with_words("it wants the run to end".to_owned(), &self.said));
+        }
+        Ok(())
+    }
+
+    /// Reads the numbers of a variable, as many as there is room for.
+    ///
+    /// # Errors
+    /// The unit refuses.
+    pub fn get(&self, passed: Passed, reference: u32, into: &mut [f64]) -> Result<(), Trouble> {
+        let (r, n) = (&raw const reference, into.len());
+        /// Reads into numbers of another type, then converts.
+        macro_rules! read {
+            ($zero:expr, $two:ident, $three:ident, $to:expr) => {{
+                let mut raw = vec![$zero; n];
+                call!(self, two $two(r, 1, raw.as_mut_ptr().cast()), three $three(r, 1, raw.as_mut_ptr().cast(), n))?;
+                into.iter_mut().zip(raw).for_each(|(x, y)| *x = $to(y));
+            }};
+        }
+        let truth = |x: c_int| f64::from(u8::from(x != 0));
+        match (passed, &self.code.functions) {
+            (Passed::Float64, _) => {
+                let to = into.as_mut_ptr();
+                return call!(self, two get_real(r, 1, to), three get_float64(r, 1, to, n));
+            }
+            (Passed::Boolean, Functions::Two(_)) => read!(0 as c_int, get_boolean, get_boolean, truth),
+            (Passed::Boolean, Functions::Three(_)) => read!(0_u8, get_boolean, get_boolean, |x| truth(c_int::from(x))),
+            (Passed::Float32, _) => read!(0_f32, get_real, get_float32, f64::from),
+            (Passed::Int8, _) => read!(0_i8, get_integer, get_int8, f64::from),
+            (Passed::UInt8, _) => read!(0_u8, get_integer, get_uint8, f64::from),
+            (Passed::Int16, _) => read!(0_i16, get_integer, get_int16, f64::from),
+            (Passed::UInt16, _) => read!(0_u16, get_integer, get_uint16, f64::from),
+            (Passed::Int32, _) => read!(0_i32, get_integer, get_int32, f64::from),
+            (Passed::UInt32, _) => read!(0_u32, get_integer, get_uint32, f64::from),
+            (Passed::Int64, _) => read!(0_i64, get_integer, get_int64, |x: i64| x as f64),
+            (Passed::UInt64, _) => read!(0_u64, get_integer, get_uint64, |x: u64| x as f64),
+            (Passed::String, _) => into.fill(f64::NAN),
+        }
+        Ok(())
+    }
+
+    /// Sets the numbers of a variable; those of whole types are rounded.
+    ///
+    /// # Errors
+    /// The unit refuses.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates")]
+    pub fn set(&mut self, passed: Passed, reference: u32, from: &[f64]) -> Result<(), Trouble> {
+        let (r, n) = (&raw const reference, from.len());
+        /// Converts, then sets numbers of another type.
+        macro_rules! write {
+            ($to:expr, $two:ident, $three:ident) => {{
+                let raw: Vec<_> = from.iter().map(|x| $to(*x)).collect();
+                call!(self, two $two(r, 1, raw.as_ptr().cast()), three $three(r, 1, raw.as_ptr().cast(), n))
+            }};
+        }
+        match (passed, &self.code.functions) {
+            (Passed::Float64, _) => call!(self, two set_real(r, 1, from.as_ptr()), three set_float64(r, 1, from.as_ptr(), n)),
+            (Passed::Boolean, Functions::Two(_)) => write!(|x| c_int::from(x != 0.0), set_boolean, set_boolean),
+            (Passed::Boolean, Functions::Three(_)) => write!(|x| u8::from(x != 0.0), set_boolean, set_boolean),
+            (Passed::Float32, _) => write!(|x| x as f32, set_real, set_float32),
+            (Passed::Int8, _) => write!(|x: f64| x.round() as i8, set_integer, set_int8),
+            (Passed::UInt8, _) => write!(|x: f64| x.round() as u8, set_integer, set_uint8),
+            (Passed::Int16, _) => write!(|x: f64| x.round() as i16, set_integer, set_int16),
+            (Passed::UInt16, _) => write!(|x: f64| x.round() as u16, set_integer, set_uint16),
+            (Passed::Int32, _) => write!(|x: f64| x.round() as i32, set_integer, set_int32),
+            (Passed::UInt32, _) => write!(|x: f64| x.round() as u32, set_integer, set_uint32),
+            (Passed::Int64, _) => write!(|x: f64| x.round() as i64, set_integer, set_int64),
+            (Passed::UInt64, _) => write!(|x: f64| x.round() as u64, set_integer, set_uint64),
+            (Passed::String, _) => Ok(()),
+        }
+    }
+
+    /// Sets a text.
+    ///
+    /// # Errors
+    /// The unit refuses.
+    pub fn set_text(&mut self, reference: u32, text: &str) -> Result<(), Trouble> {
+        let text = CString::new(text).map_err(|_| "a text with a zero inside cannot be passed on")?;
+        let (r, texts) = (&raw const reference, [text.as_ptr()]);
+        call!(self, two set_string(r, 1, texts.as_ptr()), three set_string(r, 1, texts.as_ptr(), 1))
+    }
+
+    /// Says where time stands (s), between events.
+    ///
+    /// # Errors
+    /// The unit refuses.
+    pub fn set_time(&mut self, time: f64) -> Result<(), Trouble> {
+        call!(self, two set_time(time), three set_time(time))
+    }
+
+    /// Sets the continuous states.
+    ///
+    /// # Errors
+    /// The unit refuses.
+    pub fn set_states(&mut self, x: &[f64]) -> Result<(), Trouble> {
+        call!(self, two set_states(x.as_ptr(), x.len()), three set_states(x.as_ptr(), x.len()))
+    }
+
+    /// The continuous states.
+    ///
+    /// # Errors
+    /// The unit refuses.
+    pub fn states(&self, x: &mut [f64]) -> Result<(), Trouble> {
+        call!(self, two get_states(x.as_mut_ptr(), x.len()), three get_states(x.as_mut_ptr(), x.len()))
+    }
+
+    /// Their derivatives.
+    ///
+    /// # Errors
+    /// The unit refuses.
+    pub fn derivatives(&self, dx: &mut [f64]) -> Result<(), Trouble> {
+        call!(self, two get_derivatives(dx.as_mut_ptr(), dx.len()), three get_derivatives(dx.as_mut_ptr(), dx.len()))
+    }
+
+    /// The numbers whose change of sign is an event.
+    ///
+    /// # Errors
+    /// The unit refuses.
+    pub fn indicators(&self, z: &mut [f64]) -> Result<(), Trouble> {
+        call!(self, two get_indicators(z.as_mut_ptr(), z.len()), three get_indicators(z.as_mut_ptr(), z.len()))
+    }
+
+    /// How these variables change with one of the others.
+    ///
+    /// # Errors
+    /// The unit refuses.
+    pub fn directional(&self, unknowns: &[u32], known: u32, into: &mut [f64]) -> Result<(), Trouble> {
+        let (n, known, seed) = (unknowns.len(), [known], [1.0]);
+        let (u, k, s, to) = (unknowns.as_ptr(), known.as_ptr(), seed.as_ptr(), into.as_mut_ptr());
+        call!(self, two directional(u, n, k, 1, s, to), three directional(u, n, k, 1, s, 1, to, n))
+    }
+
+    /// Says that a step of the integrator ends here.
+    ///
+    /// # Errors
+    /// The unit refuses.
+    pub fn completed_step(&mut self) -> Result<(), Trouble> {
+        let (mut event, mut terminate, mut event3, mut terminate3) = (0, 0, false, false);
+        call!(self, two completed(1, &raw mut event, &raw mut terminate), three completed(true, &raw mut event3, &raw mut terminate3))
+    }
+
+    /// Enters the mode in which discrete values change.
+    ///
+    /// # Errors
+    /// The unit refuses.
+    pub fn enter_event(&mut self) -> Result<(), Trouble> {
+        call!(self, two enter_event(), three enter_event())
+    }
+
+    /// Leaves it.
+    ///
+    /// # Errors
+    /// The unit refuses.
+    pub fn enter_continuous(&mut self) -> Result<(), Trouble> {
+        call!(self, two enter_continuous(), three enter_continuous())
+    }
+
+    /// One pass of the unit's event iteration.
+    ///
+    /// # Errors
+    /// The unit refuses.
+    pub fn update(&mut self) -> Result<Update, Trouble> {
+        let mut info = EventInfo::default();
+        let (mut again, mut terminate, mut nominals, mut values, mut defined) = (false, false, false, false, false);
+        let mut next = 0.0;
+        call!(self, two new_states(&raw mut info), three update(&raw mut again, &raw mut terminate, &raw mut nominals, &raw mut values, &raw mut defined, &raw mut next))?;
+        Ok(match &self.code.functions {
+            Functions::Two(_) => Update {
+                again: info.again != 0,
+                terminate: info.terminate != 0,
+                states_changed: info.values_changed != 0,
+                next: (info.next_defined != 0).then_some(info.next),
+            },
+            Functions::Three(_) => Update { again, terminate, states_changed: values, next: defined.then_some(next) },
+        })
+    }
+}
+
+impl Drop for Instance {
+    fn drop(&mut self) {
+        let free = match &self.code.functions {
+            Functions::Two(f) => f.free,
+            Functions::Three(f) => f.free,
+        };
+        if let Some(free) = free {
+            // SAFETY: the instance lives and is used no more.
+            unsafe { free(self.raw) };
+        }
+    }
+}
+
+/// A sentence with what the unit said.
+fn with_words(sentence: String, said: &Said) -> Trouble {
+    let lines = std::mem::take(&mut *said.lock().unwrap_or_else(PoisonError::into_inner));
+    let lines: Vec<String> = lines.into_iter().filter(|l| !l.is_empty()).collect();
+    if lines.is_empty() { sentence.into() } else { format!("{sentence}; it says: {}", lines.join(" / ")).into() }
+}

@@ -1,0 +1,320 @@
+//! The Modelica class that stands for a unit in a circuit: its parameters, inputs and outputs in SI, and equations that
+//! call the functions of `FMU`, which it extends.
+
+use super::description::{Causality, Description, Kind, Scale, Variable};
+use super::functions::NEVER;
+use std::fmt::Write;
+
+/// Names that `FMU` and the class itself use.
+const OWN: [&str; 14] = [
+    "file", "kind", "step", "Unit", "begin", "start", "advance", "evaluate", "event", "unit", "settings", "root", "taken",
+    "given",
+];
+/// More of them.
+const OWN_TOO: [&str; 7] = ["happened", "states", "rates", "started", "last", "held", "count"];
+
+/// Communication step where the unit names none (s).
+const STEP: f64 = 0.01;
+
+/// Parameters that a circuit may set, as indices of variables.
+pub fn offered(description: &Description) -> Vec<usize> {
+    let all = description.of(Causality::Parameter);
+    all.into_iter().filter(|&i| !description.variables[i].start.is_empty()).collect()
+}
+
+/// The class.
+pub fn class(description: &Description, kind: Kind) -> String {
+    let d = description;
+    let (parameters, texts) = (offered(d), d.texts());
+    let (inputs, outputs) = (d.of(Causality::Input), d.of(Causality::Output));
+    let mut out = format!("model FMU {}\n  extends .FMU;\n", quoted(&title(d, kind)));
+    let v = |i: &usize| &d.variables[*i];
+    parameters.iter().for_each(|i| out += &parameter(v(i)));
+    for i in &texts {
+        let t = v(i);
+        let _ = writeln!(out, "  parameter String {} = {}{};", name(&t.name), quoted(&t.text), comment(t));
+    }
+    inputs.iter().for_each(|i| out += &port(v(i), "Input"));
+    outputs.iter().for_each(|i| out += &port(v(i), "Output"));
+    if kind == Kind::CoSimulation {
+        let step = d.step.unwrap_or(STEP);
+        let _ = writeln!(out, "  parameter Real step(unit = \"s\", min = 1e-9) = {step:e} \"Communication step: outputs hold from one point to the next\";");
+    }
+    let said = texts.iter().map(|i| format!("\"{i}=\" + {} + \"\\n\"", name(&v(i).name)));
+    let said: Vec<String> = std::iter::once("\"\"".to_owned()).chain(said).collect();
+    let _ = writeln!(out, "protected\n  final parameter Unit unit = Unit(file, kind, {});", said.join(" + "));
+    let numbers = |list: &[usize], reversed: bool| list_of(list.iter().flat_map(|i| elements(v(i), reversed)));
+    let _ = writeln!(out, "  final parameter Real root = begin(unit, {});", numbers(&parameters, true));
+    let sizes = |list: &[usize]| list.iter().map(|i| v(i).size()).sum::<usize>();
+    let body = match kind {
+        Kind::CoSimulation => co_simulation(sizes(&outputs)),
+        Kind::ModelExchange => model_exchange(d, sizes(&outputs)),
+    };
+    let given = sizes(&inputs);
+    let _ = writeln!(out, "  Real given[{given}] \"Inputs in the unit's own units\";");
+    let [declared, equations] = body;
+    out += &declared;
+    let _ = writeln!(out, "equation\n  given = {};", numbers(&inputs, true));
+    out += &equations;
+    out += &assigned(d, kind, &outputs);
+    out + "end FMU;\n"
+}
+
+fn title(d: &Description, kind: Kind) -> String {
+    let what = if d.description.is_empty() { d.name.clone() } else { format!("{}: {}", d.name, d.description) };
+    let version = match d.version {
+        super::description::Version::Two => "2.0",
+        super::description::Version::Three => "3.0",
+    };
+    let tool = if d.tool.is_empty() { String::new() } else { format!(", by {}", d.tool) };
+    format!("{what} (FMI {version}, {}{tool})", kind.name())
+}
+
+/// Declarations and equations of a unit that is stepped at communication points: outputs are known one step later.
+fn co_simulation(outputs: usize) -> [String; 2] {
+    let n = 1 + outputs;
+    let declared = format!(
+        "  discrete Real taken[{n}] \"State, outputs\";
+  discrete Real held[size(given, 1)] \"Inputs at the last communication point\";
+  discrete Real last \"The last communication point\";
+initial equation
+  taken = advance(unit, {n}, root, time, time, given);
+  held = given;
+  last = time;
+"
+    );
+    let equations = format!(
+        "  when sample(0, step) then
+    taken = advance(unit, {n}, pre(taken[1]), pre(last), time, pre(held));
+    held = given;
+    last = time;
+  end when;
+"
+    );
+    [declared, equations]
+}
+
+/// The same of a unit that is solved with the circuit: derivatives, event indicators and outputs between events, discrete
+/// values at events.
+fn model_exchange(d: &Description, outputs: usize) -> [String; 2] {
+    let (n, z) = (d.states.len(), d.indicators);
+    let discrete = d.of(Causality::Output).into_iter().map(|i| &d.variables[i]).filter(|v| !v.continuous);
+    let discrete: usize = discrete.map(Variable::size).sum();
+    let (all, at_events) = (n + z + outputs, 2 + n + discrete);
+    let nominal: Vec<String> =
+        d.states.iter().map(|s| format!("{:e}", nominal(&d.variables[s.0]))).collect();
+    let states = if n == 0 { String::new() } else { format!("(nominal = {{{}}})", nominal.join(", ")) };
+    let names: Vec<&str> = d.states.iter().map(|s| d.variables[s.0].name.as_str()).collect();
+    let crossings = (1..=z).map(|k| n + k).flat_map(|k| [format!("rates[{k}] > 0"), format!("rates[{k}] <= 0")]);
+    let inputs = d.of(Causality::Input);
+    let mut changes = Vec::new();
+    for v in inputs.iter().map(|&i| &d.variables[i]) {
+        if !v.passed.is_real() {
+            changes.extend(subscripted(v).iter().map(|e| format!("change({e})")));
+        }
+    }
+    let when: Vec<String> = ["started".to_owned(), "time >= pre(happened[2])".to_owned()]
+        .into_iter()
+        .chain(crossings)
+        .chain(changes)
+        .collect();
+    let reinit: String = (1..=n).map(|k| format!("    reinit(states[{k}], happened[{}]);\n", 2 + k)).collect();
+    let start = if n == 0 { String::new() } else { format!("  states = happened[3:{}];\n", 2 + n) };
+    let flow = if n == 0 { String::new() } else { format!("  der(states) = rates[1:{n}];\n") };
+    let (names, found) = (quoted(&names.join(", ")), at_events - 2);
+    let declared = format!(
+        "  Real states[{n}]{states} {names};
+  Real rates[{all}] \"Derivatives, event indicators, outputs\";
+  discrete Real happened[{at_events}] \"State of the unit, its next event, continuous states, discrete outputs\";
+  Boolean started(start = false, fixed = true);
+initial equation
+  happened = cat(1, {{root, {NEVER:e}}}, start(unit, {found}, root, time, given));
+{start}"
+    );
+    let equations = format!(
+        "  started = not initial();
+  rates = evaluate(unit, {all}, pre(happened[1]), time, states, given);
+{flow}  when {{{}}} then
+    happened = event(unit, {at_events}, pre(happened[1]), time, states, given);
+{reinit}  end when;
+",
+        when.join(", "),
+    );
+    [declared, equations]
+}
+
+fn nominal(v: &Variable) -> f64 {
+    v.limits[2].map(f64::abs).filter(|x| *x > 0.0).unwrap_or(1.0)
+}
+
+/// The outputs from what the unit gives.
+fn assigned(d: &Description, kind: Kind, outputs: &[usize]) -> String {
+    let n = d.states.len();
+    let (mut at, mut at_event) = if kind == Kind::CoSimulation { (2, 2) } else { (n + d.indicators + 1, 3 + n) };
+    let mut out = String::new();
+    for v in outputs.iter().map(|&i| &d.variables[i]) {
+        for (k, element) in subscripted(v).into_iter().enumerate() {
+            let from = match kind {
+                Kind::CoSimulation => format!("taken[{}]", at + k),
+                Kind::ModelExchange if v.continuous => format!("rates[{}]", at + k),
+                Kind::ModelExchange => format!("happened[{}]", at_event + k),
+            };
+            let _ = writeln!(out, "  {element} = {};", converted(v, &from, false));
+        }
+        at += v.size();
+        at_event += if v.continuous { 0 } else { v.size() };
+    }
+    out
+}
+
+/// Elements of a variable as expressions of the circuit, or converted to numbers of the unit.
+fn elements(v: &Variable, reversed: bool) -> Vec<String> {
+    subscripted(v).into_iter().map(|e| converted(v, &e, reversed)).collect()
+}
+
+/// An expression in SI from numbers of the unit, or `reversed`.
+fn converted(v: &Variable, e: &str, reversed: bool) -> String {
+    use super::description::Passed;
+    let Scale { factor, offset, .. } = v.scale;
+    match (v.passed, reversed) {
+        (Passed::Boolean, true) => format!("(if {e} then 1 else 0)"),
+        (Passed::Boolean, false) => format!("{e} > 0.5"),
+        (p, false) if !p.is_real() => format!("integer({e} + 0.5)"),
+        _ if factor == 1.0 && offset == 0.0 => e.to_owned(),
+        (_, true) if offset == 0.0 => format!("{e}/{factor:e}"),
+        (_, true) => format!("({e} - ({offset:e}))/{factor:e}"),
+        (_, false) if offset == 0.0 => format!("{factor:e}*{e}"),
+        (_, false) => format!("{factor:e}*{e} + ({offset:e})"),
+    }
+}
+
+fn subscripted(v: &Variable) -> Vec<String> {
+    let name = name(&v.name);
+    if v.dims.is_empty() {
+        return vec![name];
+    }
+    let place = |mut k: usize| {
+        let mut index = vec![0; v.dims.len()];
+        for (i, n) in v.dims.iter().enumerate().rev() {
+            index[i] = k % n + 1;
+            k /= n;
+        }
+        index.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
+    };
+    (0..v.size()).map(|k| format!("{name}[{}]", place(k))).collect()
+}
+
+fn list_of(items: impl Iterator<Item = String>) -> String {
+    let items: Vec<String> = items.collect();
+    if items.is_empty() { "zeros(0)".to_owned() } else { format!("{{{}}}", items.join(", ")) }
+}
+
+fn ty(v: &Variable) -> &'static str {
+    use super::description::Passed;
+    match v.passed {
+        Passed::Boolean => "Boolean",
+        p if p.is_real() => "Real",
+        _ => "Integer",
+    }
+}
+
+fn dims(v: &Variable) -> String {
+    let sizes: Vec<String> = v.dims.iter().map(ToString::to_string).collect();
+    if sizes.is_empty() { String::new() } else { format!("[{}]", sizes.join(", ")) }
+}
+
+fn port(v: &Variable, direction: &str) -> String {
+    format!("  Interfaces.{}{direction} {}{}{}{};\n", ty(v), name(&v.name), dims(v), attributes(v, false), comment(v))
+}
+
+fn parameter(v: &Variable) -> String {
+    let value = |x: &f64| match ty(v) {
+        "Boolean" => (*x != 0.0).to_string(),
+        "Integer" => format!("{x}"),
+        _ => format!("{:e}", v.scale.factor * x + v.scale.offset),
+    };
+    let values: Vec<String> = v.start.iter().map(value).collect();
+    let value = if v.dims.is_empty() { values.first().cloned().unwrap_or_default() } else { nested(&v.dims, &values) };
+    let (name, limits) = (name(&v.name), attributes(v, true));
+    format!("  parameter {} {name}{}{limits} = {value}{};\n", ty(v), dims(v), comment(v))
+}
+
+/// `{{1, 2}, {3, 4}}`
+fn nested(dims: &[usize], values: &[String]) -> String {
+    match dims {
+        [] | [_] => format!("{{{}}}", values.join(", ")),
+        [_, rest @ ..] => {
+            let size: usize = rest.iter().product();
+            let parts: Vec<String> = values.chunks(size.max(1)).map(|part| nested(rest, part)).collect();
+            format!("{{{}}}", parts.join(", "))
+        }
+    }
+}
+
+/// Units, and limits of a parameter; those of ports are the business of the circuit.
+fn attributes(v: &Variable, limited: bool) -> String {
+    let each = if v.dims.is_empty() { "" } else { "each " };
+    let mut all = Vec::new();
+    if !v.scale.si.is_empty() {
+        all.push(format!("{each}unit = {}", quoted(&v.scale.si)));
+    }
+    if !v.scale.shown.is_empty() {
+        all.push(format!("{each}displayUnit = {}", quoted(&v.scale.shown)));
+    }
+    let number = |x: f64| if ty(v) == "Integer" { format!("{x}") } else { format!("{:e}", v.scale.factor * x + v.scale.offset) };
+    if limited && ty(v) != "Boolean" {
+        let mut limits = [v.limits[0], v.limits[1]];
+        if v.scale.factor < 0.0 {
+            limits.swap(0, 1);
+        }
+        for (key, limit) in ["min", "max"].into_iter().zip(limits) {
+            all.extend(limit.map(|x| format!("{each}{key} = {}", number(x))));
+        }
+    }
+    if all.is_empty() { String::new() } else { format!("({})", all.join(", ")) }
+}
+
+fn comment(v: &Variable) -> String {
+    if v.description.is_empty() { String::new() } else { format!(" {}", quoted(&v.description)) }
+}
+
+/// A name of Modelica: as it stands where it is one and `FMU` does not use it, else in quotes.
+fn name(name: &str) -> String {
+    let letter = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let plain = name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_') && name.chars().all(letter);
+    if plain && !OWN.contains(&name) && !OWN_TOO.contains(&name) && !is_keyword(name) {
+        return name.to_owned();
+    }
+    let mut out = "'".to_owned();
+    for c in name.chars() {
+        match c {
+            '\'' | '\\' | '"' => out.extend(['\\', c]),
+            c if c.is_control() => out.push(' '),
+            c => out.push(c),
+        }
+    }
+    out + "'"
+}
+
+/// Words of the language, and names that are always there.
+fn is_keyword(name: &str) -> bool {
+    const WORDS: &str = " algorithm and annotation block break class connect connector constant constrainedby der discrete \
+        each else elseif elsewhen encapsulated end enumeration equation expandable extends external false final flow for \
+        function if import impure in initial inner input loop model not operator or outer output package parameter partial \
+        protected public pure record redeclare replaceable return stream then true type when while within time Real \
+        Integer Boolean String ";
+    WORDS.contains(&format!(" {name} "))
+}
+
+fn quoted(text: &str) -> String {
+    let mut out = "\"".to_owned();
+    for c in text.chars() {
+        match c {
+            '"' | '\\' => out.extend(['\\', c]),
+            '\n' => out += "\\n",
+            c if c.is_control() => out.push(' '),
+            c => out.push(c),
+        }
+    }
+    out + "\""
+}
