@@ -162,7 +162,9 @@ pub mod editor;
 #[doc(hidden)]
 pub mod cli;
 
-pub use circuit::{Circuit, InputPort, Outcome, OwnedStepping, Parameter, Probe, Simulation, Stepping};
+pub use circuit::{
+    Circuit, Exchange, InputPort, Outcome, OwnedExchange, OwnedStepping, Parameter, Probe, Simulation, Stepping,
+};
 pub use compile::Request;
 pub use diag::{Code, Diagnostic, Error, Severity, Sources};
 pub use instance::Override;

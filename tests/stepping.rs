@@ -132,3 +132,41 @@ fn a_state_from_behind_the_stop_time_goes_on() {
     let other = Simulation::from_text("model M Real x; equation x = time; end M;").unwrap();
     assert!(other.stepping_from(&state).is_err());
 }
+
+#[test]
+fn an_input_that_is_set_does_not_go_back_when_a_controller_samples() {
+    let text = "model Held input Real u; discrete Real y(start = 0, fixed = true);
+        equation when sample(0.1, 0.1) then y = u; end when; end Held;";
+    let mut held = Simulation::from_text(text).unwrap();
+    held.input("u", &[0.0], &[1.0], Interpolation::Held).unwrap();
+    let mut run = held.stepping().unwrap();
+    let (u, y) = (run.input("u").unwrap(), run.probe("y").unwrap());
+    run.step(0.05).unwrap();
+    run.set(u, 2.0);
+    run.step(0.02).unwrap();
+    run.step(0.08).unwrap();
+    assert_eq!(run.get(y), 2.0);
+}
+
+#[test]
+fn a_model_for_others_to_integrate_has_its_events() {
+    let text = "model Saw input Real u(start = 1); Real x(start = 0, fixed = true); Integer n(start = 0, fixed = true);
+        equation der(x) = u; when x > 1 then reinit(x, x - 1); n = pre(n) + 1; end when;
+        end Saw;";
+    let saw = Simulation::from_text(text).unwrap();
+    let mut model = saw.exchange().unwrap();
+    let (u, n) = (model.input("u").unwrap(), model.probe("n").unwrap());
+    model.set(u, 2.0);
+    assert_eq!(model.derivatives().unwrap(), [2.0]);
+    let before = model.indicators().unwrap().to_vec();
+    model.set_time(0.5);
+    model.set_states(&[1.0 + 1e-9]);
+    let after = model.indicators().unwrap().to_vec();
+    assert!(before.iter().zip(&after).any(|(a, b)| a * b < 0.0), "{before:?} {after:?}");
+    let happened = model.event().unwrap();
+    assert!(happened.states_changed && model.states()[0] < 1e-6, "{happened:?}");
+    assert_eq!(model.get(n).unwrap(), 1.0);
+    let delayed = "model Late input Real u(start = 0); Real y = delay(u, 0.1); end Late;";
+    let refused = Simulation::from_text(delayed).unwrap().exchange().err().expect("refused").full();
+    assert!(refused.contains("E017") && refused.contains("delay"), "{refused}");
+}

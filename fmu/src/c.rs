@@ -1,4 +1,4 @@
-//! The C interfaces of FMI 2.0.5 and 3.0.2 (Co-Simulation): pointers of the simulator made references, panics made errors.
+//! The C interfaces of FMI 2.0.5 and 3.0.2 (Co-Simulation, Model Exchange): pointers of the simulator made references, panics made errors.
 //! All `unsafe` of the library is here.
 //!
 //! What both have in common is a function of [`Component`]; the functions of one standard only read its arguments.
@@ -6,7 +6,7 @@
 #![allow(non_snake_case, reason = "names of the standard")]
 #![allow(unsafe_code, reason = "a C interface")]
 
-use crate::unit::{Snapshot, Unit, Went};
+use crate::unit::{Mode, Snapshot, Unit, Went};
 use std::ffi::{CStr, CString, c_char, c_int, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
@@ -50,8 +50,8 @@ struct Component {
 }
 
 impl Component {
-    fn begin(log: Log, resources: PathBuf, token: &str) -> *mut c_void {
-        let made = catch_unwind(AssertUnwindSafe(|| Unit::new(&resources, token)));
+    fn begin(log: Log, resources: PathBuf, token: &str, kind: Mode) -> *mut c_void {
+        let made = catch_unwind(AssertUnwindSafe(|| Unit::new(&resources, token, kind)));
         match made.unwrap_or_else(|_| Err("this is a bug of bramah".to_owned())) {
             Ok(unit) => Box::into_raw(Box::new(Component { unit, log, terminated: false })).cast(),
             Err(why) => {
@@ -61,12 +61,41 @@ impl Component {
         }
     }
 
-    fn step(&mut self, time: f64) -> Result<(), String> {
-        self.terminated = self.unit.step_to(time)? == Went::Terminated;
+    fn step(&mut self, from: f64, length: f64) -> Result<(), String> {
+        let stands = self.unit.time();
+        // times that a simulator adds up differ by rounding
+        if (from - stands).abs() > 0.01 * length.abs() {
+            return Err(format!("a step from {from} s, and the unit stands at {stands} s"));
+        }
+        self.terminated = self.unit.step_to(from + length)? == Went::Terminated;
         for warning in self.unit.warnings() {
             self.log.say(OK, &warning);
         }
         Ok(())
+    }
+
+    /// An event, with what it warns of.
+    fn happen(&mut self) -> Result<Happened, String> {
+        let found = self.unit.exchange(|e| e.event())?;
+        for warning in self.unit.warnings() {
+            self.log.say(OK, &warning);
+        }
+        Ok(Happened { terminate: found.terminated.is_some(), states: found.states_changed, next: found.next })
+    }
+
+    /// Numbers of the states.
+    fn states(
+        &mut self,
+        into: &mut [f64],
+        of: impl FnOnce(&mut bramah::Exchange<'_>) -> Result<Vec<f64>, bramah::Error>,
+    ) -> Result<(), String> {
+        self.counted(into.len(), self.unit.states())?;
+        into.copy_from_slice(&self.unit.exchange(of)?);
+        Ok(())
+    }
+
+    fn counted(&self, given: usize, needed: usize) -> Result<(), String> {
+        if given == needed { Ok(()) } else { Err(format!("there are {needed} numbers, not {given}")) }
     }
 
     fn get<T>(&mut self, references: &[u32], values: &mut [T], of: impl Fn(f64) -> T) -> Result<(), String> {
@@ -79,6 +108,34 @@ impl Component {
     fn set<T: Copy>(&mut self, references: &[u32], values: &[T], of: impl Fn(T) -> f64) -> Result<(), String> {
         references.iter().zip(values).try_for_each(|(reference, value)| self.unit.set(*reference, of(*value)))
     }
+}
+
+/// What came of an event.
+struct Happened {
+    terminate: bool,
+    states: bool,
+    next: Option<f64>,
+}
+
+impl Happened {
+    /// In the order of both standards: once more, terminate, other nominal values, other states, a next event. One pass of
+    /// a unit is its whole iteration, and nominal values stay.
+    fn flags(&self) -> [bool; 5] {
+        [false, self.terminate, false, self.states, self.next.is_some()]
+    }
+}
+
+/// Puts a value into a place of the simulator.
+///
+/// # Safety
+/// Null, or a place for such a value.
+unsafe fn put<T>(place: *mut T, value: T) -> Result<(), String> {
+    // SAFETY: as the caller promises.
+    match unsafe { place.as_mut() } {
+        Some(place) => *place = value,
+        None => return Err("there is no place for the answer".to_owned()),
+    }
+    Ok(())
 }
 
 /// Acts on an instance; what goes wrong is logged.
@@ -96,6 +153,11 @@ unsafe fn with(instance: *mut c_void, act: impl FnOnce(&mut Component) -> Result
             ERROR
         }
     }
+}
+
+/// Where there is no solution a shorter step of the simulator's integrator may help: it is asked to discard this one.
+fn discarded(status: c_int) -> c_int {
+    if status == ERROR { DISCARD } else { status }
 }
 
 /// # Safety
@@ -158,7 +220,7 @@ unsafe fn get_state(instance: *mut c_void, place: *mut *mut c_void) -> c_int {
     // SAFETY: as the caller promises.
     unsafe {
         with(instance, |c| {
-            let snapshot = c.unit.snapshot();
+            let snapshot = c.unit.snapshot()?;
             let Some(place) = place.as_mut() else { return Err("there is no place for the state".to_owned()) };
             match place.cast::<Snapshot>().as_mut() {
                 Some(old) => *old = snapshot,
@@ -288,6 +350,33 @@ macro_rules! shared {
 shared! {
     fmi2ExitInitializationMode, fmi3ExitInitializationMode: (c: *mut c_void) with(c, |c| c.unit.start());
     fmi2Terminate, fmi3Terminate: (c: *mut c_void) with(c, |_| Ok(()));
+    fmi2EnterEventMode, fmi3EnterEventMode: (c: *mut c_void) with(c, |_| Ok(()));
+    fmi2EnterContinuousTimeMode, fmi3EnterContinuousTimeMode: (c: *mut c_void) with(c, |_| Ok(()));
+    fmi2SetTime, fmi3SetTime: (c: *mut c_void, time: f64) with(c, |c| {
+        c.unit.exchange(|e| {
+            e.set_time(time);
+            Ok(())
+        })
+    });
+    fmi2SetContinuousStates, fmi3SetContinuousStates: (c: *mut c_void, x: *const f64, n: usize) with(c, |c| {
+        let x = slice(x, n);
+        c.counted(x.len(), c.unit.states())?;
+        c.unit.exchange(|e| {
+            e.set_states(x);
+            Ok(())
+        })
+    });
+    fmi2GetContinuousStates, fmi3GetContinuousStates:
+        (c: *mut c_void, x: *mut f64, n: usize) with(c, |c| c.states(slice_mut(x, n), |e| Ok(e.states())));
+    fmi2GetNominalsOfContinuousStates, fmi3GetNominalsOfContinuousStates:
+        (c: *mut c_void, x: *mut f64, n: usize) with(c, |c| c.states(slice_mut(x, n), |e| Ok(e.nominals())));
+    fmi2GetDerivatives, fmi3GetContinuousStateDerivatives: (c: *mut c_void, x: *mut f64, n: usize)
+        discarded(with(c, |c| c.states(slice_mut(x, n), |e| e.derivatives())));
+    fmi2GetEventIndicators, fmi3GetEventIndicators: (c: *mut c_void, z: *mut f64, n: usize) discarded(with(c, |c| {
+        let z = slice_mut(z, n);
+        c.counted(z.len(), c.unit.indicators())?;
+        c.unit.exchange(|e| e.indicators().map(|found| z.copy_from_slice(found)))
+    }));
     fmi2Reset, fmi3Reset: (c: *mut c_void) with(c, reset);
     fmi2GetFMUstate, fmi3GetFMUState: (c: *mut c_void, state: *mut *mut c_void) get_state(c, state);
     fmi2SetFMUstate, fmi3SetFMUState: (c: *mut c_void, state: *mut c_void) set_state(c, state);
@@ -398,11 +487,8 @@ pub unsafe extern "C" fn fmi2Instantiate(
         environment: functions.map_or(std::ptr::null_mut(), |f| f.environment),
         name: CString::new(name).unwrap_or_default(),
     };
-    if kind != 1 {
-        log.say(ERROR, "this unit is for Co-Simulation only");
-        return std::ptr::null_mut();
-    }
-    Component::begin(log, path(&resources), &guid)
+    let kind = if kind == 1 { Mode::CoSimulation } else { Mode::ModelExchange };
+    Component::begin(log, path(&resources), &guid, kind)
 }
 
 /// # Safety
@@ -458,7 +544,7 @@ pub unsafe extern "C" fn fmi2DoStep(c: *mut c_void, time: f64, step: f64, _no_re
     // SAFETY: the simulator follows the standard.
     let status = unsafe {
         with(c, |c| {
-            c.step(time + step)?;
+            c.step(time, step)?;
             terminated = c.terminated;
             Ok(())
         })
@@ -498,6 +584,52 @@ pub unsafe extern "C" fn fmi2GetBooleanStatus(c: *mut c_void, kind: c_int, value
     }
 }
 
+/// `fmi2EventInfo`
+#[repr(C)]
+pub struct EventInfo2 {
+    again: c_int,
+    terminate: c_int,
+    nominals: c_int,
+    states: c_int,
+    next_defined: c_int,
+    next: f64,
+}
+
+/// # Safety
+/// Called as the standard says.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2NewDiscreteStates(c: *mut c_void, info: *mut EventInfo2) -> c_int {
+    // SAFETY: the simulator follows the standard.
+    unsafe {
+        with(c, |c| {
+            let found = c.happen()?;
+            let [again, terminate, nominals, states, next_defined] = found.flags().map(c_int::from);
+            let next = found.next.unwrap_or_default();
+            put(info, EventInfo2 { again, terminate, nominals, states, next_defined, next })
+        })
+    }
+}
+
+/// # Safety
+/// Called as the standard says.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2CompletedIntegratorStep(
+    c: *mut c_void,
+    _no_return: c_int,
+    event: *mut c_int,
+    terminate: *mut c_int,
+) -> c_int {
+    // SAFETY: the simulator follows the standard.
+    unsafe {
+        for place in [event, terminate] {
+            if let Some(place) = place.as_mut() {
+                *place = 0;
+            }
+        }
+        with(c, |_| Ok(()))
+    }
+}
+
 // --- FMI 3 ---------------------------------------------------------------------------------------------------------
 
 #[unsafe(no_mangle)]
@@ -524,12 +656,90 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
 ) -> *mut c_void {
     // SAFETY: the simulator follows the standard.
     let (token, resources) = unsafe { (text(token), text(resources)) };
-    Component::begin(Log::Three { logger, environment }, path(&resources), &token)
+    Component::begin(Log::Three { logger, environment }, path(&resources), &token, Mode::CoSimulation)
 }
 
+/// # Safety
+/// Called as the standard says.
 #[unsafe(no_mangle)]
-pub extern "C" fn fmi3InstantiateModelExchange() -> *mut c_void {
-    std::ptr::null_mut()
+pub unsafe extern "C" fn fmi3InstantiateModelExchange(
+    _name: *const c_char,
+    token: *const c_char,
+    resources: *const c_char,
+    _visible: bool,
+    _logging: bool,
+    environment: *mut c_void,
+    logger: Option<Logger3>,
+) -> *mut c_void {
+    // SAFETY: the simulator follows the standard.
+    let (token, resources) = unsafe { (text(token), text(resources)) };
+    Component::begin(Log::Three { logger, environment }, path(&resources), &token, Mode::ModelExchange)
+}
+
+/// # Safety
+/// Called as the standard says.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3UpdateDiscreteStates(
+    c: *mut c_void,
+    again: *mut bool,
+    terminate: *mut bool,
+    nominals: *mut bool,
+    states: *mut bool,
+    next_defined: *mut bool,
+    next: *mut f64,
+) -> c_int {
+    // SAFETY: the simulator follows the standard.
+    unsafe {
+        with(c, |c| {
+            let found = c.happen()?;
+            let flags = [again, terminate, nominals, states, next_defined];
+            for (place, value) in flags.into_iter().zip(found.flags()) {
+                if let Some(place) = place.as_mut() {
+                    *place = value;
+                }
+            }
+            if let (Some(place), Some(time)) = (next.as_mut(), found.next) {
+                *place = time;
+            }
+            Ok(())
+        })
+    }
+}
+
+/// # Safety
+/// Called as the standard says.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3CompletedIntegratorStep(
+    c: *mut c_void,
+    _no_return: bool,
+    event: *mut bool,
+    terminate: *mut bool,
+) -> c_int {
+    // SAFETY: the simulator follows the standard.
+    unsafe {
+        for place in [event, terminate] {
+            if let Some(place) = place.as_mut() {
+                *place = false;
+            }
+        }
+        with(c, |_| Ok(()))
+    }
+}
+
+/// # Safety
+/// Called as the standard says.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3GetNumberOfEventIndicators(c: *mut c_void, count: *mut usize) -> c_int {
+    // SAFETY: the simulator follows the standard.
+    unsafe { with(c, |c| put(count, c.unit.indicators())) }
+}
+
+/// # Safety
+/// Called as the standard says.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3GetNumberOfContinuousStates(c: *mut c_void, count: *mut usize) -> c_int {
+    // SAFETY: the simulator follows the standard.
+    unsafe { with(c, |c| put(count, c.unit.states())) }
 }
 
 #[unsafe(no_mangle)]
@@ -589,7 +799,7 @@ pub unsafe extern "C" fn fmi3DoStep(
     // SAFETY: the simulator follows the standard.
     unsafe {
         with(c, |c| {
-            let stepped = c.step(time + step);
+            let stepped = c.step(time, step);
             for (place, value) in [(event, false), (terminate, c.terminated), (early, false)] {
                 if let Some(place) = place.as_mut() {
                     *place = value;
@@ -622,8 +832,5 @@ refused! {
     fmi3GetVariableDependencies fmi3GetDirectionalDerivative fmi3GetAdjointDerivative fmi3EnterConfigurationMode
     fmi3ExitConfigurationMode fmi3GetIntervalDecimal fmi3GetIntervalFraction fmi3GetShiftDecimal fmi3GetShiftFraction
     fmi3SetIntervalDecimal fmi3SetIntervalFraction fmi3SetShiftDecimal fmi3SetShiftFraction fmi3EvaluateDiscreteStates
-    fmi3UpdateDiscreteStates fmi3EnterContinuousTimeMode fmi3CompletedIntegratorStep fmi3SetTime
-    fmi3SetContinuousStates fmi3GetContinuousStateDerivatives fmi3GetEventIndicators fmi3GetContinuousStates
-    fmi3GetNominalsOfContinuousStates fmi3GetNumberOfEventIndicators fmi3GetNumberOfContinuousStates fmi3EnterEventMode
     fmi3EnterStepMode fmi3GetOutputDerivatives fmi3ActivateModelPartition
 }

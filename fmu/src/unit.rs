@@ -2,16 +2,68 @@
 
 #![allow(clippy::disallowed_methods, reason = "reads its resources")]
 
-use bramah::internals::fmi::{Causality, Interface, Packed, packed};
+use bramah::internals::fmi::{Causality, Interface, Packed, Role, packed};
 use bramah::results::Kind;
-use bramah::{InputPort, Interpolation, OwnedStepping, Probe, Simulation, State};
+use bramah::{Error, Exchange, InputPort, Interpolation, OwnedExchange, OwnedStepping, Probe, Simulation, State};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
+/// A way to run a unit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    /// From step to step.
+    CoSimulation,
+    /// By the simulator's integrator.
+    ModelExchange,
+}
+
+/// A model under way.
+enum Engine {
+    Stepping(OwnedStepping),
+    Exchange(OwnedExchange),
+}
+
+impl Engine {
+    fn time(&mut self) -> f64 {
+        match self {
+            Engine::Stepping(run) => run.with(|r| r.time()),
+            Engine::Exchange(run) => run.with(|r| r.time()),
+        }
+    }
+
+    fn probe(&mut self, name: &str) -> Result<Probe, Error> {
+        match self {
+            Engine::Stepping(run) => run.with(|r| r.probe(name)),
+            Engine::Exchange(run) => run.with(|r| r.probe(name)),
+        }
+    }
+
+    fn get(&mut self, probe: Probe) -> Result<f64, Error> {
+        match self {
+            Engine::Stepping(run) => Ok(run.with(|r| r.get(probe))),
+            Engine::Exchange(run) => run.with(|r| r.get(probe)),
+        }
+    }
+
+    fn input(&mut self, name: &str) -> Result<InputPort, Error> {
+        match self {
+            Engine::Stepping(run) => run.with(|r| r.input(name)),
+            Engine::Exchange(run) => run.with(|r| r.input(name)),
+        }
+    }
+
+    fn set(&mut self, input: InputPort, value: f64) {
+        match self {
+            Engine::Stepping(run) => run.with(|r| r.set(input, value)),
+            Engine::Exchange(run) => run.with(|r| r.set(input, value)),
+        }
+    }
+}
+
 /// A run under way, with what was looked up in it, by port.
 struct Run {
-    stepping: OwnedStepping,
+    engine: Engine,
     probes: Vec<Option<Probe>>,
     inputs: Vec<Option<InputPort>>,
 }
@@ -38,6 +90,7 @@ static COMPILED: Mutex<BTreeMap<String, (Simulation, Interface)>> = Mutex::new(B
 
 /// An instance.
 pub struct Unit {
+    kind: Mode,
     /// As it was compiled.
     fresh: Simulation,
     simulation: Simulation,
@@ -54,7 +107,7 @@ impl Unit {
     ///
     /// # Errors
     /// What a user reads.
-    pub fn new(resources: &Path, token: &str) -> Result<Self, String> {
+    pub fn new(resources: &Path, token: &str, kind: Mode) -> Result<Self, String> {
         let mut compiled = COMPILED.lock().unwrap_or_else(PoisonError::into_inner);
         let (simulation, interface) = match compiled.get(token) {
             Some(known) => known.clone(),
@@ -64,7 +117,11 @@ impl Unit {
                 made
             }
         };
-        Ok(Unit { fresh: simulation.clone(), simulation, interface, given: BTreeMap::new(), run: None, ready: false })
+        if let (Mode::ModelExchange, Some(why)) = (kind, interface.alone) {
+            return Err(format!("there is no Model Exchange: {why}"));
+        }
+        let (fresh, given) = (simulation.clone(), BTreeMap::new());
+        Ok(Unit { kind, fresh, simulation, interface, given, run: None, ready: false })
     }
 
     fn compile(resources: &Path, token: &str) -> Result<(Simulation, Interface), String> {
@@ -93,7 +150,7 @@ impl Unit {
     /// Where the run stands, in seconds.
     pub fn time(&mut self) -> f64 {
         match &mut self.run {
-            Some(run) => run.stepping.with(|r| r.time()),
+            Some(run) => run.engine.time(),
             None => self.simulation.settings().start_time,
         }
     }
@@ -113,13 +170,21 @@ impl Unit {
             Causality::Input if self.given.contains_key(&port) => return Ok(self.given[&port]),
             _ => {}
         }
+        let rate = match self.interface.ports[port].role {
+            Role::Plain => None,
+            Role::Rate(state) => {
+                let state = &self.interface.ports[state].signal.name;
+                Some(self.simulation.rate_probe(state).map_err(|e| e.full())?)
+            }
+            Role::Indicator(k) => return self.exchange(|e| e.indicators().map(|all| all[k])),
+        };
         let run = self.begun()?;
-        let probe = match run.probes[port] {
-            Some(probe) => probe,
-            None => run.stepping.with(|r| r.probe(&name)).map_err(|e| e.full())?,
+        let probe = match (run.probes[port], rate) {
+            (Some(probe), _) | (None, Some(probe)) => probe,
+            (None, None) => run.engine.probe(&name).map_err(|e| e.full())?,
         };
         run.probes[port] = Some(probe);
-        Ok(run.stepping.with(|r| r.get(probe)))
+        run.engine.get(probe).map_err(|e| e.full())
     }
 
     /// Sets a parameter before the start, or an input.
@@ -144,10 +209,10 @@ impl Unit {
                 let run = self.begun()?;
                 let input = match run.inputs[port] {
                     Some(input) => input,
-                    None => run.stepping.with(|r| r.input(&name)).map_err(|e| e.full())?,
+                    None => run.engine.input(&name).map_err(|e| e.full())?,
                 };
                 run.inputs[port] = Some(input);
-                run.stepping.with(|r| r.set(input, value));
+                run.engine.set(input, value);
             }
             Causality::Input => self.run = None,
             Causality::Parameter => return Err(format!("the parameter `{name}` keeps its value after the start")),
@@ -172,15 +237,40 @@ impl Unit {
     /// # Errors
     /// Why the run cannot go on.
     pub fn step_to(&mut self, time: f64) -> Result<Went, String> {
-        let run = self.begun()?;
-        run.stepping.with(|r| r.step_to(time)).map_err(|e| e.full())?;
-        Ok(if run.stepping.with(|r| r.terminated().is_some()) { Went::Terminated } else { Went::On })
+        let Engine::Stepping(run) = &mut self.begun()?.engine else { return Err("there are no steps".to_owned()) };
+        run.with(|r| r.step_to(time)).map_err(|e| e.full())?;
+        Ok(if run.with(|r| r.terminated().is_some()) { Went::Terminated } else { Went::On })
+    }
+
+    /// Acts on the model of Model Exchange.
+    ///
+    /// # Errors
+    /// This is not Model Exchange; what the act says.
+    pub fn exchange<T>(&mut self, act: impl FnOnce(&mut Exchange<'_>) -> Result<T, Error>) -> Result<T, String> {
+        match &mut self.begun()?.engine {
+            Engine::Exchange(run) => run.with(act).map_err(|e| e.full()),
+            Engine::Stepping(_) => Err("this is a function of Model Exchange".to_owned()),
+        }
+    }
+
+    /// How many functions watch for events.
+    pub fn indicators(&self) -> usize {
+        self.interface.indicators().len()
+    }
+
+    /// How many continuous states there are.
+    pub fn states(&self) -> usize {
+        self.interface.rates().len()
     }
 
     /// Warnings since the last call.
     pub fn warnings(&mut self) -> Vec<String> {
         let Some(run) = &mut self.run else { return Vec::new() };
-        run.stepping.with(|r| r.warnings()).into_iter().map(|d| d.message).collect()
+        let warnings = match &mut run.engine {
+            Engine::Stepping(run) => run.with(|r| r.warnings()),
+            Engine::Exchange(run) => run.with(|r| r.warnings()),
+        };
+        warnings.into_iter().map(|d| d.message).collect()
     }
 
     /// Back to where it was after instantiation.
@@ -191,9 +281,16 @@ impl Unit {
     }
 
     /// A state to come back to.
-    pub fn snapshot(&mut self) -> Snapshot {
-        let state = self.run.as_mut().map(|run| run.stepping.with(|r| r.state()));
-        Snapshot { given: self.given.clone(), state, ready: self.ready }
+    ///
+    /// # Errors
+    /// Those of Model Exchange are not kept.
+    pub fn snapshot(&mut self) -> Result<Snapshot, String> {
+        let state = match self.run.as_mut().map(|run| &mut run.engine) {
+            None => None,
+            Some(Engine::Stepping(run)) => Some(run.with(|r| r.state())),
+            Some(Engine::Exchange(_)) => return Err("states of Model Exchange cannot be kept".to_owned()),
+        };
+        Ok(Snapshot { given: self.given.clone(), state, ready: self.ready })
     }
 
     /// Goes back to a state.
@@ -266,8 +363,13 @@ impl Unit {
 
     fn begin(&mut self, from: Option<&State>) -> Result<Run, String> {
         let ports = self.interface.ports.len();
-        let stepping = OwnedStepping::new(self.prepared()?, from).map_err(|e| e.full())?;
-        Ok(Run { stepping, probes: vec![None; ports], inputs: vec![None; ports] })
+        let simulation = self.prepared()?;
+        let engine = match self.kind {
+            Mode::CoSimulation => OwnedStepping::new(simulation, from).map(Engine::Stepping),
+            Mode::ModelExchange => OwnedExchange::new(simulation).map(Engine::Exchange),
+        };
+        let engine = engine.map_err(|e| e.full())?;
+        Ok(Run { engine, probes: vec![None; ports], inputs: vec![None; ports] })
     }
 
     /// The simulation with the inputs that were set, for the initial values.

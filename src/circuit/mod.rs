@@ -4,12 +4,14 @@
 //! the same instance. [`Simulation`] is a compiled model with the settings of a run; clones share the compiled code.
 
 mod callback;
+mod exchange;
 mod owned;
 mod parameters;
 mod simulation;
 mod stepping;
 
-pub use owned::OwnedStepping;
+pub use exchange::Exchange;
+pub use owned::{OwnedExchange, OwnedStepping};
 pub use parameters::Parameter;
 pub use simulation::{Outcome, Simulation};
 pub use stepping::{InputPort, Probe, Stepping};

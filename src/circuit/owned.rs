@@ -1,6 +1,6 @@
 //! A run under way together with the simulation that it reads: for callers that keep it, as those of other languages do.
 
-use super::{Simulation, Stepping};
+use super::{Exchange, Simulation, Stepping};
 use crate::diag::Error;
 use crate::solve::State;
 
@@ -29,5 +29,33 @@ impl OwnedStepping {
     /// Acts on the run.
     pub fn with<T>(&mut self, act: impl FnOnce(&mut Stepping<'_>) -> T) -> T {
         self.cell.with_dependent_mut(|_, run| act(run))
+    }
+}
+
+self_cell::self_cell!(
+    struct ExchangeCell {
+        owner: Simulation,
+        #[not_covariant]
+        dependent: Exchange,
+    }
+);
+
+/// [`Exchange`] without a lifetime: it owns its simulation.
+pub struct OwnedExchange {
+    cell: ExchangeCell,
+}
+
+impl OwnedExchange {
+    /// At the initial values.
+    ///
+    /// # Errors
+    /// As [`Simulation::exchange`].
+    pub fn new(simulation: Simulation) -> Result<Self, Error> {
+        Ok(OwnedExchange { cell: ExchangeCell::try_new(simulation, |simulation| Exchange::new(simulation))? })
+    }
+
+    /// Acts on the model.
+    pub fn with<T>(&mut self, act: impl FnOnce(&mut Exchange<'_>) -> T) -> T {
+        self.cell.with_dependent_mut(|_, exchange| act(exchange))
     }
 }

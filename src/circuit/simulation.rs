@@ -1,6 +1,7 @@
 //! A compiled model with the settings of a run.
 
 use super::callback::{Conduct, Rows};
+use super::exchange::Exchange;
 use super::stepping::Stepping;
 use crate::compile::{Model, Request, compile, deep};
 use crate::diag::{Code, Diagnostic, Error, Sources};
@@ -315,6 +316,30 @@ impl Simulation {
     /// When the state does not fit the model.
     pub fn stepping_from(&self, state: &State) -> Result<Stepping<'_>, Error> {
         Stepping::new(self, Some(state))
+    }
+
+    /// The model for a caller that integrates it, from the initial values.
+    ///
+    /// # Errors
+    /// `E017` where the model needs its own integrator; when there are no consistent initial values.
+    pub fn exchange(&self) -> Result<Exchange<'_>, Error> {
+        Exchange::new(self)
+    }
+
+    /// Why the model cannot be integrated by others; `None` where it can.
+    pub fn keeps_its_integrator(&self) -> Option<&'static str> {
+        solve::driver::exchange::refuses(&self.model.system)
+    }
+
+    /// The continuous states, in the order of [`Exchange::states`].
+    pub fn states(&self) -> Vec<Signal> {
+        let columns = self.model.system.columns.iter().filter(|c| c.state);
+        solve::signals(&self.model.dae, &columns.map(|c| c.variable).collect::<Vec<_>>())
+    }
+
+    /// How many functions watch for events, see [`Exchange::indicators`].
+    pub fn indicators(&self) -> usize {
+        solve::driver::exchange::indicators(&self.model.system)
     }
 
     /// Every input has a value: one given, its own, or that of the state from which the run goes on.

@@ -7,11 +7,11 @@ use crate::solve::{End, State, Statistics};
 
 /// An input of a run, looked up once. Of use only with the [`Simulation`] that made it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct InputPort(usize);
+pub struct InputPort(pub(super) usize);
 
 /// A variable of a run, looked up once. Of use only with the [`Simulation`] that made it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Probe(usize);
+pub struct Probe(pub(super) usize);
 
 /// A run under way, from [`Simulation::stepping`].
 ///
@@ -60,6 +60,33 @@ pub struct Stepping<'a> {
     terminated: Option<String>,
 }
 
+impl Simulation {
+    /// A top-level input of a run.
+    pub(super) fn input_port(&self, name: &str) -> Result<InputPort, Error> {
+        let model = self.model();
+        let v = self.variable(name)?;
+        if model.dae.inputs.contains(&v) {
+            return Ok(InputPort(model.system.layout.var(v)));
+        }
+        Err(self.not_an_input(name))
+    }
+
+    /// A variable of a run.
+    pub(super) fn probe_of(&self, name: &str) -> Result<Probe, Error> {
+        Ok(Probe(self.model().system.layout.var(self.variable(name)?)))
+    }
+
+    /// The rate of a state of a run.
+    ///
+    /// # Errors
+    /// `E023` when the model has no such variable, or its rate appears nowhere.
+    pub fn rate_probe(&self, name: &str) -> Result<Probe, Error> {
+        let v = self.variable(name)?;
+        let found = self.model().system.layout.der(v).map(Probe);
+        found.ok_or_else(|| self.errors(vec![Diagnostic::new(Code::BadSet, format!("`{name}` has no rate"))]))
+    }
+}
+
 impl<'a> Stepping<'a> {
     pub(super) fn new(simulation: &'a Simulation, from: Option<&State>) -> Result<Self, Error> {
         let (system, settings) = (&simulation.model().system, simulation.asked());
@@ -83,12 +110,7 @@ impl<'a> Stepping<'a> {
     /// # Errors
     /// `E903` when the model has no such input.
     pub fn input(&self, name: &str) -> Result<InputPort, Error> {
-        let model = self.simulation.model();
-        let v = self.simulation.variable(name)?;
-        if model.dae.inputs.contains(&v) {
-            return Ok(InputPort(model.system.layout.var(v)));
-        }
-        Err(self.simulation.not_an_input(name))
+        self.simulation.input_port(name)
     }
 
     /// Looks up a variable to read.
@@ -96,8 +118,7 @@ impl<'a> Stepping<'a> {
     /// # Errors
     /// `E023` when the model has no such variable.
     pub fn probe(&self, name: &str) -> Result<Probe, Error> {
-        let v = self.simulation.variable(name)?;
-        Ok(Probe(self.simulation.model().system.layout.var(v)))
+        self.simulation.probe_of(name)
     }
 
     /// Sets an input, in its unit, from here on.

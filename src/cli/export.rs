@@ -90,10 +90,15 @@ pub(super) fn run(args: &ExportArgs, messages: &mut Messages) -> Result<Ending, 
     file.write_all(&bytes).map_err(|e| files::access(&path, "written", &e))?;
     file.finish()?;
     let count = |c: Causality| interface.ports.iter().filter(|p| p.causality == c).count();
+    let kinds = match interface.alone {
+        None => "Co-Simulation and Model Exchange".to_owned(),
+        Some(why) => format!("Co-Simulation (no Model Exchange: {why})"),
+    };
     messages.remark(&format!(
-        "wrote {}: FMI {}, Co-Simulation, {} parameters, {} inputs, {} outputs, {} MB",
+        "wrote {}: FMI {}, {}, {} parameters, {} inputs, {} outputs, {} MB",
         path.display(),
         if args.fmi == Fmi::Two { "2.0" } else { "3.0" },
+        kinds,
         count(Causality::Parameter),
         count(Causality::Input),
         count(Causality::Output),

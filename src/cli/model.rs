@@ -59,7 +59,7 @@ pub(super) fn request(experiment: &Experiment) -> Result<Request, Failure> {
         overrides: overrides(experiment),
         libraries: library_folders(experiment)?,
         beside: Vec::new(),
-        varied: false,
+        ..Request::default()
     })
 }
 

@@ -33,6 +33,8 @@ pub struct Request {
     pub libraries: Vec<PathBuf>,
     /// Further files and packages whose classes `source` may name.
     pub beside: Vec<PathBuf>,
+    /// Where relative names of data files begin, if not at the folder of `source`.
+    pub data_folder: Option<PathBuf>,
     /// Parameters will take other values in the same model: one that is 0 takes no derivative out of the equations.
     pub varied: bool,
 }
@@ -173,7 +175,7 @@ fn with_class<T>(
     let trees = Trees::new();
     let shipped = Shipped;
     let mut library = Library::new(&trees, roots(world, &shipped, request));
-    library.set_data_folder(world, data_folder(world, &request.source));
+    library.set_data_folder(world, request.data_folder(world));
     let mut diagnostics = Vec::new();
     let value = find_model(world, &mut library, request)
         .map_err(|d| diagnostics.push(*d))
@@ -201,10 +203,13 @@ fn roots<'a>(world: &'a dyn World, shipped: &'a Shipped, request: &Request) -> V
     own.chain(Shipped::roots().map(|r| (shipped as &dyn World, r))).collect()
 }
 
-/// Where relative names of data files begin: the folder of the model's file.
-fn data_folder(world: &dyn World, source: &Path) -> PathBuf {
-    let folder = if world.list(source).is_some() { Some(source) } else { source.parent() };
-    folder.unwrap_or(Path::new("")).to_path_buf()
+impl Request {
+    /// Where relative names of data files begin: as said, or at the folder of the model's file.
+    pub fn data_folder(&self, world: &dyn World) -> PathBuf {
+        let source = self.source.as_path();
+        let own = || if world.list(source).is_some() { Some(source) } else { source.parent() };
+        self.data_folder.as_deref().or_else(own).unwrap_or(Path::new("")).to_path_buf()
+    }
 }
 
 fn with_network<T>(

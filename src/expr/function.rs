@@ -14,8 +14,13 @@ pub trait External: std::fmt::Debug + Send + Sync {
     /// The derivatives of all outputs by one argument, as a function of the same arguments; `None` where they are 0.
     fn partial(&self, input: usize) -> Option<Arc<dyn External>>;
 
-    /// What went wrong where it had no number, if anyone said so.
+    /// What went wrong in the last call, where it gave no number.
     fn trouble(&self) -> Option<String> {
+        None
+    }
+
+    /// What went wrong in any call so far of it, of its derivatives and of what belongs together with it.
+    fn failure(&self) -> Option<String> {
         None
     }
 }
@@ -31,10 +36,10 @@ impl PartialEq for Handle {
 }
 
 impl Function {
-    /// What went wrong in a function that is carried out in Rust, if it said so.
-    pub fn trouble(&self) -> Option<String> {
+    /// The function that is carried out in Rust, where this one only calls it.
+    pub fn external(&self) -> Option<&dyn External> {
         self.body.iter().find_map(|statement| match statement {
-            Stmt::Assign(_, Term::External(function, ..)) => function.0.trouble(),
+            Stmt::Assign(_, Term::External(function, ..)) => Some(&*function.0),
             _ => None,
         })
     }

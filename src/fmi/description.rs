@@ -1,6 +1,6 @@
 //! `modelDescription.xml`, by the schemas of FMI 2.0.5 and 3.0.2.
 
-use super::interface::{Causality, Interface, Port};
+use super::interface::{Causality, Interface, Port, Role};
 use crate::plot::svg::escape;
 use crate::results::{Kind, number};
 use crate::units::Unit;
@@ -33,8 +33,13 @@ pub fn write(interface: &Interface, version: Version, token: &str, description: 
         escape(&interface.class),
         line(description),
         env!("CARGO_PKG_VERSION"),
-        if three { "" } else { " numberOfEventIndicators=\"0\"" },
+        if three { String::new() } else { format!(" numberOfEventIndicators=\"{}\"", interface.indicators().len()) },
     );
+    if interface.alone.is_none() {
+        let needless =
+            if three { "needsCompletedIntegratorStep=\"false\"" } else { "completedIntegratorStepNotNeeded=\"true\"" };
+        let _ = writeln!(out, "  <ModelExchange modelIdentifier=\"{IDENTIFIER}\" {needless}/>");
+    }
     let state = if three { "canGetAndSetFMUState" } else { "canGetAndSetFMUstate" };
     let serialize = if three { "canSerializeFMUState" } else { "canSerializeFMUstate" };
     let _ = writeln!(
@@ -226,7 +231,7 @@ fn text(value: f64, whole: bool) -> String {
 fn variable_3(port: &Port, reference: usize) -> String {
     let head = head(port, reference);
     match port.signal.kind {
-        Kind::Real => format!("    <Float64 {head}{}/>\n", number_attributes(port)),
+        Kind::Real => format!("    <Float64 {head}{}{}/>\n", number_attributes(port), derivative(port, 1)),
         Kind::Integer => format!("    <Int32 {head}{}/>\n", number_attributes(port)),
         Kind::Enumeration(_) => format!("    <Enumeration {head}{}/>\n", number_attributes(port)),
         Kind::Boolean => format!("    <Boolean {head}{}/>\n", boolean_start(port)),
@@ -236,7 +241,8 @@ fn variable_3(port: &Port, reference: usize) -> String {
 fn variable_2(port: &Port, reference: usize) -> String {
     let head = head(port, reference);
     let inner = match port.signal.kind {
-        Kind::Real => format!("<Real{}/>", number_attributes(port)),
+        // the time comes first
+        Kind::Real => format!("<Real{}{}/>", number_attributes(port), derivative(port, 2)),
         Kind::Integer => format!("<Integer{}/>", number_attributes(port)),
         Kind::Enumeration(_) => format!("<Enumeration{}/>", number_attributes(port)),
         Kind::Boolean => format!("<Boolean{}/>", boolean_start(port)),
@@ -248,15 +254,33 @@ fn boolean_start(port: &Port) -> String {
     port.start.map_or_else(String::new, |s| format!(" start=\"{}\"", s != 0.0))
 }
 
-/// Outputs and what is computed at the start; what they depend on is left open, which means everything.
+/// Names the state of a derivative, where the first variable has this number.
+fn derivative(port: &Port, first: usize) -> String {
+    match port.role {
+        Role::Rate(state) => format!(" derivative=\"{}\"", state + first),
+        _ => String::new(),
+    }
+}
+
+/// Outputs, derivatives, and what is computed at the start; what they depend on is left open, which means everything.
 fn structure(out: &mut String, interface: &Interface, three: bool) {
     let indexed = || interface.ports.iter().zip(1_usize..);
     let outputs: Vec<usize> = indexed().filter(|(p, _)| p.causality == Causality::Output).map(|(_, i)| i).collect();
-    let unknown = |p: &Port| matches!(p.causality, Causality::Output | Causality::Calculated);
-    let unknowns: Vec<usize> = indexed().filter(|(p, _)| unknown(p)).map(|(_, i)| i).collect();
+    let rates: Vec<usize> = interface.rates().iter().map(|i| i + 1).collect();
+    let is_state = |i: usize| interface.ports.iter().any(|p| p.role == Role::Rate(i - 1));
+    let unknown = |p: &Port, i: usize| {
+        matches!(p.causality, Causality::Output | Causality::Calculated) || rates.contains(&i) || is_state(i)
+    };
+    let unknowns: Vec<usize> = indexed().filter(|(p, i)| unknown(p, *i)).map(|(_, i)| i).collect();
     if three {
         outputs.iter().for_each(|i| out.push_str(&format!("    <Output valueReference=\"{i}\"/>\n")));
-        unknowns.iter().for_each(|i| out.push_str(&format!("    <InitialUnknown valueReference=\"{i}\"/>\n")));
+        let mut list = |name: &str, items: &[usize]| {
+            items.iter().for_each(|i| out.push_str(&format!("    <{name} valueReference=\"{i}\"/>\n")));
+        };
+        let indicators: Vec<usize> = interface.indicators().iter().map(|i| i + 1).collect();
+        list("ContinuousStateDerivative", &rates);
+        list("InitialUnknown", &unknowns);
+        list("EventIndicator", &indicators);
         return;
     }
     // indices of FMI 2 count from 1, and the time comes first
@@ -268,5 +292,6 @@ fn structure(out: &mut String, interface: &Interface, three: bool) {
         }
     };
     out.push_str(&list("Outputs", &outputs));
+    out.push_str(&list("Derivatives", &rates));
     out.push_str(&list("InitialUnknowns", &unknowns));
 }

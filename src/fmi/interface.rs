@@ -2,7 +2,7 @@
 
 use crate::Simulation;
 use crate::circuit::Parameter;
-use crate::results::{Globs, Signal};
+use crate::results::{Globs, Kind, Signal};
 use rustc_hash::FxHashSet;
 
 /// What a variable is for.
@@ -33,6 +33,19 @@ pub struct Port {
     pub min: Option<f64>,
     /// Greatest value.
     pub max: Option<f64>,
+    /// What it is of Model Exchange.
+    pub role: Role,
+}
+
+/// What a variable is of Model Exchange.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// Nothing in particular, or a state.
+    Plain,
+    /// The derivative of the state at this place in the list.
+    Rate(usize),
+    /// A function whose change of sign is an event, by its number.
+    Indicator(usize),
 }
 
 /// All of them.
@@ -44,6 +57,8 @@ pub struct Interface {
     pub ports: Vec<Port>,
     /// Start and stop time, interval (s), relative tolerance.
     pub experiment: [f64; 4],
+    /// Why there is no Model Exchange; `None` where there is.
+    pub alone: Option<&'static str>,
 }
 
 impl Interface {
@@ -73,13 +88,56 @@ impl Interface {
         );
         let settings = simulation.asked();
         let experiment = [settings.start_time, settings.stop_time, settings.interval, settings.tolerance];
-        Ok(Interface { class: simulation.model().flat.class.clone(), ports, experiment })
+        let alone = simulation.keeps_its_integrator();
+        if alone.is_none() {
+            exchanged(simulation, &mut ports);
+        }
+        Ok(Interface { class: simulation.model().flat.class.clone(), ports, experiment, alone })
+    }
+
+    /// Places of derivatives, in the order of the states.
+    pub fn rates(&self) -> Vec<usize> {
+        self.places(|role| matches!(role, Role::Rate(_)))
+    }
+
+    /// Places of the functions whose change of sign is an event.
+    pub fn indicators(&self) -> Vec<usize> {
+        self.places(|role| matches!(role, Role::Indicator(_)))
+    }
+
+    fn places(&self, is: impl Fn(Role) -> bool) -> Vec<usize> {
+        self.ports.iter().enumerate().filter(|(_, p)| is(p.role)).map(|(i, _)| i).collect()
     }
 }
 
 impl Port {
     fn new(signal: Signal, causality: Causality) -> Self {
-        Port { signal, causality, start: None, min: None, max: None }
+        Port { signal, causality, start: None, min: None, max: None, role: Role::Plain }
+    }
+}
+
+/// Adds what Model Exchange passes on: states that are hidden, derivatives, and functions that watch for events.
+fn exchanged(simulation: &Simulation, ports: &mut Vec<Port>) {
+    let states = simulation.states();
+    for state in &states {
+        if !ports.iter().any(|p| p.signal.name == state.name) {
+            ports.push(Port::new(state.clone(), Causality::Local));
+        }
+    }
+    for state in states {
+        let at = ports.iter().position(|p| p.signal.name == state.name).unwrap_or_default();
+        let unit = match state.unit.as_str() {
+            "" => String::new(),
+            "1" => "1/s".to_owned(),
+            unit => format!("{unit}/s"),
+        };
+        let unit = if unit.matches('/').count() > 1 { String::new() } else { unit };
+        let signal = Signal { name: format!("der({})", state.name), unit, kind: Kind::Real, ..Signal::default() };
+        ports.push(Port { role: Role::Rate(at), ..Port::new(signal, Causality::Local) });
+    }
+    for k in 0..simulation.indicators() {
+        let signal = Signal { name: format!("eventIndicators[{}]", k + 1), kind: Kind::Real, ..Signal::default() };
+        ports.push(Port { role: Role::Indicator(k), ..Port::new(signal, Causality::Local) });
     }
 }
 

@@ -126,6 +126,7 @@ pub(super) fn request<'a>(
         overrides: nominal.overrides.iter().map(inner).collect(),
         libraries: nominal.libraries.clone(),
         beside: nominal.beside.clone(),
+        data_folder: Some(nominal.data_folder(world)),
         varied: true,
     };
     if world.list(&nominal.source).is_some() || world.read(&nominal.source).is_ok() {

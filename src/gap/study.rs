@@ -27,6 +27,9 @@ pub const ASSUMED: f64 = 0.05;
 /// Noise of a sensor of which the study says no accuracy, as part of its range, before anything was measured.
 const ACCURACY: f64 = 3e-3;
 
+/// Between the samples of a recording a model is evaluated point by point, and nothing there rings its clocks.
+const SAMPLED: &str = "the diagnosis cannot follow a model that samples";
+
 /// A study with its model read.
 pub struct Question<'a> {
     /// What is diagnosed.
@@ -121,6 +124,12 @@ impl Nominal {
         let request = study.request();
         let outcome = crate::compile::sort(world, &request);
         let Some((flat, _, dae)) = outcome.value else { return Err(Unusable::model(outcome)) };
+        if let Some(sample) = dae.samples.first() {
+            let place = crate::solve::at_origin(&dae, Code::BadStudy, SAMPLED, sample.origin, "reads at its own times");
+            let help = "record what the controller commands and make that an input of the model; `bramah identify` follows samples";
+            let (diagnostics, sources) = (vec![place.help(help)], Some(outcome.sources));
+            return Err(Unusable { diagnostics, sources, model: true });
+        }
         let checked = study.bind(&flat);
         let Some(bound) = checked.value else { return Err(Unusable::study(checked.diagnostics)) };
         Ok(Nominal { flat, dae, bound, request })

@@ -2,6 +2,7 @@
 
 use super::System;
 use crate::expr::eval::Evaluation;
+use crate::expr::function::External;
 use crate::expr::print::number;
 use crate::expr::{ExprId, Exprs, Node, VarId};
 use rustc_hash::FxHashMap;
@@ -15,6 +16,8 @@ pub struct Trap {
     pub written: String,
     /// Its value: infinite or NaN.
     pub value: f64,
+    /// What a function carried out in Rust said about it.
+    pub trouble: Option<String>,
 }
 
 /// Texts are cut off after about this many bytes.
@@ -42,7 +45,11 @@ pub fn find(system: &System, e: ExprId, values: &[f64]) -> Option<Trap> {
     let names = |v: VarId| system.dae.variables[v.index()].name.clone();
     let written = pool.print_short(at, &names, LONGEST);
     let operation = with_numbers(pool, at, &mut |operand| evaluation.value(pool, operand, &mut leaf));
-    Some(Trap { operation, written, value })
+    let trouble = match pool.node(at) {
+        Node::Call(function, ..) => pool.functions[function.0 as usize].external().and_then(External::trouble),
+        _ => None,
+    };
+    Some(Trap { operation, written, value, trouble })
 }
 
 /// The arguments that are evaluated for this value.

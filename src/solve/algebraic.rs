@@ -70,8 +70,17 @@ pub struct Algebraic {
 impl Algebraic {
     /// For the unknowns of a system with these nominal values.
     pub fn new(system: &System, nominal: &[f64], tolerance: f64) -> Self {
+        let needed = system.columns.iter().any(|c| !c.state);
+        Self::where_needed(system, nominal, tolerance, needed)
+    }
+
+    /// The same, also where there are derivatives only.
+    pub fn with_rates(system: &System, nominal: &[f64], tolerance: f64) -> Self {
+        Self::where_needed(system, nominal, tolerance, !system.columns.is_empty())
+    }
+
+    fn where_needed(system: &System, nominal: &[f64], tolerance: f64, needed: bool) -> Self {
         let solved: Vec<bool> = system.columns.iter().map(|c| !c.state).collect();
-        let needed = solved.iter().any(|s| *s);
         Algebraic {
             absolute: nominal.iter().map(|n| n * tolerance).collect(),
             relative: tolerance,
@@ -99,6 +108,11 @@ impl Algebraic {
             return (y, yp);
         }
         if self.iterate(model, t, y, yp) { (&self.y, &self.yp) } else { (y, yp) }
+    }
+
+    /// The same; `None` when they cannot be solved.
+    pub fn solved(&mut self, model: &mut Model<'_>, t: f64, y: &[f64], yp: &[f64]) -> Option<(&[f64], &[f64])> {
+        self.iterate(model, t, y, yp).then_some((&self.y, &self.yp))
     }
 
     /// With the matrix at hand, or else with a new one from the values given.

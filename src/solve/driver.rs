@@ -1,6 +1,7 @@
 //! One run from its start to its end.
 
 mod event;
+pub mod exchange;
 mod failure;
 mod legs;
 mod outside;
@@ -66,10 +67,9 @@ impl Stop {
 
     /// With what functions outside the equations have said.
     fn with_troubles(mut self, system: &System) -> Self {
-        let mut troubles: Vec<String> =
-            system.dae.exprs.functions.iter().filter_map(crate::expr::function::Function::trouble).collect();
-        troubles.dedup();
+        let mut troubles = report::troubles(system);
         if let Some(first) = self.diagnostics.first_mut() {
+            troubles.retain(|trouble| !first.message.starts_with(trouble));
             first.notes.extend(troubles);
         }
         self

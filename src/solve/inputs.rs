@@ -104,6 +104,11 @@ impl Playback {
         self.delays.seek(t, values);
     }
 
+    /// An input that is set from outside from here on.
+    pub fn release(&mut self, slot: usize) {
+        self.tracks.retain(|track| track.slot != slot);
+    }
+
     /// Sets all values at `t`, between the samples where the playback stands.
     pub fn set(&self, t: f64, values: &mut [f64]) {
         for track in &self.tracks {

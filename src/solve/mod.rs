@@ -33,6 +33,7 @@ pub use inputs::{Input, Interpolation, missing_inputs};
 pub use output::{Sink, signals};
 pub use past::Past;
 pub use point::Point;
+pub use report::at_origin;
 pub use settings::{End, Settings, Statistics};
 pub use state::State;
 pub use tangents::Tangents;

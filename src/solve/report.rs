@@ -108,18 +108,31 @@ pub fn find_trap(system: &System, values: &[f64]) -> Option<(Trap, u32)> {
     None
 }
 
+/// What functions outside the equations say of calls that gave no number.
+pub fn troubles(system: &System) -> Vec<String> {
+    let mut troubles: Vec<String> = system.dae.exprs.functions.iter().filter_map(|f| f.external()?.failure()).collect();
+    troubles.dedup();
+    troubles
+}
+
 /// E504: a value is not finite.
 pub fn non_finite(system: &System, t: f64, trap: Option<(Trap, u32)>) -> Diagnostic {
     let Some((trap, equation)) = trap else {
         return Diagnostic::new(Code::NonFinite, format!("a value is not finite at time {} s", number(t)));
     };
-    let Trap { operation, written, value } = trap;
-    let text = format!("`{written}` is not finite at time {} s: {operation} = {value}", number(t));
+    let Trap { operation, written, value, trouble } = trap;
+    let text = match &trouble {
+        Some(trouble) => format!("{trouble} (at time {} s)", number(t)),
+        None => format!("`{written}` is not finite at time {} s: {operation} = {value}", number(t)),
+    };
     let origin = system.dae.equations.get(equation as usize).map(|e| e.origin);
     let diagnostic = match origin {
         Some(origin) => at_origin(&system.dae, Code::NonFinite, text, origin, "in this equation"),
         None => Diagnostic::new(Code::NonFinite, text),
     };
+    if trouble.is_some() {
+        return diagnostic.note(format!("so `{written}` has no value"));
+    }
     diagnostic
         .help("limit the argument (`max`, `noEvent(if ...)`), or check the start values and parameters it depends on")
 }

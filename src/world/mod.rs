@@ -5,10 +5,10 @@ mod disk;
 mod folder;
 
 pub use disk::DiskWorld;
-#[cfg(feature = "fmi")]
-pub use folder::Folder;
 #[cfg(feature = "cli")]
 pub(crate) use disk::reason;
+#[cfg(feature = "fmi")]
+pub use folder::Folder;
 
 use std::path::{Path, PathBuf};
 

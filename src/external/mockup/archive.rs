@@ -94,7 +94,9 @@ impl<'a> Archive<'a> {
                 return Err(format!("its file `{name}` leads out of the archive").into());
             };
             let mut bytes = Vec::new();
-            file.take(left + 1).read_to_end(&mut bytes).map_err(|why| format!("its file `{name}` is damaged: {why}"))?;
+            file.take(left + 1)
+                .read_to_end(&mut bytes)
+                .map_err(|why| format!("its file `{name}` is damaged: {why}"))?;
             left = left
                 .checked_sub(bytes.len() as u64)
                 .ok_or_else(|| format!("it unpacks to more than {} GB", MOST_BYTES >> 30))?;
@@ -140,12 +142,13 @@ fn no_library(version: Version, file: &str, names: &[String]) -> Trouble {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+#[allow(clippy::disallowed_methods, reason = "looks at what was unpacked")]
+mod tests {
     use super::*;
     use std::io::Write;
 
     /// An archive of these files.
-    pub fn packed(files: &[(&str, &[u8])]) -> Vec<u8> {
+    fn packed(files: &[(&str, &[u8])]) -> Vec<u8> {
         let mut zip = zip::ZipWriter::new(Cursor::new(Vec::new()));
         for (name, bytes) in files {
             zip.start_file(*name, zip::write::SimpleFileOptions::default()).unwrap();

@@ -320,7 +320,10 @@ fn variable(node: Node<'_, '_>, version: Version, types: &Types<'_, '_>) -> Resu
     let start = inner.attribute("start").unwrap_or_default();
     let start = match passed {
         Passed::String => Vec::new(),
-        _ => start.split_whitespace().map(|s| value(s).ok_or_else(|| wrong("start value", s))).collect::<Result<_, _>>()?,
+        _ => start
+            .split_whitespace()
+            .map(|s| value(s).ok_or_else(|| wrong("start value", s)))
+            .collect::<Result<_, _>>()?,
     };
     let text = child(inner, "Start").and_then(|s| s.attribute("value")).or_else(|| inner.attribute("start"));
     let dims = elements(inner).filter(|c| c.tag_name().name() == "Dimension");
@@ -362,7 +365,9 @@ fn resolve(variables: &mut [Variable], root: Node<'_, '_>, version: Version) -> 
     let count = variables.len();
     for v in variables.iter_mut() {
         v.state = match (v.state, version) {
-            (Some(index), Version::Two) => Some(index.checked_sub(1).filter(|i| *i < count).ok_or_else(|| no_state(&v.name))?),
+            (Some(index), Version::Two) => {
+                Some(index.checked_sub(1).filter(|i| *i < count).ok_or_else(|| no_state(&v.name))?)
+            }
             (Some(reference), Version::Three) => {
                 let found = u32::try_from(reference).ok().and_then(|r| at.get(&r).copied());
                 Some(found.ok_or_else(|| no_state(&v.name))?)
@@ -380,7 +385,7 @@ fn resolve(variables: &mut [Variable], root: Node<'_, '_>, version: Version) -> 
                 None => d.attribute("start")?.trim().parse().ok(),
                 Some(r) => {
                     let start = *variables[*at.get(&r.trim().parse().ok()?)?].start.first()?;
-                    (start >= 0.0 && start < 1e9).then_some(start as usize)
+                    (0.0..1e9).contains(&start).then_some(start as usize)
                 }
             })
             .collect();
@@ -409,7 +414,11 @@ fn no_state(name: &str) -> Trouble {
 }
 
 /// Pairs of state and derivative, and the number of event indicators.
-fn structure(root: Node<'_, '_>, version: Version, variables: &[Variable]) -> Result<(Vec<(usize, usize)>, usize), Trouble> {
+fn structure(
+    root: Node<'_, '_>,
+    version: Version,
+    variables: &[Variable],
+) -> Result<(Vec<(usize, usize)>, usize), Trouble> {
     let structure = child(root, "ModelStructure");
     let named = |node: Node<'_, '_>| -> Option<usize> {
         match version {
@@ -421,9 +430,7 @@ fn structure(root: Node<'_, '_>, version: Version, variables: &[Variable]) -> Re
         }
     };
     let derivatives: Vec<Node<'_, '_>> = match version {
-        Version::Two => {
-            structure.and_then(|s| child(s, "Derivatives")).into_iter().flat_map(elements).collect()
-        }
+        Version::Two => structure.and_then(|s| child(s, "Derivatives")).into_iter().flat_map(elements).collect(),
         Version::Three => structure
             .into_iter()
             .flat_map(elements)
@@ -478,7 +485,8 @@ fn scale(unit: &str, shown: Option<&str>, types: &Types<'_, '_>) -> Result<Scale
     let (Some(factor), Some(offset)) = (factor.filter(|f| *f != 0.0), offset) else {
         return Err(format!("the definition of the unit `{unit}` cannot be read").into());
     };
-    let coherent = |u: &Unit| u.factor() == 1.0 && u.to_si(0.0) == 0.0 && u.exponents().map(|e| e.to_vec()) == exponents;
+    let coherent =
+        |u: &Unit| u.factor() == 1.0 && u.to_si(0.0) == 0.0 && u.exponents().map(|e| e.to_vec()) == exponents;
     let si = match &exponents {
         _ if known.as_ref().is_some_and(coherent) => unit.to_owned(),
         Some(exponents) => product(exponents),
@@ -553,7 +561,12 @@ mod tests {
         assert!(wrong("<a>").contains("no valid XML"));
         assert!(wrong("<a/>").contains("describes no unit"));
         assert!(wrong(r#"<fmiModelDescription fmiVersion="1.0"/>"#).contains("FMI 1.0"));
-        assert!(wrong(&two("<ModelVariables><ScalarVariable name='a' valueReference='x'><Real/></ScalarVariable></ModelVariables>")).contains("value reference"));
+        assert!(
+            wrong(&two(
+                "<ModelVariables><ScalarVariable name='a' valueReference='x'><Real/></ScalarVariable></ModelVariables>"
+            ))
+            .contains("value reference")
+        );
         assert!(wrong(&two("").replace("\"m\"", "\"../m\"")).contains("names no library"));
         let bomb = r#"<!DOCTYPE a [<!ENTITY x "xxxx">]><fmiModelDescription fmiVersion="2.0"/>"#;
         assert!(wrong(bomb).contains("no valid XML"));

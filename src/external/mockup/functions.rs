@@ -1,4 +1,4 @@
-//! A unit as the functions that its Modelica text calls ([`super::text`]), each a pure function of its arguments.
+//! A unit as the functions that its Modelica text calls (`text`), each a pure function of its arguments.
 
 use super::Trouble;
 use super::pool::Pool;
@@ -28,8 +28,8 @@ pub enum Task {
     Event,
 }
 
-/// A result, or nothing where the unit has failed.
-type Found = Option<Arc<[f64]>>;
+/// A result, or why the unit has failed.
+type Found = Result<Arc<[f64]>, Trouble>;
 
 /// A function of a unit, or its derivative by one argument.
 pub struct Function {
@@ -38,6 +38,8 @@ pub struct Function {
     by: Option<usize>,
     /// The last results, by the bits of their arguments.
     known: Mutex<VecDeque<(Box<[u64]>, Found)>>,
+    /// What went wrong with the last call.
+    trouble: Mutex<Option<Trouble>>,
 }
 
 impl std::fmt::Debug for Function {
@@ -49,20 +51,29 @@ impl std::fmt::Debug for Function {
 impl Function {
     /// One of the functions.
     pub fn new(pool: Arc<Pool>, task: Task) -> Self {
-        Function { pool, task, by: None, known: Mutex::default() }
+        Function { pool, task, by: None, known: Mutex::default(), trouble: Mutex::default() }
     }
 
-    fn results(&self, args: &[f64]) -> Found {
+    fn results(&self, args: &[f64]) -> Option<Arc<[f64]>> {
+        // a trial step of a solver that leads to nothing is not the unit's fault
+        if args.iter().any(|x| !x.is_finite()) {
+            return None;
+        }
+        let found = self.found(args);
+        found.as_ref().err().inspect(|why| self.pool.note(why));
+        *self.trouble.lock().unwrap_or_else(PoisonError::into_inner) = found.as_ref().err().cloned();
+        found.ok()
+    }
+
+    fn found(&self, args: &[f64]) -> Found {
         let bits: Box<[u64]> = args.iter().map(|x| x.to_bits()).collect();
         let known = |all: &VecDeque<(Box<[u64]>, Found)>| all.iter().rev().find(|k| k.0 == bits).map(|k| k.1.clone());
         if let Some(found) = known(&self.known.lock().unwrap_or_else(PoisonError::into_inner)) {
             return found;
         }
         let found = match self.by {
-            // a trial step of a solver that leads to nothing is not the unit's fault
-            _ if args.iter().any(|x| !x.is_finite()) => None,
-            None => self.pool.noted(compute(&self.pool, self.task, args)).map(Arc::from),
-            Some(by) => self.pool.noted(derivative(&self.pool, self.task, by, args)).map(Arc::from),
+            None => compute(&self.pool, self.task, args).map(Arc::from),
+            Some(by) => derivative(&self.pool, self.task, by, args).map(Arc::from),
         };
         let mut all = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         if all.len() == MOST_KEPT {
@@ -82,13 +93,16 @@ impl External for Function {
         // the state is a name, and what happens at events has no slope
         let smooth = matches!(self.task, Task::Evaluate | Task::Start) && input > 0;
         (self.by.is_none() && smooth).then(|| {
-            let (pool, task) = (self.pool.clone(), self.task);
-            Arc::new(Function { pool, task, by: Some(input), known: Mutex::default() }) as Arc<dyn External>
+            Arc::new(Function { by: Some(input), ..Function::new(self.pool.clone(), self.task) }) as Arc<dyn External>
         })
     }
 
     fn trouble(&self) -> Option<String> {
-        self.pool.trouble()
+        self.trouble.lock().unwrap_or_else(PoisonError::into_inner).as_ref().map(|why| self.pool.words(why))
+    }
+
+    fn failure(&self) -> Option<String> {
+        self.pool.failure()
     }
 }
 

@@ -1,7 +1,7 @@
 //! Functional mock-up units (FMUs) of other tools as components of a circuit.
 //!
-//! A unit becomes a Modelica class ([`text`]), compiled like any other, whose equations call the functions of the unit
-//! ([`functions`]). `archive` unpacks its file, `description` reads what it says of itself, `native` calls its library,
+//! A unit becomes a Modelica class (`text`), compiled like any other, whose equations call the functions of the unit
+//! (`functions`). `archive` unpacks its file, `description` reads what it says of itself, `native` calls its library,
 //! `pool` keeps its instances. The crate `fmi` does much of this, but panics where a library lacks a function, unpacks
 //! archives without limit and sends a unit's words to a log; so this is written by hand.
 

@@ -226,10 +226,8 @@ fn resources(path: &Path, version: Version) -> CString {
     let text = match version {
         Version::Two => {
             let plain = |b: u8| b.is_ascii_alphanumeric() || b"/-_.~".contains(&b);
-            let path: String = path
-                .bytes()
-                .map(|b| if plain(b) { char::from(b).to_string() } else { format!("%{b:02X}") })
-                .collect();
+            let path: String =
+                path.bytes().map(|b| if plain(b) { char::from(b).to_string() } else { format!("%{b:02X}") }).collect();
             format!("file://{path}")
         }
         Version::Three => format!("{path}{}", std::path::MAIN_SEPARATOR),
@@ -440,7 +438,9 @@ impl Instance {
             }};
         }
         match (passed, &self.code.functions) {
-            (Passed::Float64, _) => call!(self, two set_real(r, 1, from.as_ptr()), three set_float64(r, 1, from.as_ptr(), n)),
+            (Passed::Float64, _) => {
+                call!(self, two set_real(r, 1, from.as_ptr()), three set_float64(r, 1, from.as_ptr(), n))
+            }
             (Passed::Boolean, Functions::Two(_)) => write!(|x| c_int::from(x != 0.0), set_boolean, set_boolean),
             (Passed::Boolean, Functions::Three(_)) => write!(|x| u8::from(x != 0.0), set_boolean, set_boolean),
             (Passed::Float32, _) => write!(|x| x as f32, set_real, set_float32),

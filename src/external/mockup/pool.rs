@@ -110,9 +110,9 @@ pub struct Pool {
     pub inputs: Vec<usize>,
     pub outputs: Vec<usize>,
     shelf: Mutex<Shelf>,
+    /// What went wrong last in any call.
+    failure: Mutex<Option<Trouble>>,
     returned: Condvar,
-    /// What went wrong last.
-    trouble: Mutex<Option<String>>,
 }
 
 impl Pool {
@@ -125,8 +125,8 @@ impl Pool {
             unit,
             texts,
             shelf: Mutex::default(),
+            failure: Mutex::default(),
             returned: Condvar::new(),
-            trouble: Mutex::default(),
         }
     }
 
@@ -135,21 +135,19 @@ impl Pool {
         &self.unit.description
     }
 
-    /// What went wrong last.
-    pub fn trouble(&self) -> Option<String> {
-        let trouble = self.trouble.lock().unwrap_or_else(PoisonError::into_inner).clone()?;
-        Some(format!("the unit `{}`: {trouble}", self.description().name))
+    /// Notes what went wrong.
+    pub fn note(&self, why: &Trouble) {
+        *self.failure.lock().unwrap_or_else(PoisonError::into_inner) = Some(why.clone());
     }
 
-    /// Notes what goes wrong.
-    pub fn noted<T>(&self, result: Result<T, Trouble>) -> Option<T> {
-        match result {
-            Ok(value) => Some(value),
-            Err(why) => {
-                *self.trouble.lock().unwrap_or_else(PoisonError::into_inner) = Some(why.to_string());
-                None
-            }
-        }
+    /// What went wrong last in any call.
+    pub fn failure(&self) -> Option<String> {
+        self.failure.lock().unwrap_or_else(PoisonError::into_inner).as_ref().map(|why| self.words(why))
+    }
+
+    /// As a sentence.
+    pub fn words(&self, why: &Trouble) -> String {
+        format!("the unit `{}`: {why}", self.description().name)
     }
 
     fn shelf(&self) -> MutexGuard<'_, Shelf> {

@@ -7,8 +7,8 @@ use std::fmt::Write;
 
 /// Names that `FMU` and the class itself use.
 const OWN: [&str; 14] = [
-    "file", "kind", "step", "Unit", "begin", "start", "advance", "evaluate", "event", "unit", "settings", "root", "taken",
-    "given",
+    "file", "kind", "step", "Unit", "begin", "start", "advance", "evaluate", "event", "unit", "settings", "root",
+    "taken", "given",
 ];
 /// More of them.
 const OWN_TOO: [&str; 7] = ["happened", "states", "rates", "started", "last", "held", "count"];
@@ -38,7 +38,10 @@ pub fn class(description: &Description, kind: Kind) -> String {
     outputs.iter().for_each(|i| out += &port(v(i), "Output"));
     if kind == Kind::CoSimulation {
         let step = d.step.unwrap_or(STEP);
-        let _ = writeln!(out, "  parameter Real step(unit = \"s\", min = 1e-9) = {step:e} \"Communication step: outputs hold from one point to the next\";");
+        let _ = writeln!(
+            out,
+            "  parameter Real step(unit = \"s\", min = 1e-9) = {step:e} \"Communication step: outputs hold from one point to the next\";"
+        );
     }
     let said = texts.iter().map(|i| format!("\"{i}=\" + {} + \"\\n\"", name(&v(i).name)));
     let said: Vec<String> = std::iter::once("\"\"".to_owned()).chain(said).collect();
@@ -101,8 +104,7 @@ fn model_exchange(d: &Description, outputs: usize) -> [String; 2] {
     let discrete = d.of(Causality::Output).into_iter().map(|i| &d.variables[i]).filter(|v| !v.continuous);
     let discrete: usize = discrete.map(Variable::size).sum();
     let (all, at_events) = (n + z + outputs, 2 + n + discrete);
-    let nominal: Vec<String> =
-        d.states.iter().map(|s| format!("{:e}", nominal(&d.variables[s.0]))).collect();
+    let nominal: Vec<String> = d.states.iter().map(|s| format!("{:e}", nominal(&d.variables[s.0]))).collect();
     let states = if n == 0 { String::new() } else { format!("(nominal = {{{}}})", nominal.join(", ")) };
     let names: Vec<&str> = d.states.iter().map(|s| d.variables[s.0].name.as_str()).collect();
     let crossings = (1..=z).map(|k| n + k).flat_map(|k| [format!("rates[{k}] > 0"), format!("rates[{k}] <= 0")]);
@@ -261,7 +263,8 @@ fn attributes(v: &Variable, limited: bool) -> String {
     if !v.scale.shown.is_empty() {
         all.push(format!("{each}displayUnit = {}", quoted(&v.scale.shown)));
     }
-    let number = |x: f64| if ty(v) == "Integer" { format!("{x}") } else { format!("{:e}", v.scale.factor * x + v.scale.offset) };
+    let number =
+        |x: f64| if ty(v) == "Integer" { format!("{x}") } else { format!("{:e}", v.scale.factor * x + v.scale.offset) };
     if limited && ty(v) != "Boolean" {
         let mut limits = [v.limits[0], v.limits[1]];
         if v.scale.factor < 0.0 {

@@ -76,7 +76,8 @@ impl<'a> Instance<'a, '_> {
                 Ok(bytes) => bytes,
                 Err(why) => {
                     let d = Diagnostic::new(Code::FileAccess, format!("cannot read `{file}`: {why}"));
-                    let help = "a relative path begins at the folder of the model's file, or else where the command runs";
+                    let help =
+                        "a relative path begins at the folder of the model's file, or else where the command runs";
                     self.report(d.at(at, "the unit is named here").help(help));
                     return None;
                 }
@@ -89,7 +90,7 @@ impl<'a> Instance<'a, '_> {
                     return None;
                 }
             };
-            let Some(class) = self.library.generated(file, &unit.class()) else { return None };
+            let class = self.library.generated(file, &unit.class())?;
             self.units.insert(key.clone(), Opened { unit, class });
         }
         self.units.get(&key)

@@ -27,7 +27,9 @@ impl Driver<'_, '_> {
     fn go_to(&mut self, inputs: &[(usize, f64)], t: f64) -> Flow {
         // first: whether the integrator's past still serves depends on how far the next step may go
         self.until = t;
-        let values = &self.ida().equations().values;
+        let model = self.ida().equations();
+        inputs.iter().for_each(|&(slot, _)| model.playback.release(slot));
+        let values = &model.values;
         if inputs.iter().any(|&(slot, value)| values[slot] != value) {
             self.pending.clear();
             self.pending.extend_from_slice(inputs);
