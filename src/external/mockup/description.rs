@@ -498,8 +498,15 @@ fn scale(unit: &str, shown: Option<&str>, types: &Types<'_, '_>) -> Result<Scale
     Ok(Scale { si, shown, factor, offset })
 }
 
-/// `kg.m-1.s-2`, or its name where it has one.
+/// Units with a name that stands for one quantity only.
+const NAMED: [&str; 9] = ["Pa", "N", "W", "V", "Ohm", "F", "H", "T", "Wb"];
+
+/// `kg.m2.s-1`, or its name where it has one.
 fn product(exponents: &[i16]) -> String {
+    let is = |name: &&str| Unit::parse(name).is_ok_and(|u| u.exponents().is_some_and(|e| e == *exponents));
+    if let Some(name) = NAMED.into_iter().find(is) {
+        return name.to_owned();
+    }
     let part = |(name, n): (&str, &i16)| match n {
         0 => None,
         1 => Some(name.to_owned()),
@@ -538,7 +545,7 @@ mod tests {
         );
         let d = Description::read(&text).unwrap();
         let p = &d.variables[0];
-        assert_eq!((p.scale.si.as_str(), p.scale.factor, p.scale.shown.as_str()), ("kg.m-1.s-2", 1e5, "bar"));
+        assert_eq!((p.scale.si.as_str(), p.scale.factor, p.scale.shown.as_str()), ("Pa", 1e5, "bar"));
         assert_eq!((p.limits[1], p.start.as_slice(), p.reference), (Some(300.0), &[2.0][..], 7));
         assert_eq!((d.states.as_slice(), d.indicators), (&[(1, 2)][..], 1));
         assert_eq!(d.variables[3].start, [1.0]);
