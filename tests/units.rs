@@ -449,3 +449,16 @@ fn an_effect_is_found_around_a_unit() {
     let corrected = diagnosis.corrected().value.expect("it can be written");
     assert!(corrected.contains("oscillator3.fmu"), "{corrected}");
 }
+
+#[test]
+fn runs_of_one_circuit_may_start_at_other_times() {
+    let text =
+        "model Bench FMU t(file = \"ticker2.fmu\", kind = \"me\"); equation t.u = time; t.go = false; end Bench;";
+    let simulation = Bench::new().compile(TICKER, Fmi::Two, text).unwrap_or_else(|e| panic!("{}", e.full()));
+    // a start that goes no further leaves an instance behind
+    let mut later = simulation.clone();
+    drop(simulation.stepping().unwrap());
+    later.settings().start_time = 5.0;
+    let outcome = run(later, 6.0);
+    assert_near(&outcome, "t.through", 1e-9, |t| 11.0 * t);
+}

@@ -155,6 +155,22 @@ unsafe fn with(instance: *mut c_void, act: impl FnOnce(&mut Component) -> Result
     }
 }
 
+/// A step of the simulator's integrator ends: neither an event nor the end of the run follows from that.
+///
+/// # Safety
+/// As [`with`]; the places are null or places for such values.
+unsafe fn step_completed<T: Copy>(instance: *mut c_void, places: [*mut T; 2], no: T) -> c_int {
+    // SAFETY: as the caller promises.
+    unsafe {
+        for place in places {
+            if let Some(place) = place.as_mut() {
+                *place = no;
+            }
+        }
+        with(instance, |_| Ok(()))
+    }
+}
+
 /// Where there is no solution a shorter step of the simulator's integrator may help: it is asked to discard this one.
 fn discarded(status: c_int) -> c_int {
     if status == ERROR { DISCARD } else { status }
@@ -620,14 +636,7 @@ pub unsafe extern "C" fn fmi2CompletedIntegratorStep(
     terminate: *mut c_int,
 ) -> c_int {
     // SAFETY: the simulator follows the standard.
-    unsafe {
-        for place in [event, terminate] {
-            if let Some(place) = place.as_mut() {
-                *place = 0;
-            }
-        }
-        with(c, |_| Ok(()))
-    }
+    unsafe { step_completed(c, [event, terminate], 0) }
 }
 
 // --- FMI 3 ---------------------------------------------------------------------------------------------------------
@@ -716,14 +725,7 @@ pub unsafe extern "C" fn fmi3CompletedIntegratorStep(
     terminate: *mut bool,
 ) -> c_int {
     // SAFETY: the simulator follows the standard.
-    unsafe {
-        for place in [event, terminate] {
-            if let Some(place) = place.as_mut() {
-                *place = false;
-            }
-        }
-        with(c, |_| Ok(()))
-    }
+    unsafe { step_completed(c, [event, terminate], false) }
 }
 
 /// # Safety

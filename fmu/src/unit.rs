@@ -95,6 +95,8 @@ pub struct Unit {
     fresh: Simulation,
     simulation: Simulation,
     interface: Interface,
+    /// How many continuous states and functions that watch for events there are.
+    counts: [usize; 2],
     /// Values set from outside, by port.
     given: BTreeMap<usize, f64>,
     run: Option<Run>,
@@ -121,7 +123,8 @@ impl Unit {
             return Err(format!("there is no Model Exchange: {why}"));
         }
         let (fresh, given) = (simulation.clone(), BTreeMap::new());
-        Ok(Unit { kind, fresh, simulation, interface, given, run: None, ready: false })
+        let counts = [interface.rates().len(), interface.indicators().len()];
+        Ok(Unit { kind, fresh, simulation, interface, counts, given, run: None, ready: false })
     }
 
     fn compile(resources: &Path, token: &str) -> Result<(Simulation, Interface), String> {
@@ -255,12 +258,12 @@ impl Unit {
 
     /// How many functions watch for events.
     pub fn indicators(&self) -> usize {
-        self.interface.indicators().len()
+        self.counts[1]
     }
 
     /// How many continuous states there are.
     pub fn states(&self) -> usize {
-        self.interface.rates().len()
+        self.counts[0]
     }
 
     /// Warnings since the last call.

@@ -146,8 +146,18 @@ pub struct Variable {
     pub limits: [Option<f64>; 3],
     /// To SI.
     pub scale: Scale,
-    /// Of a derivative: the state, as an index.
+    /// Of a derivative: the state, as the description names it, then as an index.
     state: Option<usize>,
+    /// Sizes as the description has them.
+    sizes: Vec<Size>,
+}
+
+/// One size of an array.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Size {
+    Given(usize),
+    /// The start of the variable with this value reference.
+    Of(u32),
 }
 
 impl Variable {
@@ -212,7 +222,7 @@ impl Description {
         for node in child(root, "ModelVariables").into_iter().flat_map(elements) {
             variables.extend(variable(node, version, &types)?);
         }
-        resolve(&mut variables, root, version)?;
+        resolve(&mut variables, version)?;
         let (states, indicators) = structure(root, version, &variables)?;
         let co_simulation = child(root, "CoSimulation");
         let number = |node: Option<Node<'_, '_>>, name| node?.attribute(name)?.trim().parse::<f64>().ok();
@@ -327,10 +337,9 @@ fn variable(node: Node<'_, '_>, version: Version, types: &Types<'_, '_>) -> Resu
     };
     let text = child(inner, "Start").and_then(|s| s.attribute("value")).or_else(|| inner.attribute("start"));
     let dims = elements(inner).filter(|c| c.tag_name().name() == "Dimension");
-    // a size that is another variable's start is put in later, as a number that no size has
-    let dims = dims.map(|d| match (d.attribute("start"), d.attribute("valueReference")) {
-        (Some(n), _) => n.trim().parse().map_err(|_| wrong("size", n)),
-        (None, _) => Ok(usize::MAX),
+    let sizes = dims.map(|d| match (d.attribute("start"), d.attribute("valueReference").unwrap_or_default()) {
+        (Some(n), _) => n.trim().parse().map(Size::Given).map_err(|_| wrong("size", n)),
+        (None, n) => n.trim().parse().map(Size::Of).map_err(|_| wrong("size", n)),
     });
     let unit = said("unit").unwrap_or_default();
     let scale = if passed.is_real() { scale(unit, said("displayUnit"), types)? } else { Scale::default() };
@@ -341,7 +350,8 @@ fn variable(node: Node<'_, '_>, version: Version, types: &Types<'_, '_>) -> Resu
         passed,
         causality,
         continuous: passed.is_real() && !discrete,
-        dims: dims.collect::<Result<_, String>>()?,
+        dims: Vec::new(),
+        sizes: sizes.collect::<Result<_, String>>()?,
         start,
         text: if passed == Passed::String { text.unwrap_or_default().to_owned() } else { String::new() },
         limits: ["min", "max", "nominal"].map(number),
@@ -360,7 +370,7 @@ fn value(text: &str) -> Option<f64> {
 }
 
 /// Puts in what refers to other variables: states of derivatives, and sizes.
-fn resolve(variables: &mut [Variable], root: Node<'_, '_>, version: Version) -> Result<(), Trouble> {
+fn resolve(variables: &mut [Variable], version: Version) -> Result<(), Trouble> {
     let at: FxHashMap<u32, usize> = variables.iter().enumerate().map(|(i, v)| (v.reference, i)).collect();
     let count = variables.len();
     for v in variables.iter_mut() {
@@ -375,21 +385,16 @@ fn resolve(variables: &mut [Variable], root: Node<'_, '_>, version: Version) -> 
             (None, _) => None,
         };
     }
-    let nodes = child(root, "ModelVariables").into_iter().flat_map(elements);
-    let sized = nodes.filter(|n| version == Version::Three && child(*n, "Dimension").is_some());
-    for node in sized {
-        let Some(i) = variables.iter().position(|v| node.attribute("name") == Some(v.name.as_str())) else { continue };
-        let dims = elements(node).filter(|c| c.tag_name().name() == "Dimension");
-        let sizes: Option<Vec<usize>> = dims
-            .map(|d| match d.attribute("valueReference") {
-                None => d.attribute("start")?.trim().parse().ok(),
-                Some(r) => {
-                    let start = *variables[*at.get(&r.trim().parse().ok()?)?].start.first()?;
-                    (0.0..1e9).contains(&start).then_some(start as usize)
-                }
-            })
-            .collect();
-        variables[i].dims = sizes.ok_or_else(|| format!("the sizes of `{}` are not known", variables[i].name))?;
+    let size = |size: &Size| match *size {
+        Size::Given(n) => Some(n),
+        Size::Of(reference) => {
+            let start = *variables[*at.get(&reference)?].start.first()?;
+            (0.0..1e9).contains(&start).then_some(start as usize)
+        }
+    };
+    let dims: Vec<Option<Vec<usize>>> = variables.iter().map(|v| v.sizes.iter().map(size).collect()).collect();
+    for (v, dims) in variables.iter_mut().zip(dims) {
+        v.dims = dims.ok_or_else(|| format!("the sizes of `{}` are not known", v.name))?;
     }
     let mut values = 0usize;
     for v in variables.iter_mut() {
@@ -420,13 +425,11 @@ fn structure(
     variables: &[Variable],
 ) -> Result<(Vec<(usize, usize)>, usize), Trouble> {
     let structure = child(root, "ModelStructure");
+    let at: FxHashMap<u32, usize> = variables.iter().enumerate().map(|(i, v)| (v.reference, i)).collect();
     let named = |node: Node<'_, '_>| -> Option<usize> {
         match version {
             Version::Two => node.attribute("index")?.trim().parse::<usize>().ok()?.checked_sub(1),
-            Version::Three => {
-                let reference: u32 = node.attribute("valueReference")?.trim().parse().ok()?;
-                variables.iter().position(|v| v.reference == reference)
-            }
+            Version::Three => at.get(&node.attribute("valueReference")?.trim().parse::<u32>().ok()?).copied(),
         }
     };
     let derivatives: Vec<Node<'_, '_>> = match version {

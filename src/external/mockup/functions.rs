@@ -178,7 +178,8 @@ fn derivative(pool: &Pool, task: Task, by: usize, args: &[f64]) -> Result<Vec<f6
     {
         return found;
     }
-    let size = args[by].abs().max(nominal(pool, by));
+    let states = if task == Task::Evaluate { pool.description().states.len() } else { 0 };
+    let size = args[by].abs().max(nominal(pool, states, by));
     let at = |x: f64| {
         let mut moved = args.to_vec();
         moved[by] = x;
@@ -189,10 +190,9 @@ fn derivative(pool: &Pool, task: Task, by: usize, args: &[f64]) -> Result<Vec<f6
     Ok(below.iter().zip(&above).map(|(b, a)| (a - b) / (high - low)).collect())
 }
 
-/// The usual size of an argument of `Evaluate`, where the unit says it.
-fn nominal(pool: &Pool, argument: usize) -> f64 {
+/// The usual size of an argument, where the unit says it; behind state and time come so many states, then inputs.
+fn nominal(pool: &Pool, n: usize, argument: usize) -> f64 {
     let description = pool.description();
-    let n = description.states.len();
     let of = |i: usize| description.variables[i].limits[2].map_or(1.0, f64::abs);
     match argument {
         0 | 1 => 1.0,
@@ -210,9 +210,8 @@ fn directional(pool: &Pool, by: usize, args: &[f64]) -> Option<Result<Vec<f64>, 
     let n = description.states.len();
     let scalar = |i: &usize| description.variables[*i].dims.is_empty();
     let simple = description.indicators == 0 && pool.inputs.iter().chain(&pool.outputs).all(scalar);
-    let offers = description.model_exchange.as_ref().is_some_and(|o| o.derivatives);
     let state = number(args[0]);
-    if !offers || !simple || by < 2 || pool.is_root(state) {
+    if !pool.has_derivatives() || !simple || by < 2 || pool.is_root(state) {
         return None;
     }
     let known = if by < 2 + n { description.states[by - 2].0 } else { *pool.inputs.get(by - 2 - n)? };

@@ -17,7 +17,7 @@ pub use functions::{Function, Task};
 pub use pool::Pool;
 
 use archive::Archive;
-use description::Description;
+use description::{Description, Offer};
 use native::Code;
 use std::fmt;
 use std::sync::{Arc, OnceLock};
@@ -50,6 +50,8 @@ pub struct MockUp {
     bytes: Vec<u8>,
     description: Description,
     kind: Kind,
+    /// What it offers as this kind.
+    offer: Offer,
     code: OnceLock<Result<Arc<Code>, Trouble>>,
 }
 
@@ -70,16 +72,16 @@ impl MockUp {
             "me" => Kind::ModelExchange,
             other => return Err(format!("`kind` is \"auto\", \"cs\" or \"me\", not \"{other}\"").into()),
         };
-        let offer = description.offer(kind).ok_or_else(|| format!("it does not offer {}", kind.name()))?;
+        let offer = description.offer(kind).cloned();
+        let offer = offer.ok_or_else(|| format!("it does not offer {}", kind.name()))?;
         archive.library(description.version, &offer.identifier)?;
-        Ok(MockUp { bytes, description, kind, code: OnceLock::new() })
+        Ok(MockUp { bytes, description, kind, offer, code: OnceLock::new() })
     }
 
     /// Its library, from the first use on.
     fn code(&self) -> Result<Arc<Code>, Trouble> {
         let load = || {
-            let identifier = &self.description.offer(self.kind).ok_or("it has lost its kind")?.identifier;
-            let unpacked = Archive::open(&self.bytes)?.unpack(self.description.version, identifier)?;
+            let unpacked = Archive::open(&self.bytes)?.unpack(self.description.version, &self.offer.identifier)?;
             Code::load(unpacked, &self.description).map(Arc::new)
         };
         self.code.get_or_init(load).clone()

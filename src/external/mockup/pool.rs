@@ -76,7 +76,7 @@ struct Slot {
     instance: Instance,
     /// Where it stands.
     state: u64,
-    /// When it entered initialization (s), while it is there; NaN before.
+    /// When it entered initialization (s), while it is there.
     initial: Option<f64>,
     /// The inputs as they were set last.
     inputs: Vec<f64>,
@@ -128,6 +128,11 @@ impl Pool {
             failure: Mutex::default(),
             returned: Condvar::new(),
         }
+    }
+
+    /// Whether the unit computes directional derivatives.
+    pub fn has_derivatives(&self) -> bool {
+        self.unit.offer.derivatives
     }
 
     /// What the unit says of itself.
@@ -264,7 +269,7 @@ impl Pool {
     }
 
     fn only_once(&self) -> bool {
-        self.description().offer(self.unit.kind).is_some_and(|o| o.only_once)
+        self.unit.offer.only_once
     }
 
     /// An instance with everything done to it again. A spare one is taken back to its beginning where the process cannot
@@ -278,6 +283,15 @@ impl Pool {
             _ => Instance::new(&self.unit.code()?, &self.description().name, self.unit.kind)?,
         };
         let mut slot = Slot { instance, state: root, initial: None, inputs: Vec::new() };
+        self.set_up(&mut slot, parameters)?;
+        for act in acts {
+            self.act(&mut slot, act)?;
+        }
+        Ok(slot)
+    }
+
+    /// Parameters and texts of an instance that is as it was made.
+    fn set_up(&self, slot: &mut Slot, parameters: &[f64]) -> Result<(), Trouble> {
         for (&i, value) in self.parameters.iter().zip(spread(self, &self.parameters, parameters)) {
             let v = &self.description().variables[i];
             // what was not changed is left alone
@@ -291,10 +305,7 @@ impl Pool {
                 slot.instance.set_text(v.reference, text)?;
             }
         }
-        for act in acts {
-            self.act(&mut slot, act)?;
-        }
-        Ok(slot)
+        Ok(())
     }
 
     fn act(&self, slot: &mut Slot, act: &Act) -> Result<(Option<f64>, Vec<f64>), Trouble> {
@@ -354,7 +365,18 @@ impl Pool {
     fn initialize(&self, slot: &mut Slot, time: f64) -> Result<(), Trouble> {
         match slot.initial {
             Some(t) if t == time => Ok(()),
-            Some(t) => Err(format!("it is to start at {time} s and has been started at {t} s").into()),
+            Some(_) => {
+                // a run with another start time, or a derivative by it
+                let (_, parameters, _) = self.shelf().path(slot.state)?;
+                if self.only_once() {
+                    slot.instance.reset()?;
+                } else {
+                    slot.instance = Instance::new(&self.unit.code()?, &self.description().name, self.unit.kind)?;
+                }
+                (slot.initial, slot.inputs) = (None, Vec::new());
+                self.set_up(slot, &parameters)?;
+                self.initialize(slot, time)
+            }
             None => {
                 slot.instance.enter_initialization(time)?;
                 slot.initial = Some(time);

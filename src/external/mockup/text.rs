@@ -1,17 +1,15 @@
 //! The Modelica class that stands for a unit in a circuit: its parameters, inputs and outputs in SI, and equations that
 //! call the functions of `FMU`, which it extends.
 
-use super::description::{Causality, Description, Kind, Scale, Variable};
+use super::description::{Causality, Description, Kind, Passed, Scale, Variable, Version};
 use super::functions::NEVER;
 use std::fmt::Write;
 
 /// Names that `FMU` and the class itself use.
-const OWN: [&str; 14] = [
+const OWN: [&str; 21] = [
     "file", "kind", "step", "Unit", "begin", "start", "advance", "evaluate", "event", "unit", "settings", "root",
-    "taken", "given",
+    "taken", "given", "happened", "states", "rates", "started", "last", "held", "count",
 ];
-/// More of them.
-const OWN_TOO: [&str; 7] = ["happened", "states", "rates", "started", "last", "held", "count"];
 
 /// Communication step where the unit names none (s).
 const STEP: f64 = 0.01;
@@ -66,8 +64,8 @@ pub fn class(description: &Description, kind: Kind) -> String {
 fn title(d: &Description, kind: Kind) -> String {
     let what = if d.description.is_empty() { d.name.clone() } else { format!("{}: {}", d.name, d.description) };
     let version = match d.version {
-        super::description::Version::Two => "2.0",
-        super::description::Version::Three => "3.0",
+        Version::Two => "2.0",
+        Version::Three => "3.0",
     };
     let tool = if d.tool.is_empty() { String::new() } else { format!(", by {}", d.tool) };
     format!("{what} (FMI {version}, {}{tool})", kind.name())
@@ -176,7 +174,6 @@ fn elements(v: &Variable, reversed: bool) -> Vec<String> {
 
 /// An expression in SI from numbers of the unit, or `reversed`.
 fn converted(v: &Variable, e: &str, reversed: bool) -> String {
-    use super::description::Passed;
     let Scale { factor, offset, .. } = v.scale;
     match (v.passed, reversed) {
         (Passed::Boolean, true) => format!("(if {e} then 1 else 0)"),
@@ -212,7 +209,6 @@ fn list_of(items: impl Iterator<Item = String>) -> String {
 }
 
 fn ty(v: &Variable) -> &'static str {
-    use super::description::Passed;
     match v.passed {
         Passed::Boolean => "Boolean",
         p if p.is_real() => "Real",
@@ -285,7 +281,7 @@ fn comment(v: &Variable) -> String {
 fn name(name: &str) -> String {
     let letter = |c: char| c.is_ascii_alphanumeric() || c == '_';
     let plain = name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_') && name.chars().all(letter);
-    if plain && !OWN.contains(&name) && !OWN_TOO.contains(&name) && !is_keyword(name) {
+    if plain && !OWN.contains(&name) && !is_keyword(name) {
         return name.to_owned();
     }
     let mut out = "'".to_owned();

@@ -87,7 +87,7 @@ impl<'a> Exchange<'a> {
         self.y.copy_from_slice(&self.driver.restart.y()[..n]);
         self.yp.copy_from_slice(&self.driver.restart.yp()[..n]);
         self.model.crossings(self.driver.t, &self.y, &self.yp, &mut self.sides);
-        self.known = (self.driver.t, self.y.clone(), self.yp.clone());
+        self.remember();
         self.fits = false;
     }
 
@@ -140,7 +140,7 @@ impl<'a> Exchange<'a> {
         let t = self.driver.t;
         self.model.values[Layout::TIME] = t;
         if self.y.is_empty() || self.solve(t, self.y.clone()) || self.approach(t) {
-            self.known = (t, self.y.clone(), self.yp.clone());
+            self.remember();
         } else if !self.across(t) {
             return Err(self.unsolved());
         }
@@ -155,6 +155,13 @@ impl<'a> Exchange<'a> {
         let (y, yp) = (y.to_vec(), yp.to_vec());
         (self.y, self.yp) = (y, yp);
         true
+    }
+
+    /// Notes where there was a solution last.
+    fn remember(&mut self) {
+        self.known.0 = self.driver.t;
+        self.known.1.clone_from(&self.y);
+        self.known.2.clone_from(&self.yp);
     }
 
     /// Goes to the states in parts from where there was a solution last.
