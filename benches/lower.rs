@@ -82,7 +82,7 @@ fn lowering(c: &mut Criterion) {
         group.throughput(Throughput::Elements(sections as u64));
         for native in [false, true] {
             let id = BenchmarkId::new(way(native), sections);
-            group.bench_function(id, |b| b.iter(|| lower(black_box(dae.clone()), &Options { native })));
+            group.bench_function(id, |b| b.iter(|| lower(black_box(dae.clone()), &Options { native, ..Options::default() })));
         }
     }
 }
@@ -91,7 +91,7 @@ fn kernels(c: &mut Criterion) {
     for sections in [10, 1000] {
         let dae = line(sections);
         for native in [false, true] {
-            let system = lower(dae.clone(), &Options { native });
+            let system = lower(dae.clone(), &Options { native, ..Options::default() });
             evaluate(c, &system, &format!("{}/{sections}", way(native)));
         }
     }

@@ -380,6 +380,67 @@ fn the_observed_speed_is_right_and_off_by_the_error_of_the_slip() {
     }
 }
 
+/// Far above the base speed a step of the command ends where a slow ramp does: at the command, under load, in all four
+/// quadrants; the flux keeps its voltage, and the torque takes what is left.
+#[test]
+fn a_step_far_above_the_base_speed_arrives() {
+    let free =
+        "Mechanical.Rotational.Inertia rotor(J = 0.5); Mechanical.Rotational.ConstantTorque load(tau_constant = LOAD);";
+    let joined = "connect(drive.flange, rotor.flange_a); connect(rotor.flange_b, load.flange);
+        drive.w_ref = if time < 0.1 then 0 else W*min((time - 0.1)/RISE, 1);";
+    for (w, load, sensorless) in [
+        (260.0, -30.0, false),
+        (-260.0, 30.0, false),
+        (260.0, 30.0, false),
+        (400.0, -30.0, false),
+        (-260.0, 30.0, true),
+    ] {
+        let ends = [1e-3, 8.0].map(|rise: f64| {
+            let free = free.replace("LOAD", &format!("{load}"));
+            let joined = joined.replace("RISE", &format!("{rise}")).replace('W', &format!("{w}"));
+            let t = field_oriented(&format!("sensorless = {sensorless}"), &free, &joined, 16.0);
+            let longest = column(&t, "drive.u").iter().copied().fold(0.0, f64::max);
+            assert!(longest < 460.0 * (2.0f64 / 3.0).sqrt() * (1.0 + 1e-9), "{longest} V");
+            near(rig::last(&t, "drive.w"), w, 1e-3);
+            near(rig::last(&t, "drive.T_e"), -load, 1e-2);
+            rig::last(&t, "drive.i_d")
+        });
+        near(ends[0], ends[1], 1e-2);
+    }
+}
+
+/// What comes in at the windings is what leaves at the shaft, what the fluxes hold, and the heat at the port, friction
+/// and windage with it.
+#[test]
+fn friction_and_windage_of_a_motor_reach_its_heat_port() {
+    for class in ["InductionMotor", "InductionMotorSteady"] {
+        let given = if class == "InductionMotor" { "3/sqrt(2)*230*m.i_ds" } else { "m.P_cu + m.T_e*m.w" };
+        let held = if class == "InductionMotor" {
+            "0.75*(m.psi_ds*m.i_ds + m.psi_qs*m.i_qs + m.psi_dr*m.i_dr + m.psi_qr*m.i_qr)"
+        } else {
+            "0"
+        };
+        let mut simulation = circuit(
+            &format!(
+                "Electrical.Machines.{class} m(B = 0.5, useHeatPort = true); Thermal.HeatCapacitor c(C = 1e4);
+                Mechanical.Rotational.ConstantSpeed shaft(w_fixed = 150);
+                Real given(start = 0, fixed = true, nominal = 1e5); Real turned(start = 0, fixed = true, nominal = 1e5);
+                Real kept(nominal = 1e5);"
+            ),
+            &format!(
+                "m.f = 50; m.U = 230; connect(m.flange, shaft.flange); connect(m.heatPort, c.port);
+                der(given) = {given}; der(turned) = -m.flange.tau*m.w; kept = 1e4*c.T + {held};"
+            ),
+        );
+        simulation.stop_time(20.0);
+        simulation.settings().tolerance = 1e-8;
+        let t = run(&simulation);
+        let change = |name: &str| rig::last(&t, name) - at(&t, name, 0.0);
+        assert!(change("kept") > 225e3, "{class}: {}", change("kept"));
+        near(change("turned") + change("kept"), change("given"), 1e-6);
+    }
+}
+
 /// Resistors in star to the neutral behind a soft starter at a constant firing angle, ten periods long after the first.
 fn behind_soft_starter(degrees: f64) -> Trajectory {
     let mut simulation = circuit(

@@ -60,7 +60,7 @@ struct Parameter {
 fn model(class: &str, native: bool) -> Model {
     let library = concat!(env!("CARGO_MANIFEST_DIR"), "/components").into();
     let request = Request { source: class.into(), libraries: vec![library], ..Request::default() };
-    let compiled = compile(&Disk, &request, &Options { native });
+    let compiled = compile(&Disk, &request, &Options { native, ..Options::default() });
     compiled.value.unwrap_or_else(|| panic!("{class} does not compile"))
 }
 

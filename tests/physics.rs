@@ -355,12 +355,12 @@ fn the_orifice_is_turbulent_above_and_laminar_below_its_transition() {
     let mut simulation = circuit(
         "inner Oil.Fluid oil(redeclare function density = Oil.Compression.constantDensity);
          Hydraulic.PressureSource a;
-         Hydraulic.PressureSource b(p = 1e6);
+         Hydraulic.PressureSource b(p = 2e7);
          Hydraulic.Orifice orifice(A = 1e-6);",
         "connect(a.port, orifice.port_a); connect(orifice.port_b, b.port);",
     );
     let mut flow = |dp: f64| {
-        let t = run(simulation.set("a.p", 1e6 + dp).expect("a parameter").stop_time(1e-6));
+        let t = run(simulation.set("a.p", 2e7 + dp).expect("a parameter").stop_time(1e-6));
         (last(&t, "orifice.q"), last(&t, "oil.mu"))
     };
     let (q, mu) = flow(1e7);
@@ -853,6 +853,30 @@ fn frictions_take_power_in_both_directions() {
             assert!(*work > most - elastic, "{class} gives back {} J", most - work);
         }
         assert!(most > 1.0, "{class}: {most} J");
+    }
+}
+
+/// Bearings that stick by events and a pump that sticks by bristles hold the sum of both, either way round, and break away
+/// above it.
+#[test]
+fn a_pump_and_its_bearings_hold_the_sum() {
+    let mut shaft = circuit(
+        "inner Oil.ServoPumpOil oil; parameter Real tau = 0.07;
+         Mechanical.Rotational.Torque t; Mechanical.Rotational.Inertia rotor(J = 1.8e-4);
+         Mechanical.Rotational.BearingFriction friction(tau_c = 0.01, tau_s = 0.05, w_s = 20, d = 0.2e-4);
+         ServoPump.BenchPump pump(compression = false); Hydraulic.Tank tank;",
+        "t.tau = tau; connect(t.flange, rotor.flange_a); connect(rotor.flange_b, friction.flange_a);
+         connect(friction.flange_b, pump.flange); connect(pump.port_a, tank.port); connect(pump.port_b, tank.port);",
+    );
+    shaft.stop_time(2.0);
+    for tau in [0.03, 0.07, 0.097, -0.07, -0.097] {
+        let t = run(shaft.set("tau", tau).expect("a parameter"));
+        assert!(last(&t, "rotor.w").abs() < 1e-9, "{tau}: {}", last(&t, "rotor.w"));
+        assert!(last(&t, "rotor.phi").abs() < 2e-3, "{tau}: {}", last(&t, "rotor.phi"));
+    }
+    for tau in [0.105, -0.105] {
+        let t = run(shaft.set("tau", tau).expect("a parameter"));
+        assert!(last(&t, "rotor.w") * tau.signum() > 100.0, "{tau}: {}", last(&t, "rotor.w"));
     }
 }
 

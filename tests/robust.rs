@@ -150,7 +150,7 @@ fn go(text: &str) -> Vec<Diagnostic> {
     let world = MemoryWorld::single("model.mo", text);
     for model in [None, Some("M".to_string())] {
         let request = Request { source: "model.mo".into(), model, ..Request::default() };
-        let Outcome { mut diagnostics, value, .. } = compile(&world, &request, &Options { native: false });
+        let Outcome { mut diagnostics, value, .. } = compile(&world, &request, &Options::INTERPRETED);
         let Some(model) = value else {
             if diagnostics.iter().any(|d| d.code.id() == "E022") {
                 continue;

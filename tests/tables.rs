@@ -15,7 +15,7 @@ fn said(block: &str, data: &str) -> String {
     let mut world = MemoryWorld::single("bench/M.mo", model(block));
     world.add("bench/t.csv", data);
     let request = Request { source: "bench/M.mo".into(), ..Request::default() };
-    let outcome = compile(&world, &request, &bramah::internals::lower::Options { native: false });
+    let outcome = compile(&world, &request, &bramah::internals::lower::Options::INTERPRETED);
     render(&outcome.sources, &outcome.diagnostics, Format::Short, 200, false)
 }
 

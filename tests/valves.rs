@@ -82,6 +82,28 @@ fn the_sequence_valve_looks_at_its_inlet_only() {
     near(flow(&mut valve, 110e5, 105e5), 1e-3, 0.01);
 }
 
+/// Relief valves begin to open at `p_set` and pass `q_nom`, fully open, at `p_set (1 + override)`.
+#[test]
+fn relief_valves_are_open_where_their_pages_say() {
+    for (class, reversed) in [("ReliefValve", false), ("ReliefValveDynamic", false), ("CounterbalanceValve", true)] {
+        for (p_set, over, q_nom) in [(200e5, 0.1, 1e-3), (350e5, 0.05, 2e-3), (50e5, 0.2, 1e-4)] {
+            let more = if reversed { "connect(way.port_x, a.port);" } else { "" };
+            let mut valve = between(&format!("{class} way(p_set = {p_set}, override = {over}, q_nom = {q_nom})"), more);
+            let mut at_drop = |dp: f64| {
+                let (a, b) = if reversed { (1e5, 1e5 + dp) } else { (1e5 + dp, 1e5) };
+                valve.set("a.p", a).expect("a parameter").set("b.p", b).expect("a parameter");
+                let t = run(&valve);
+                (last(&t, "way.x"), last(&t, "way.q").abs())
+            };
+            assert!(at_drop(p_set).0 < 1e-6, "{class} is shut at {p_set} Pa");
+            near(at_drop(p_set * (1.0 + over / 2.0)).0, 0.5, 1e-6);
+            let (x, q) = at_drop(p_set * (1.0 + over));
+            near(x, 1.0, 1e-6);
+            near(q, q_nom, 5e-3);
+        }
+    }
+}
+
 /// The areas and the spring of a cartridge valve say where it opens, from either side, and a closed pilot line holds it.
 #[test]
 fn the_cartridge_valve_opens_as_its_areas_say() {
@@ -281,6 +303,31 @@ fn the_stages_of_a_telescopic_cylinder_follow_in_their_order() {
         let friction: f64 = 100.0 + 2000.0 * at(&t, &format!("cylinder.v_rel[{stage}]"), time);
         near(at(&t, "cylinder.p", time), 101_325.0 + (20e3 + friction) / area, 0.01);
     }
+}
+
+/// A cylinder of any size rests on its stops no deeper than a thousandth of its stroke, and a stiffness of one's own stays.
+#[test]
+fn a_cylinder_rests_on_its_stop() {
+    let rest = |area: f64, stroke: f64, p: f64, own: &str| {
+        let mut cylinder = circuit(
+            &format!(
+                "inner Oil.ISOVG46 oil; Hydraulic.PressureSource p(p = {p}); Hydraulic.Tank t;
+                Hydraulic.Orifice o_1(A = {0}), o_2(A = {0});
+                Hydraulic.Cylinder c(A_1 = {area}, A_2 = 0.6*{area}, stroke = {stroke}, s_start = 0.5*{stroke}{own});",
+                1e-3 * area
+            ),
+            "connect(p.port, o_1.port_a); connect(o_1.port_b, c.port_1); connect(c.port_2, o_2.port_a);
+            connect(o_2.port_b, t.port);",
+        );
+        let t = run(cylinder.stop_time(20.0));
+        (last(&t, "c.s") - stroke) / stroke
+    };
+    for (area, stroke, p) in [(314e-4, 0.5, 250e5), (800e-4, 1.2, 350e5), (12.6e-4, 0.05, 350e5), (78e-4, 0.01, 420e5)]
+    {
+        let depth = rest(area, stroke, p, "");
+        assert!((0.0..1e-3).contains(&depth), "{depth} of {stroke} m");
+    }
+    near(rest(12.6e-4, 0.05, 350e5, ", stops(k = 2e8, d_0 = 1e-6)") * 0.05, 12.6e-4 * 350e5 / 2e8, 0.02);
 }
 
 #[test]

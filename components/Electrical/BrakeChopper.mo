@@ -30,6 +30,6 @@ equation
   i = duty*v/R;
   lossPower = v*i;
   der(energy) = lossPower;
-  annotation(Documentation(info = "<html><p>On above <code>V_on</code>, off below <code>V_off</code>, each an event: <code>i = v/R</code> while on. Averaged: the duty rises from 0 at <code>V_off</code> to 1 a little above <code>V_on</code>, its corners rounded over a tenth of <code>V_on - V_off</code>, so that the link settles where the resistor takes what comes in; valid for processes slower than the switching. Off at the start. Passive. The greatest power is <code>V_on^2/R</code>: what comes in above it raises the link further.</p>
+  annotation(Documentation(info = "<html><p>On above <code>V_on</code>, off below <code>V_off</code>, each an event: <code>i = v/R</code> while on. Averaged: the duty rises from 0 at <code>V_off</code> to 1 at <code>V_on</code>, its corners rounded over a tenth of <code>V_on - V_off</code>, so that the link settles where the resistor takes what comes in; valid for processes slower than the switching. Off at the start. Passive. The greatest power is <code>V_on^2/R</code>: what comes in above it raises the link further.</p>
 <p>Source: N. Mohan, T. M. Undeland, W. P. Robbins, Power Electronics, 2003, section 14-2 (dissipative braking).</p></html>"));
 end BrakeChopper;

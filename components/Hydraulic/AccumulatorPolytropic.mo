@@ -1,6 +1,6 @@
 within Hydraulic;
 model AccumulatorPolytropic "Bladder accumulator, polytropic gas"
-  extends Bases.Storage;
+  extends Bases.Storage(stored(nominal = oil.rho_0*V_0*V_min));
   parameter SI.Volume V_0(min = 1e-6, max = 1, nominal = 1e-3, displayUnit = "l") = 1e-3 "Volume of the gas at the precharge";
   parameter SI.Pressure p_pre(min = 1e4, max = 1e8, nominal = 1e6) = 3e5 "Precharge, absolute";
   parameter SI.Pressure p_start(nominal = 1e6) = 5e5 "Pressure at the start";
@@ -20,6 +20,7 @@ equation
   assert(V_0 > 0 and p_pre > 0, "V_0 and the precharge p_pre must be positive");
   assert(p_pre < p_max, "The precharge p_pre must lie below p_max");
   assert(p_start >= p_pre, "The accumulator is empty at the start: its precharge p_pre lies above p_start", AssertionLevel.warning);
+  assert(p > oil.p_void, "The oil cavitates: more is drawn than flows in, and voids open in the oil. Is the accumulator empty, or too small?", AssertionLevel.warning);
   assert(p < 1.05*p_max, "The pressure exceeds p_max of the accumulator", AssertionLevel.warning);
   p = port.p;
   p_s = max(p, 1e-3*p_pre);

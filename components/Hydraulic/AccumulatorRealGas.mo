@@ -39,6 +39,7 @@ initial equation
 equation
   assert(V_0 > 0 and p_pre > 0, "V_0 and the precharge p_pre must be positive");
   assert(p_pre < p_max, "The precharge p_pre must lie below p_max");
+  assert(p > oil.p_void, "The oil cavitates: more is drawn than flows in, and voids open in the oil. Is the accumulator empty, or too small?", AssertionLevel.warning);
   assert(p < 1.05*p_max, "The pressure exceeds p_max of the accumulator", AssertionLevel.warning);
   assert(p_start <= 0 or p_start >= p_pre, "The pressure at the start p_start must not lie below the precharge p_pre");
   assert(v > 1.05*b, "The gas is compressed beyond the law of Redlich and Kwong");
@@ -56,6 +57,7 @@ equation
   p = port.p;
   V_oil = V_0*(1 + V_min) - V_gas;
   V_oil/air.beta*p_dot - der(V_gas) = inflow;
+  Connections.conserved(stored, air.rho_port*port.q, V_gas);
   annotation(Documentation(info = "<html>
 <p><code>p = R T/(v - b) - a sqrt(T_c/T)/(v (v + b))</code>; balance of energy with Newton's cooling, <code>dT/dt = (T_wall - T)/tau - T/(m c_v) (dp/dT)_v dV/dt</code>. The mass of the gas follows from the precharge. Above some 10 MPa nitrogen takes more volume than an ideal gas: at 30 MPa and 20 degC <code>Z</code> is 1.1 to 1.2.
 When empty, the bladder rests on its valve within <code>w_stop V_0</code>; when full, at <code>V_full V_0</code>, it meets a stop that takes <code>p_max</code> within <code>w_stop V_0</code>. Gases of high precharge are beyond the law before that.</p>

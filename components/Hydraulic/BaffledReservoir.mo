@@ -55,6 +55,7 @@ equation
     A*der(h) = port_a.q + port_b.q;
   end if;
   mass = rho/mean*A*h;
+  Connections.conserved(mass, m_a + m_b, h);
   residence = mass/max(max(m_a, -m_b), 1e-6*mass);
   annotation(Documentation(info = "<html>
 <p>A reservoir of <code>n</code> zones with one level and equal masses. What returns enters the first zone and passes all of them before a pump draws it: each is stirred, so that a change of temperature arrives after the time of residence, the sharper the more zones there are. <code>Reservoir</code> is one zone for all lines.</p>

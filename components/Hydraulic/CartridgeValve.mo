@@ -17,7 +17,7 @@ model CartridgeValve "Two-way cartridge valve (logic element): a poppet between 
   SI.Length x(start = 0, fixed = true, nominal = 1e-3) "Lift";
   SI.Velocity v(nominal = 0.1) "Velocity of the poppet";
   SI.Pressure dp(nominal = 1e6) "Pressure drop from A to B";
-  SI.VolumeFlowRate q(nominal = 1e-4) "Volume flow from A to B at mean density";
+  SI.VolumeFlowRate q(nominal = 1e-4) "Volume flow from A to B at the density rho";
   SI.Pressure p_spring(nominal = 1e6) "Pressure in the chamber of the spring";
   SI.Power lossPower(nominal = 10) "Power lost at the seat";
 protected
@@ -31,7 +31,11 @@ protected
   SI.Density rho_a(nominal = 1000) "Density at A";
   SI.Density rho_b(nominal = 1000) "Density at B";
   SI.Density rho_x(nominal = 1000) "Density at X";
-  SI.Density rho(nominal = 1000) "Mean density";
+  SI.MassFlowRate m_a(nominal = 1e-2) "What the poppet draws at A as it lifts";
+  SI.MassFlowRate m_b(nominal = 1e-2) "The same at B";
+  SI.SpecificEnthalpy w_void(nominal = 1e3) "What the voids of a add to the work of the pressure drop, less those of b";
+  SI.Density rho(nominal = 1000) "Density of what flows, as in Bases.TwoPort";
+  Real full(unit = "1") "Density upstream over that of the oil between its voids: 1 where it has none";
   SI.Temperature T_in(nominal = 300) "Temperature of the oil that comes in";
   SI.DynamicViscosity mu_in(nominal = 0.03) "Its viscosity at low pressure";
 equation
@@ -40,14 +44,15 @@ equation
   rho_a = oil.density(port_a.p);
   rho_b = oil.density(port_b.p);
   rho_x = oil.density(port_x.p);
+  full = Smooth.blend(dp, 1e3, min(rho_a/oil.rho_l, 1), min(rho_b/oil.rho_l, 1));
   if oil.thermal then
     T_in = oil.T_0 + Smooth.blend(dp, 1e3, inStream(port_a.dT_outflow), inStream(port_b.dT_outflow));
     mu_in = oil.viscosity(T_in);
-    rho = (rho_a + rho_b)/2/oil.growth(T_in);
+    rho = (max(rho_a, oil.rho_l) + max(rho_b, oil.rho_l))/2*full/oil.growth(T_in);
   else
     T_in = oil.T;
     mu_in = oil.mu;
-    rho = (rho_a + rho_b)/2;
+    rho = (max(rho_a, oil.rho_l) + max(rho_b, oil.rho_l))/2*full;
   end if;
   A = pi*d*sin(alpha)*x_max*Smooth.ramp(min(x/x_max, 1), 0.01);
   q = Functions.orificeFlow(dp, A_leak + A, C_d, rho, mu_in, Re_cr);
@@ -55,12 +60,15 @@ equation
   A_A*port_a.p + A_B*port_b.p = A_X*p_spring + F;
   v = der(x);
   A_X*v = Functions.orificeFlow(p_spring - port_x.p, pi*d_x^2/4, C_d, rho_x, mu_in, Re_cr);
-  rho_a*port_a.q = rho*q + rho_x*A_A*v;
-  rho_b*port_b.q = -rho*q + rho_x*A_B*v;
-  port_x.q = -A_X*v;
-  lossPower = dp*q;
+  m_a = rho_x*A_A*(max(v, 0)*min(rho_a/oil.rho_l, 1) + min(v, 0));
+  m_b = rho_x*A_B*(max(v, 0)*min(rho_b/oil.rho_l, 1) + min(v, 0));
+  rho_a*port_a.q = rho*q + m_a;
+  rho_b*port_b.q = -rho*q + m_b;
+  rho_x*port_x.q = -m_a - m_b;
+  w_void = (oil.throttling(min(port_a.p, oil.p_l)) - oil.throttling(min(port_b.p, oil.p_l)))*oil.c_p/(1 - oil.gamma*oil.T_0) - (min(port_a.p, oil.p_l) - min(port_b.p, oil.p_l))/oil.rho_l;
+  lossPower = dp*q*full + rho*q*w_void;
   annotation(Documentation(info = "<html>
 <p>Balance of the poppet <code>p_A A_A + p_B A_B = p_spring A_X + F_0 + c x + F_flow</code>, <code>A_B = (ratio - 1) A_A</code>; cross section <code>pi d sin(alpha) x</code>, flow force <code>2 C_d cos(alpha) A |dp|</code>, closing. The poppet has no mass: what it displaces must pass the throttle <code>d_x</code> to X, <code>A_X dx/dt = q_x(p_spring - p_X)</code>, and that takes far longer than its mass would.</p>
 <p>What joins X makes the function: A or B a check valve, a way valve between pressure and tank a switch, a small relief valve behind a throttle a pressure valve. <code>ratio</code> 1 to 1.1 for pressure valves, 1.5 to 2 where oil also passes from B to A.</p>
-<p>The oil displaced counts at the density of X at all three ports, so that its mass is kept. Sources: ISO 7368 (sizes); H. E. Merritt, Hydraulic Control Systems, Wiley 1967, sections 5.6 and 9.2; the values are assumed for size 16.</p></html>"));
+<p>The oil displaced counts at the density of X at all three ports, so that its mass is kept; where A or B has voids, as much less is drawn there. Sources: ISO 7368 (sizes); H. E. Merritt, Hydraulic Control Systems, Wiley 1967, sections 5.6 and 9.2; the values are assumed for size 16.</p></html>"));
 end CartridgeValve;

@@ -14,7 +14,8 @@ model CounterbalanceValve "Counterbalance valve: holds a load at b, opened by th
   parameter Real Re_cr(unit = "1", min = 1, max = 5000) = 150 "Reynolds number of the laminar transition";
   Real x(unit = "1", start = 0, fixed = true) "Opening against the load, 0 to 1";
 protected
-  parameter SI.Area A_max = q_nom/(C_d*sqrt(2*p_set*(1 + override)/oil.rho_0)) "Cross section when open";
+  parameter SI.Density rho_full = (oil.density(oil.p_0) + oil.density(oil.p_0 + p_set*(1 + override)))/2 "Mean density when fully open, the outlet at p_0";
+  parameter SI.Area A_max = q_nom/(C_d*sqrt(2*p_set*(1 + override)/rho_full)) "Cross section when open";
 equation
   assert(p_set > 0 and q_nom > 0 and override > 0 and tau > 0, "p_set, q_nom, override and tau must be positive");
   tau*der(x) = Smooth.clip((-dp + pilotRatio*max(port_x.p - port_a.p, 0) - p_set)/(override*p_set), 0.1) - x;

@@ -16,6 +16,7 @@ model Cylinder "Double-acting cylinder: two chambers, seal friction, leakage, en
   parameter SI.DynamicViscosity mu_C(min = 1e-4, max = 10, nominal = 0.03) = 0.04 "Viscosity of C_i";
   parameter Boolean followViscosity = true "false: C_i is taken as it is" annotation(Evaluate = true);
   parameter SI.Pressure p_ambient(nominal = 1e5) = 101325 "Pressure on the rod outside";
+  parameter SI.Pressure p_rated(min = 1e4, max = 1e10, nominal = 1e7) = oil.p_max "Pressure that the end stops are made for";
   parameter SI.Position s_start = 0.05 "Position at the start";
   parameter SI.Velocity v_start = 0 "Velocity at the start";
   parameter SI.Pressure p_1_start(nominal = 1e6) = 101325 "Pressure of chamber 1 at the start";
@@ -27,12 +28,14 @@ model Cylinder "Double-acting cylinder: two chambers, seal friction, leakage, en
   LaminarGap rodLeak(G = C_e, mu_G = mu_C, followViscosity = followViscosity) if rodLeakage "Leakage past the rod";
   Tank outside(p = p_ambient) if rodLeakage "What drips off";
   Mechanical.Translational.Mass piston(m = m, s(start = s_start), v(start = v_start)) "Piston and rod";
-  Mechanical.Translational.EndStops stops(s_min = 0, s_max = stroke) "End stops";
+  Mechanical.Translational.EndStops stops(s_min = 0, s_max = stroke, k = max(1e8, max(A_1, A_2)*p_rated/d_stop), d_0 = min(1e-4, d_stop)) "End stops";
   replaceable SealFriction.Stribeck seal constrainedby SealFriction.Law "Friction of the seals";
   SI.Position s(nominal = 0.1) "Position of the rod, 0 retracted";
   SI.Velocity v(nominal = 0.1) "Velocity of the rod";
   SI.Pressure p_1(nominal = 1e6) "Pressure of chamber 1";
   SI.Pressure p_2(nominal = 1e6) "Pressure of chamber 2";
+protected
+  parameter SI.Length d_stop = max(min(1e-3*stroke, min(V_01/A_1, V_02/A_2)/2), 1e-5) "Depth in an end stop at p_rated";
 equation
   assert(stroke > 0, "The stroke must be positive");
   assert(s_start > -0.01*stroke and s_start < 1.01*stroke, "The position at the start s_start must lie from 0 to the stroke");
@@ -57,5 +60,6 @@ equation
 <p><code>V_1/beta dp_1/dt = q_1 - A_1 v - C_i (p_1 - p_2)</code>, <code>V_2/beta dp_2/dt = q_2 + A_2 v + C_i (p_1 - p_2)</code>,
 <code>m dv/dt = A_1 p_1 - A_2 p_2 - p_a (A_1 - A_2) - f + f_flange</code> (the rod outside carries the surroundings). The friction is replaceable: <code>SealFriction.None</code>, <code>Viscous</code>,
 <code>Stribeck</code> (default), <code>LuGre</code>, <code>Sticking</code>. So is the law of the air in the oil of the chambers (<code>EntrainedAir</code>).</p>
+<p><b>End stops</b>: at <code>p_rated</code> on the whole area they give by <code>d_stop</code>, a thousandth of the stroke or half of what the volume left at the end allows, whichever is less, and are never softer than 1e8 N/m; damping by <code>Mechanical.Translational.EndStops</code>. A stiffness of one's own: <code>stops(k = ...)</code>.</p>
 <p>Defaults: bore 80 mm, rod 40 mm, stroke 180 mm. For equal areas set A_2 = A_1. Source: Zhang et al., Processes 2021, 9, 814, section 3.3, with the two chambers apart.</p></html>"));
 end Cylinder;

@@ -1,6 +1,6 @@
 within Hydraulic;
 model EfficiencyMapMachine "Displacement machine from measured volumetric and hydromechanical efficiency maps"
-  extends Bases.Machine(compression = false, starvation = false);
+  extends Bases.Machine(compression = false);
   parameter Real eta_v[:, :] = [0, 1e6, 1e7, 3e7; 10, 0.90, 0.60, 0.30; 100, 0.98, 0.94, 0.85; 300, 0.99, 0.98, 0.95] "Volumetric efficiency pumping: first column speeds in rad/s from row 2 on, first row pressure differences in Pa from column 2 on";
   parameter Real eta_m[:, :] = [0, 1e6, 1e7, 3e7; 10, 0.60, 0.90, 0.92; 100, 0.65, 0.91, 0.94; 300, 0.60, 0.90, 0.93] "Hydromechanical efficiency pumping, likewise";
   parameter String fileName = "" "File that holds both maps (CSV, or Modelica's text format); empty: they are written here";

@@ -13,7 +13,7 @@ protected
 equation
   assert(G >= 0 and k_p >= 0 and b >= 0, "Losses must not be negative");
   assert(h_tip >= 0, "The gap h_tip must not be negative");
-  Q_leak = thin*G*dp - fill*D_drag*w;
+  Q_leak = thin*G*dp - fill*D_drag*2*pi*(max(n, 0)*full_b + min(n, 0)*full_a);
   T_loss = fill*D_drag*dp + k_p*D*Smooth.mag(dp, 1e4)*Smooth.sgn(w, w_s) + b*w;
   annotation(Documentation(info = "<html><p>Fixed displacement; the dead volume is small. Delivery, compression and starvation as in <code>Bases.Machine</code>, ripple is left out.</p>
 <p><b>Leakage</b> <code>mu_G/mu G dp - D_drag w</code>: oil driven back by the pressure through tip gaps and side plates, less the oil that the tips drag along to the high side. Between a tip of speed <code>r_tip w</code> and the housing the velocity falls in a straight line to zero, half of it on the mean: <code>width h_tip r_tip w/2</code> for each of the two gears.</p>

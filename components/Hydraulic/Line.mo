@@ -40,6 +40,7 @@ protected
   SI.MassFlowRate m_right[N](each nominal = 0.1) "Mass flows out of the cells to the side of b";
   SI.MassFlowRate supply[N](each nominal = 0.1) "What flows into the cells, by the share of its air above the one there";
   SI.Volume V_p[N](each nominal = 1e-4) "Volumes of the cells under pressure";
+  SI.Mass stored[N](nominal = oil.rho_0*V) "What the balances keep: the masses";
   Real growth[N](each unit = "1") "Volumes of the oil over those at T_0";
   SI.HeatFlowRate Q_flow[N](each nominal = 10) "Heat that the cells take in through the wall";
   SI.Temperature T_low[N](each nominal = 300) "Temperatures that the oil of the cells has when throttled to the reference pressure";
@@ -82,6 +83,10 @@ equation
       T_oil[i] = oil.T;
       air[i].rho*(V_p[i]/air[i].beta + V[i]/beta_wall)*der(p[i]) = m_left[i] - m_right[i] + air[i].rho*air[i].swell;
     end if;
+  end for;
+  for i in 1:N loop
+    stored[i] = air[i].rho_s*V_p[i]/growth[i];
+    Connections.conserved(stored[i], (if volume_a and i == 1 then air[1].rho_port*port_a.q else m_left[i]) + (if volume_b and i == N then air[N].rho_port*port_b.q else -m_right[i]), p[i]);
   end for;
   for i in 1:M loop
     rho_m[i] = air[max(i - 1 + a, 1)].rho/growth[max(i - 1 + a, 1)];

@@ -27,7 +27,7 @@ model PilotedValve43 "4/3 directional valve whose spool two pilot pressures move
   Valve43Centre valve(redeclare Spool.Ideal spool, centre = centre, q_nom = q_nom, dp_nom = dp_nom, overlap = overlap, underlap = underlap, opening = opening, rounding = rounding, leak = leak, C_d = C_d) "Edges";
   Mechanical.Translational.Mass spool(m = m, s(start = s_start, nominal = 1e-3), v(start = 0)) "Spool";
   Mechanical.Translational.Force drive "Pilot, springs and damping";
-  Mechanical.Translational.EndStops stops(s_min = -stroke, s_max = stroke, k = 50*k, c = 1e3*k, d_0 = 0.01*stroke) "Stops";
+  Mechanical.Translational.EndStops stops(s_min = -stroke, s_max = stroke, k = max(50*k, A_pilot*oil.p_max/(1e-2*stroke)), c_k = 20, d_0 = 1e-3*stroke) "Stops";
   SI.Position s(nominal = 1e-3) "Position of the spool";
   SI.Velocity v(nominal = 0.1) "Velocity of the spool";
   SI.Force f_springs(nominal = 100) "Force of the springs, towards the middle where s is positive";
@@ -37,6 +37,7 @@ protected
   parameter SI.TranslationalDampingConstant d = 2*D*sqrt(k*m) "Damping";
   SI.Density rho_X(nominal = 1000) "Density at X";
   SI.Density rho_Y(nominal = 1000) "Density at Y";
+  SI.MassFlowRate m_pilot(nominal = 1e-2) "Mass flow from X to Y: with the mean density of both, of voids the share where it is drawn";
 equation
   assert(A_pilot > 0 and stroke > 0 and m > 0, "A_pilot, stroke and m must be positive");
   assert(p_begin >= 0 and p_end > p_begin, "p_begin must not be negative, p_end must lie above p_begin");
@@ -50,13 +51,14 @@ equation
   connect(spool.flange_b, stops.flange);
   rho_X = oil.density(port_X.p);
   rho_Y = oil.density(port_Y.p);
-  rho_X*port_X.q = (rho_X + rho_Y)/2*A_pilot*v;
-  rho_Y*port_Y.q = -(rho_X + rho_Y)/2*A_pilot*v;
+  m_pilot = (max(rho_X, oil.rho_l) + max(rho_Y, oil.rho_l))/2*A_pilot*(max(v, 0)*min(rho_X/oil.rho_l, 1) + min(v, 0)*min(rho_Y/oil.rho_l, 1));
+  rho_X*port_X.q = m_pilot;
+  rho_Y*port_Y.q = -m_pilot;
   valve.u = s/stroke;
   connect(port_P, valve.port_P);
   connect(port_T, valve.port_T);
   connect(port_A, valve.port_A);
   connect(port_B, valve.port_B);
-  annotation(Documentation(info = "<html><p><code>m dv/dt = A_pilot (p_X - p_Y) - f_springs - d v</code> between stops, the springs being <code>A_pilot p_begin sgn(s) + k s</code> with <code>k = A_pilot (p_end - p_begin)/stroke</code>: two springs, each with a force in the middle, of which the other side's rests on the housing. The damping is <code>d = 2 D sqrt(k m)</code>. At rest <code>p_X - p_Y</code> from <code>p_begin</code> to <code>p_end</code> is travel from 0 to <code>stroke</code>.</p>
-<p>A pilot chamber takes <code>A_pilot v</code> and the other gives the same mass, so that an orifice in a pilot line slows the spool; oil in the chambers is not compressed. Oil of the chambers leaves with <code>T_0</code> where oil carries heat, and what the damping takes is not followed. The edges are those of <code>Valve43Centre</code>. Flow forces and the friction of the spool are left out: valid where the pilot force is large against them. Sources: spool: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, chapter 5; middle positions: ISO 1219-1. The values are assumed.</p></html>"));
+  annotation(Documentation(info = "<html><p><code>m dv/dt = A_pilot (p_X - p_Y) - f_springs - d v</code> between stops (which give by a hundredth of <code>stroke</code> at <code>p_max</code> of the oil in one pilot chamber), the springs being <code>A_pilot p_begin sgn(s) + k s</code> with <code>k = A_pilot (p_end - p_begin)/stroke</code>: two springs, each with a force in the middle, of which the other side's rests on the housing. The damping is <code>d = 2 D sqrt(k m)</code>. At rest <code>p_X - p_Y</code> from <code>p_begin</code> to <code>p_end</code> is travel from 0 to <code>stroke</code>.</p>
+<p>A pilot chamber takes <code>A_pilot v</code> and the other gives the same mass, which has the share of voids that stands where it is drawn, so that an orifice in a pilot line slows the spool; oil in the chambers is not compressed. Oil of the chambers leaves with <code>T_0</code> where oil carries heat, and what the damping takes is not followed. The edges are those of <code>Valve43Centre</code>. Flow forces and the friction of the spool are left out: valid where the pilot force is large against them. Sources: spool: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, chapter 5; middle positions: ISO 1219-1. The values are assumed.</p></html>"));
 end PilotedValve43;

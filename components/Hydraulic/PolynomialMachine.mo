@@ -1,6 +1,6 @@
 within Hydraulic;
 model PolynomialMachine "Displacement machine with losses as polynomials in pressure, speed and displacement"
-  extends Bases.Machine(compression = false, starvation = false);
+  extends Bases.Machine(compression = false);
   parameter SI.Pressure p_nom(min = 1e5, nominal = 1e7) = 2e7 "Pressure to which the coefficients refer";
   parameter SI.AngularVelocity w_nom(min = 1, nominal = 100) = 157 "Speed to which the coefficients refer";
   parameter Real q_1(unit = "1", min = 0) = 0.02 "Leakage over pressure, as part of V n at the nominal point";

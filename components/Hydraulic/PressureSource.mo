@@ -12,6 +12,7 @@ equation
   if not useInput then
     p_used = p;
   end if;
+  assert(p_used >= 0, "The pressure of the source is absolute and cannot be " + String(1e-5*p_used) + " bar: add the pressure of the surroundings to one that counts from there");
   port.p = p_used;
   annotation(Documentation(info = "<html><p>Takes and gives any flow at the pressure given.</p></html>"));
 end PressureSource;

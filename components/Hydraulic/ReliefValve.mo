@@ -9,14 +9,15 @@ model ReliefValve "Relief valve, static: opens from a to b above its setting"
   parameter Real Re_cr(unit = "1", min = 1, max = 5000) = 150 "Reynolds number of the laminar transition";
   Real x(unit = "1") "Opening, 0 to 1";
 protected
-  parameter SI.Area A_max = q_nom/(C_d*sqrt(2*p_set*(1 + override)/oil.rho_0)) "Cross section when open";
+  parameter SI.Density rho_full = (oil.density(oil.p_0) + oil.density(oil.p_0 + p_set*(1 + override)))/2 "Mean density when fully open, the outlet at p_0";
+  parameter SI.Area A_max = q_nom/(C_d*sqrt(2*p_set*(1 + override)/rho_full)) "Cross section when open";
 equation
   assert(p_set > 0, "The setting p_set must be positive");
   assert(q_nom > 0 and override > 0, "q_nom and override must be positive");
   x = Smooth.clip((dp - p_set)/(override*p_set), 0.1);
   q = Functions.orificeFlow(dp, A_leak + x*A_max, C_d, rho, mu_in, Re_cr);
   annotation(Documentation(info = "<html>
-<p>The opening grows in proportion to the pressure above <code>p_set</code>, the corners rounded over a tenth of the range, and is full at
-<code>p_set (1 + override)</code> (5 to 10 % is usual), where it passes <code>q_nom</code>. Closed in the other direction. Use <code>ReliefValveDynamic</code> where the delay of
+<p>The opening grows in proportion to the pressure above <code>p_set</code>, the corners rounded over a tenth of the range each (<code>Smooth.clip</code>), and is full at
+<code>p_set (1 + override)</code> (5 to 10 % is usual), where it passes <code>q_nom</code>, counted at the mean density of both sides. Closed in the other direction. Use <code>ReliefValveDynamic</code> where the delay of
 opening matters. Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, section 5.7.</p></html>"));
 end ReliefValve;

@@ -10,7 +10,8 @@ model ReliefValveDynamic "Relief valve whose opening follows with a time constan
   parameter Real Re_cr(unit = "1", min = 1, max = 5000) = 150 "Reynolds number of the laminar transition";
   Real x(unit = "1", start = 0, fixed = true) "Opening, 0 to 1";
 protected
-  parameter SI.Area A_max = q_nom/(C_d*sqrt(2*p_set*(1 + override)/oil.rho_0)) "Cross section when open";
+  parameter SI.Density rho_full = (oil.density(oil.p_0) + oil.density(oil.p_0 + p_set*(1 + override)))/2 "Mean density when fully open, the outlet at p_0";
+  parameter SI.Area A_max = q_nom/(C_d*sqrt(2*p_set*(1 + override)/rho_full)) "Cross section when open";
 equation
   assert(p_set > 0, "The setting p_set must be positive");
   assert(tau > 0, "The time constant tau must be positive");

@@ -15,7 +15,7 @@ model Reservoir "Reservoir with a level: open, or closed with a cushion of gas"
   SI.Height h(start = h_start, nominal = 0.1) "Level";
   SI.Temperature T_oil(start = T_oil_start, fixed = oil.thermal, nominal = 300) "Temperature of the oil";
   SI.Pressure p(nominal = 1e5) "Pressure above the oil";
-  SI.Mass mass(nominal = 100) "Mass of the oil";
+  SI.Mass mass(nominal = oil.rho_0*A*h_start) "Mass of the oil";
 protected
   SI.Density rho(nominal = 1000) "Density of the oil at the bottom, at T_0";
   SI.HeatFlowRate Q_flow(nominal = 10) "Heat through heatPort";
@@ -44,5 +44,6 @@ equation
   end if;
   port.p = p + rho/growth*Modelica.Constants.g_n*h;
   mass = rho/growth*A*h;
+  Connections.conserved(mass, rho*port.q, h);
   annotation(Documentation(info = "<html><p><code>A dh/dt = q</code>, <code>p_port = p + rho g h</code>. Closed, the gas is compressed as the level rises, <code>p (h_max - h)^n = const</code>: what differential cylinders do to a small sealed tank. The compressibility of the oil at this pressure is left out. The run ends when the reservoir runs dry or overflows.</p><p>Where the level does not matter: <code>Tank</code>. Source: hydrostatics.</p></html>"));
 end Reservoir;

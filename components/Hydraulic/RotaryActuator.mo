@@ -3,6 +3,7 @@ model RotaryActuator "Rotary actuator with vanes: two chambers, leakage, frictio
   Interfaces.HydraulicPort port_1 "Chamber 1; its pressure turns positively";
   Interfaces.HydraulicPort port_2 "Chamber 2; its pressure turns negatively";
   Interfaces.RotationalFlange flange "Shaft";
+  outer Oil.Fluid oil "Oil of the circuit";
   parameter Integer z(min = 1, max = 4) = 1 "Number of vanes";
   parameter SI.Radius r_i(min = 1e-3, max = 2, nominal = 0.1) = 0.025 "Radius of the shaft";
   parameter SI.Radius r_o(min = 1e-3, max = 2, nominal = 0.1) = 0.06 "Radius of the bore";
@@ -17,8 +18,9 @@ model RotaryActuator "Rotary actuator with vanes: two chambers, leakage, frictio
   parameter Real k_p(unit = "1", min = 0, max = 0.5) = 0.05 "Dry friction of the vane seals over the torque of the pressure difference";
   parameter SI.RotationalDampingConstant b(min = 0, max = 1e5, nominal = 1) = 1 "Viscous friction";
   parameter SI.AngularVelocity w_s(min = 1e-4, max = 10, nominal = 0.1) = 0.02 "Width of the sign of speed in the dry friction";
-  parameter SI.RotationalSpringConstant k(min = 1, max = 1e12, nominal = 1e5) = 1e6 "Stiffness of the stops";
-  parameter Real c(unit = "N.m.s/rad2", min = 0, max = 1e14, nominal = 1e5) = 1e6 "Damping of the stops per depth of penetration";
+  parameter SI.Pressure p_rated(min = 1e4, max = 1e10, nominal = 1e7) = oil.p_max "Pressure that the stops are made for";
+  parameter SI.RotationalSpringConstant k(min = 1, max = 1e12, nominal = 1e5) = max(1e6, D*p_rated/d_stop) "Stiffness of the stops";
+  parameter Real c(unit = "N.m.s/rad2", min = 0, max = 1e14, nominal = 1e5) = k*c_k "Damping of the stops per depth of penetration";
   parameter SI.Pressure p_ambient(min = 0, max = 1e7, nominal = 1e5) = 101325 "Pressure outside";
   parameter SI.Angle phi_start(min = -0.1, max = 6.3, nominal = 1, displayUnit = "deg") = range/2 "Angle at the start, from the stop where chamber 1 is smallest";
   parameter SI.Pressure p_1_start(min = 1e3, max = 1e8, nominal = 1e6) = 101325 "Pressure of chamber 1 at the start";
@@ -28,7 +30,7 @@ model RotaryActuator "Rotary actuator with vanes: two chambers, leakage, frictio
   RotaryChamber chamber_2(redeclare model Air = Air, D = D, side = -1, V_0 = V_0, phi_0 = range, p_ambient = p_ambient, p_start = p_2_start) "Chamber 2";
   LaminarGap leak(G = C_i, mu_G = mu_C, followViscosity = followViscosity) "Leakage past the vanes";
   Mechanical.Rotational.Inertia shaft(J = J, phi(start = phi_start)) "Shaft and vanes";
-  Mechanical.Rotational.EndStops stops(phi_min = 0, phi_max = range, k = k, c = c) "End stops";
+  Mechanical.Rotational.EndStops stops(phi_min = 0, phi_max = range, k = k, c = c, d_0 = min(1e-3, d_stop)) "End stops";
   Mechanical.Rotational.Torque friction "Friction of bearings and seals";
   SI.Angle phi(nominal = 1) "Angle, 0 where chamber 1 is smallest";
   SI.AngularVelocity w(nominal = 1) "Speed";
@@ -38,6 +40,8 @@ model RotaryActuator "Rotary actuator with vanes: two chambers, leakage, frictio
   SI.Power lossPower(nominal = 10) "Power lost by friction";
 protected
   parameter Real D(unit = "m3/rad") = z*width*(r_o^2 - r_i^2)/2 "Volume per radian";
+  parameter SI.Angle d_stop = max(min(1e-3*range, V_0/D/2), 1e-5) "Depth in a stop at p_rated";
+  constant Real c_k(unit = "s/rad") = 1 "Damping of the stops over their stiffness";
 equation
   assert(r_o > r_i, "The bore r_o must be larger than the shaft r_i");
   assert(z*range < 2*Modelica.Constants.pi, "So many vanes leave no room for this range: z times range must stay below a full turn");
@@ -60,6 +64,6 @@ equation
   friction.tau = -T_loss;
   lossPower = T_loss*w;
   annotation(Documentation(info = "<html>
-<p>Volume per radian <code>D = z width (r_o^2 - r_i^2)/2</code>; <code>J dw/dt = D (p_1 - p_2) - T_loss + tau_flange</code>, <code>T_loss = (T_c + k_p D |p_1 - p_2|) tanh(w/w_s) + b w</code>; each chamber as <code>RotaryChamber</code>, laminar leakage past the vanes, elastic stops at 0 and <code>range</code>. Two vanes double the torque and allow less than half a turn. The seals of vanes leak more than those of pistons: held under load, the shaft creeps.</p>
+<p>Volume per radian <code>D = z width (r_o^2 - r_i^2)/2</code>; <code>J dw/dt = D (p_1 - p_2) - T_loss + tau_flange</code>, <code>T_loss = (T_c + k_p D |p_1 - p_2|) tanh(w/w_s) + b w</code>; each chamber as <code>RotaryChamber</code>, laminar leakage past the vanes, elastic stops at 0 and <code>range</code>, which at <code>p_rated</code> give by a thousandth of the range or half of what <code>V_0</code> allows, and are never softer than 1e6 N.m/rad. Two vanes double the torque and allow less than half a turn. The seals of vanes leak more than those of pistons: held under load, the shaft creeps.</p>
 <p>For the type with rack and pinion join a <code>Cylinder</code> to <code>Mechanical.Rotational.IdealRackAndPinion</code>. Source: the torque on a vane, integral of <code>dp width r dr</code>; dynamics as H. E. Merritt, Hydraulic Control Systems, Wiley 1967, section 6.1. The friction is written here in the form of <code>Pump</code>; the values are assumed.</p></html>"));
 end RotaryActuator;

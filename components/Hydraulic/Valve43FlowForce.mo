@@ -23,7 +23,7 @@ model Valve43FlowForce "4/3 valve operated directly: solenoid, springs, mass of 
   SpoolEdge edge_PB(A_max = A_max, overlap = overlap, rounding = rounding, leak = leak, C_d = C_d) "P to B";
   SpoolEdge edge_AT(A_max = A_max, overlap = overlap, rounding = rounding, leak = leak, C_d = C_d) "A to T";
   SpoolEdge edge_BT(A_max = A_max, overlap = overlap, rounding = rounding, leak = leak, C_d = C_d) "B to T";
-  Mechanical.Translational.EndStops stops(s_min = -x_max, s_max = x_max) "Ends of the travel";
+  Mechanical.Translational.EndStops stops(s_min = -x_max, s_max = x_max, d_0 = min(1e-4, 1e-3*x_max)) "Ends of the travel";
   Mechanical.Translational.Mass spool(m = m) "Spool";
   Mechanical.Translational.SpringDamper spring(c = c, d = d) "Springs";
   Mechanical.Translational.Fixed housing "Housing";

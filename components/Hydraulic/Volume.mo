@@ -1,6 +1,6 @@
 within Hydraulic;
 model Volume "Oil in a rigid or compliant volume"
-  extends Bases.Storage;
+  extends Bases.Storage(stored(nominal = oil.rho_0*V));
   parameter SI.Volume V(min = 1e-9, max = 10, nominal = 1e-3, displayUnit = "ml") = 1e-3 "Volume at the reference pressure of the oil";
   parameter SI.BulkModulus beta_wall(min = 1e6, nominal = 1e9) = Modelica.Constants.inf "Modulus of the wall: 0.5 to 1 GPa for hoses, infinite for tubes";
   parameter SI.Pressure p_start(nominal = 1e6) = 101325 "Pressure at the start";

@@ -1,6 +1,6 @@
 within Hydraulic;
 model WilsonMachine "Displacement machine with the loss coefficients of Wilson and Schloesser"
-  extends Bases.Machine(compression = false, starvation = false);
+  extends Bases.Machine(compression = false);
   parameter Real c_s(unit = "1", min = 0) = 1e-9 "Laminar leakage: c_s V dp/(2 pi mu)";
   parameter Real c_t(unit = "1", min = 0) = 0 "Turbulent leakage: c_t V^(2/3) sqrt(2 dp/rho)";
   parameter Real c_d(unit = "1", min = 0) = 1e5 "Viscous friction: c_d V mu w/(2 pi)";

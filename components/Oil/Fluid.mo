@@ -16,6 +16,8 @@ model Fluid "Oil of the circuit: laws of density with bulk modulus and of viscos
   parameter SI.CubicExpansionCoefficient gamma(min = 0, max = 5e-3) = 7e-4 "Growth of the volume per kelvin over that at T_0, for thermal";
   parameter SI.Pressure p_max(min = 1e6, max = 1e10, nominal = 1e8) = 1e8 "Pressure above which a warning is given: no machine stands it";
   parameter SI.Pressure p_void(min = 0, nominal = 1e4) = 1.4e4 "Pressure below which a warning is given: voids open in the oil";
+  final parameter SI.Pressure p_l = max(p_void, 1.4e4) + 1.1e4 "Lowest pressure without voids";
+  final parameter SI.Density rho_l = density(p_l) "Density there: what the oil between the voids has";
   parameter Boolean useTemperatureInput = false "true: the temperature comes through T_in" annotation(Evaluate = true);
   replaceable function density = Oil.Compression.entrainedAir(beta_0 = beta_0, m = m, alpha_0 = alpha_0, n_g = n_g)
     constrainedby Oil.Compression.Law(rho_0 = rho_0, p_0 = p_0, x_u = x_u) "Density and tangent bulk modulus at a pressure";
@@ -60,5 +62,6 @@ one law, so that they cannot contradict each other and volumes conserve mass. Ch
 redeclaration, for instance <code>redeclare function density = Oil.Compression.linearModulus(beta_0 = 1.6e9, m = 12)</code>.</p>
 <p><b>Heat.</b> With <code>thermal = true</code> every volume, chamber, line, reservoir and machine has a temperature of its own, flow carries heat, and density and viscosity follow: see <code>Oil.Heat</code> and <code>Hydraulic.Bases.Storage</code>. The volume grows with <code>gamma</code>
 per kelvin, and <code>c_p</code> is constant: set <code>T_0</code> to the middle of the range of temperatures. Otherwise the oil has one temperature, <code>T_0</code> or what comes through <code>T_in</code>.</p>
+<p><b>Low pressure.</b> Every law opens voids, so that the density falls to nothing as the pressure falls to <code>p_v</code> of the law, 0: see <code>Oil.Compression.entrainedAir</code>. Give a law another <code>p_v</code> and <code>p_void</code> rises by as much.</p>
 <p>Valid from about 0.01 to 50 MPa and -20 to 120 degC. The default is a mineral oil of ISO VG 46 at 40 degC.</p></html>"));
 end Fluid;

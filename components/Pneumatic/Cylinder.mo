@@ -10,7 +10,8 @@ model Cylinder "Double-acting cylinder: two chambers, seal friction, leakage, en
   parameter SI.Volume V_01(min = 1e-8, max = 1, nominal = 1e-5, displayUnit = "ml") = 1e-5 "Volume of chamber 1 at s = 0, fully retracted, with the line";
   parameter SI.Volume V_02(min = 1e-8, max = 1, nominal = 1e-5, displayUnit = "ml") = 1e-5 "Volume of chamber 2 at s = stroke, fully extended, with the line";
   parameter SI.Mass m(min = 1e-3, max = 1e6, nominal = 1) = 0.5 "Mass of piston and rod";
-  parameter SI.TranslationalSpringConstant c_stop(min = 1e6, max = 1e10, nominal = 1e7) = 1e7 "Stiffness of the end stops";
+  parameter SI.TranslationalSpringConstant c_stop(min = 1e6, max = 1e12, nominal = 1e7) = max(1e7, max(A_1, A_2)*p_rated/d_stop) "Stiffness of the end stops";
+  parameter SI.Pressure p_rated(min = 1e4, max = 1e8, nominal = 1e6, displayUnit = "bar") = 16e5 "Pressure that the end stops are made for";
   parameter SI.ThermalConductance G_1(min = 0, max = 1e6, nominal = 1) = 0 "Heat transfer of chamber 1 to the wall; 0: adiabatic";
   parameter SI.ThermalConductance G_2(min = 0, max = 1e6, nominal = 1) = 0 "Heat transfer of chamber 2 to the wall; 0: adiabatic";
   parameter SI.Temperature T_wall(min = 1, max = 2000, nominal = 300, displayUnit = "degC") = gas.T_0 "Temperature of the wall";
@@ -26,12 +27,14 @@ model Cylinder "Double-acting cylinder: two chambers, seal friction, leakage, en
   Chamber chamber_2(A = A_2, side = -1, V_0 = V_02, s_0 = stroke, p_ambient = p_ambient, p_start = p_2_start, T_start = T_start, G = G_2, T_wall = T_wall) "Chamber 2";
   Orifice leak(C = C_i) if pistonLeakage "Leakage past the piston";
   Mechanical.Translational.Mass piston(m = m, s(start = s_start), v(start = v_start)) "Piston and rod";
-  Mechanical.Translational.EndStops stops(s_min = 0, s_max = stroke, k = c_stop, c = 10*c_stop) "End stops";
+  Mechanical.Translational.EndStops stops(s_min = 0, s_max = stroke, k = c_stop, c = 10*c_stop, d_0 = min(1e-4, d_stop)) "End stops";
   replaceable Hydraulic.SealFriction.Stribeck seal(F_0 = 15, k_c = 2e-5, v_brk = 0.01, B = 50) constrainedby Hydraulic.SealFriction.Law "Friction of the seals";
   SI.Position s(nominal = 0.1) "Position of the rod, 0 retracted";
   SI.Velocity v(nominal = 0.1) "Velocity of the rod";
   SI.Pressure p_1(nominal = 1e5) "Pressure of chamber 1";
   SI.Pressure p_2(nominal = 1e5) "Pressure of chamber 2";
+protected
+  parameter SI.Length d_stop = max(min(1e-3*stroke, min(V_01/A_1, V_02/A_2)/2), 1e-5) "Depth in an end stop at p_rated";
 equation
   assert(stroke > 0, "The stroke must be positive");
   assert(s_start > -0.01*stroke and s_start < 1.01*stroke, "The position at the start s_start must lie from 0 to the stroke");
@@ -54,7 +57,7 @@ equation
   p_2 = chamber_2.p;
   annotation(Documentation(info = "<html>
 <p>Two <code>Chamber</code>s on one piston, <code>m dv/dt = A_1 p_1 - A_2 p_2 - p_a (A_1 - A_2) - f + f_flange</code> (the rod outside carries the surroundings). The friction is replaceable, the laws are those of <code>Hydraulic.SealFriction</code>:
-<code>None</code>, <code>Viscous</code>, <code>Stribeck</code> (default, creeps under load), <code>LuGre</code>, <code>Sticking</code>. The end stops are elastic and damped, <code>Mechanical.Translational.EndStops</code>, damping <code>10 c_stop</code> per metre and m/s. Cushioning of the end positions is left out. The heat of friction is not given to the gas.</p>
+<code>None</code>, <code>Viscous</code>, <code>Stribeck</code> (default, creeps under load), <code>LuGre</code>, <code>Sticking</code>. The end stops are elastic and damped, <code>Mechanical.Translational.EndStops</code>, damping <code>10 c_stop</code> per metre and m/s; at <code>p_rated</code> on the whole area they give by a thousandth of the stroke or half of what the volume left at the end allows, whichever is less, and are never softer than 1e7 N/m. Cushioning of the end positions is left out. The heat of friction is not given to the gas.</p>
 <p>Defaults: bore 32 mm, rod 12 mm, stroke 200 mm, friction assumed, some 8 % of the force at 6 bar. Adiabatic unless <code>G_1</code>, <code>G_2</code> are set: with a coefficient of 20 to 60 W/(m2 K) and the surface at half the stroke a cylinder of this size has some 0.3 to 1 W/K.</p>
 <p>Source: P. Beater, Pneumatic Drives, Springer 2007, chapter on cylinders.</p></html>"));
 end Cylinder;

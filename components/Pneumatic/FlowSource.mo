@@ -14,7 +14,8 @@ equation
   if not useInput then
     m_flow_used = m_flow;
   end if;
+  assert(m_flow_used >= 0 or port.p > 1e-3*gas.p_0, "The source takes " + String(-1e3*m_flow_used) + " g/s out of a node that is empty: its pressure has fallen to a thousandth of that of the surroundings. Nothing, or too little, flows in there");
   port.m_flow = -m_flow_used;
   port.h_outflow = gas.c_p*T;
-  annotation(Documentation(info = "<html><p>Gives any pressure that the flow needs; join it to a volume or a restriction. A positive flow leaves the port, with the temperature T. A restriction that is choked cannot pass more than its pressure upstream gives.</p></html>"));
+  annotation(Documentation(info = "<html><p>Gives any pressure that the flow needs; join it to a volume or a restriction. A positive flow leaves the port, with the temperature T. A restriction that is choked cannot pass more than its pressure upstream gives; a source that draws more, or from a volume that is empty, ends with an error.</p></html>"));
 end FlowSource;

@@ -9,7 +9,8 @@ model SingleActingCylinder "Single-acting cylinder: pressure extends, spring and
   parameter SI.Mass m(min = 1e-3, max = 1e6, nominal = 1) = 0.2 "Mass of piston and rod";
   parameter SI.TranslationalSpringConstant c(min = 1e-6, max = 1e8, nominal = 1e3) = 500 "Return spring";
   parameter SI.Force F_0(min = 0, max = 1e4, nominal = 100) = 20 "Force of the return spring at s = 0";
-  parameter SI.TranslationalSpringConstant c_stop(min = 1e6, max = 1e10, nominal = 1e7) = 1e7 "Stiffness of the end stops";
+  parameter SI.TranslationalSpringConstant c_stop(min = 1e6, max = 1e12, nominal = 1e7) = max(1e7, A*p_rated/d_stop) "Stiffness of the end stops";
+  parameter SI.Pressure p_rated(min = 1e4, max = 1e8, nominal = 1e6, displayUnit = "bar") = 16e5 "Pressure that the end stops are made for";
   parameter SI.ThermalConductance G(min = 0, max = 1e6, nominal = 1) = 0 "Heat transfer to the wall; 0: adiabatic";
   parameter SI.Temperature T_wall(min = 1, max = 2000, nominal = 300, displayUnit = "degC") = gas.T_0 "Temperature of the wall";
   parameter SI.Pressure p_ambient(min = 0, nominal = 1e5, displayUnit = "bar") = gas.p_0 "Pressure outside";
@@ -19,12 +20,14 @@ model SingleActingCylinder "Single-acting cylinder: pressure extends, spring and
   parameter SI.Temperature T_start(min = 1, max = 2000, nominal = 300, displayUnit = "degC") = gas.T_0 "Temperature at the start";
   Chamber chamber(A = A, side = 1, V_0 = V_0, p_ambient = p_ambient, p_start = p_start, T_start = T_start, G = G, T_wall = T_wall) "Chamber";
   Mechanical.Translational.Mass piston(m = m, s(start = s_start), v(start = v_start)) "Piston and rod";
-  Mechanical.Translational.EndStops stops(s_min = 0, s_max = stroke, k = c_stop, c = 10*c_stop) "End stops";
+  Mechanical.Translational.EndStops stops(s_min = 0, s_max = stroke, k = c_stop, c = 10*c_stop, d_0 = min(1e-4, d_stop)) "End stops";
   Mechanical.Translational.Spring spring(c = c, s_rel0 = -F_0/c) "Return spring";
   Mechanical.Translational.Fixed housing "Housing";
   replaceable Hydraulic.SealFriction.Stribeck seal(F_0 = 8, k_c = 1e-5, v_brk = 0.01, B = 30) constrainedby Hydraulic.SealFriction.Law "Friction of the seal";
   SI.Position s(nominal = 0.1) "Position of the rod, 0 retracted";
   SI.Velocity v(nominal = 0.1) "Velocity of the rod";
+protected
+  parameter SI.Length d_stop = max(min(1e-3*stroke, V_0/A/2), 1e-5) "Depth in an end stop at p_rated";
 equation
   assert(stroke > 0 and c > 0, "The stroke and the spring c must be positive");
   assert(s_start > -0.01*stroke and s_start < 1.01*stroke, "The position at the start s_start must lie from 0 to the stroke");
@@ -40,5 +43,5 @@ equation
   seal.p_2 = 0;
   s = piston.s;
   v = piston.v;
-  annotation(Documentation(info = "<html><p><code>m dv/dt = A (p - p_a) - F_0 - c s - f_seal + f_flange</code>, end stops at both ends; friction replaceable as in <code>Cylinder</code>. Rod side open to the surroundings without resistance. Defaults: bore 25 mm, stroke 50 mm; friction assumed. Source: P. Beater, Pneumatic Drives, Springer 2007, chapter on cylinders.</p></html>"));
+  annotation(Documentation(info = "<html><p><code>m dv/dt = A (p - p_a) - F_0 - c s - f_seal + f_flange</code>, end stops at both ends, as stiff as in <code>Cylinder</code> (<code>p_rated</code>); friction replaceable as in <code>Cylinder</code>. Rod side open to the surroundings without resistance. Defaults: bore 25 mm, stroke 50 mm; friction assumed. Source: P. Beater, Pneumatic Drives, Springer 2007, chapter on cylinders.</p></html>"));
 end SingleActingCylinder;

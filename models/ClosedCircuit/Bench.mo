@@ -25,8 +25,8 @@ model Bench "The whole bench: charge pump, flushing, filters, cooler, relief val
   Hydraulic.ReliefValve chargeRelief(p_set = 2.0e6, q_nom = 5e-4, override = 0.1) "8: charge relief valve";
   Hydraulic.ReliefValve safety_A(p_set = 30e6, q_nom = 1e-3) "9-1: safety relief from A to B";
   Hydraulic.ReliefValve safety_B(p_set = 30e6, q_nom = 1e-3) "9-2: safety relief from B to A";
-  Hydraulic.Volume side_A(V = V_line, p_start = 7e6) "Side A";
-  Hydraulic.Volume side_B(V = V_line, p_start = 2e6) "Side B";
+  Hydraulic.Volume side_A(V = V_line, p_start = 7e6, redeclare model Air = Hydraulic.EntrainedAir.Dissolving(x_start = 1e-4)) "Side A: its air dissolves with time";
+  Hydraulic.Volume side_B(V = V_line, p_start = 2e6, redeclare model Air = Hydraulic.EntrainedAir.Dissolving(x_start = 0.25)) "Side B";
   Hydraulic.Volume chargeLine(V = 2e-4, p_start = 2e6) "Charge line";
   BenchMachine hydraulicMotor(tangentModulus = false) "11: hydraulic motor";
   Mechanical.Rotational.TorqueSensor sensor_2 "4-2: torque behind the hydraulic motor";
@@ -107,5 +107,5 @@ equation
   T_e = shaft_1.flange_a.tau;
   annotation(
     experiment(StartTime = 0, StopTime = 40, Interval = 0.01, Tolerance = 1e-6),
-    Documentation(info = "<html><p>Against <code>Reduced</code> the low side is no longer constant (it follows the charge relief valve and the flushing), the charge pump loads the motor, the hydraulic motor loses compressed oil too, and the load is a pump against a relief valve instead of a polynomial.</p></html>"));
+    Documentation(info = "<html><p>Against <code>Reduced</code> the low side is no longer constant (it follows the charge relief valve and the flushing), the charge pump loads the motor, the hydraulic motor loses compressed oil too, the load is a pump against a relief valve instead of a polynomial, and the air of the oil in both lines dissolves with time.</p></html>"));
 end Bench;

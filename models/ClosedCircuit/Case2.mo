@@ -1,6 +1,7 @@
 within ClosedCircuit;
 model Case2 "Case 2: ramps of the load command up and down at constant frequency"
   extends Reduced(
+    highSide(redeclare model Air = Hydraulic.EntrainedAir.Dissolving(x_start = 1e-4)),
     redeclare Signal.Trapezoid command(amplitude = 3, rising = 6, holding = 6, falling = 6, offset = u, startTime = 10));
   annotation(
     experiment(StartTime = 0, StopTime = 40, Interval = 0.01, Tolerance = 1e-7),

@@ -1,6 +1,7 @@
 within ClosedCircuit;
 model Case3 "Case 3: step of the load command (also Figs. 10 and 11 by motor and J_L)"
   extends Reduced(
+    highSide(redeclare model Air = Hydraulic.EntrainedAir.Dissolving(x_start = 1e-4)),
     redeclare Signal.Step command(height = 3, offset = u, startTime = 20));
   annotation(
     experiment(StartTime = 0, StopTime = 40, Interval = 0.005, Tolerance = 1e-7),

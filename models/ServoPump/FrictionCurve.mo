@@ -6,7 +6,7 @@ model FrictionCurve "Friction torque of motor and pump over speed, without load 
   Signal.Ramp speed(offset = 0.1, height = Modelica.Units.Conversions.from_rpm(N_end) - 0.1, duration = 10) "Speed";
   Mechanical.Rotational.Speed motor "Shaft, its speed held exactly";
   Mechanical.Rotational.BearingFriction friction(tau_c = 0.01, tau_s = 0.05, w_s = 20, d = 0.2e-4) "Dry friction of seal and bearings";
-  BenchPump pump(compression = false) "Pump";
+  BenchPump pump(compression = false, dry(z(start = 1.98e-4))) "Pump, its bristles wound up at the start: it turns";
   Hydraulic.Tank tank "Tank, at both ports";
   Real N(unit = "rev/min", nominal = 1e3) "Speed";
   SI.Torque T_f(nominal = 0.1) "Friction torque of both";

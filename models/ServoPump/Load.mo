@@ -6,12 +6,13 @@ model Load "Speed held against a load pressure set by a throttle (paper's Fig. 1
   parameter Real theta_oil(unit = "degC", min = 0, max = 90) = 35 "Temperature of the oil";
   parameter SI.Volume V_A(min = 1e-6, max = 1e-2, nominal = 1e-4, displayUnit = "ml") = 50e-6 "Oil volume at port A";
   parameter SI.Torque T_rated(min = 0.1) = 3.18 "Rated torque of the motor";
+  parameter Boolean compression = true "true: with the compression flow of the pump's chambers" annotation(Evaluate = true);
   inner Oil.ServoPumpOil oil(T_0 = Modelica.Units.Conversions.from_degC(theta_oil)) "Oil";
   Signal.Ramp speed(height = Modelica.Units.Conversions.from_rpm(N_set), duration = abs(N_set)/ramp) "Speed command";
   replaceable SampledFieldOrientedDrive drive constrainedby Drive "1: servo motor";
   Mechanical.Rotational.Inertia rotor(J = 1.8e-4) "Inertia of motor and pump";
   Mechanical.Rotational.BearingFriction friction(tau_c = 0.01, tau_s = 0.05, w_s = 20, d = 0.2e-4) "Dry friction of seal and bearings";
-  BenchPump pump(compression = false) "2: pump";
+  BenchPump pump(compression = compression) "2: pump";
   ShaftRipple ripple "Torque ripple of the load";
   Hydraulic.Volume volume_A(V = V_A, p_start = 5e5) "Oil at port A";
   Hydraulic.Volume volume_B(V = 1e-4, p_start = 4.5e5) "Oil at port B";

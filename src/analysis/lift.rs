@@ -139,13 +139,14 @@ impl Lift {
     /// Puts the states in the place of their parameters in everything that holds during the run.
     fn substitute(&mut self) {
         let mut substitution = Substitution::new(self.replacements.drain(..));
-        let FlatModel { exprs, equations, initial_equations, whens, asserts, .. } = &mut self.flat;
+        let FlatModel { exprs, equations, initial_equations, whens, asserts, conserved, .. } = &mut self.flat;
         let mut change = |e: &mut ExprId| *e = substitution.apply(exprs, *e);
         for equation in equations.iter_mut().chain(initial_equations) {
             change(&mut equation.lhs);
             change(&mut equation.rhs);
         }
         asserts.iter_mut().for_each(|a| change(&mut a.condition));
+        conserved.iter_mut().for_each(|c| [&mut c.quantity, &mut c.rate].into_iter().for_each(&mut change));
         whens.iter_mut().for_each(|w| change_when(w, &mut change));
     }
 

@@ -162,13 +162,13 @@ impl Local {
             y[place.column] = if place.negated { -value } else { value };
         }
         if plan.discrete || !plan.newton(time, y, yp, residual, entries, torn_entries, &mut point.values)? {
-            for (j, c) in system.columns.iter().enumerate().filter(|(_, c)| c.state) {
+            for (j, c) in system.columns.iter().enumerate().filter(|(_, c)| c.is_state()) {
                 point.values[system.layout.var(c.variable)] = y[j];
             }
             point.settle(time)?;
             for (j, c) in system.columns.iter().enumerate() {
                 y[j] = point.values[system.layout.var(c.variable)];
-                yp[j] = if c.state { point.values[system.layout.der(c.variable).expect("a state")] } else { 0.0 };
+                yp[j] = if c.is_state() { point.values[system.layout.der(c.variable).expect("a state")] } else { 0.0 };
             }
         }
         if *reads_rates && !plan.discrete {

@@ -354,7 +354,7 @@ mod tests {
         let world = MemoryWorld::single("m.mo", text);
         let request = crate::Request { source: source.into(), ..crate::Request::default() };
         let model =
-            crate::compile::compile(&world, &request, &crate::lower::Options { native: false }).value.expect("sound");
+            crate::compile::compile(&world, &request, &crate::lower::Options::INTERPRETED).value.expect("sound");
         let id = |n: &str| {
             let i = model.flat.variables.iter().position(|v| v.name == n).expect("there");
             VarId(u32::try_from(i).expect("small"))

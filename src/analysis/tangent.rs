@@ -43,7 +43,7 @@ impl Tangent {
         if !dae.delays.is_empty() {
             return Err("what is delayed is not carried along".to_owned());
         }
-        let system = Arc::new(lower(Arc::new(dae), &Options::default()));
+        let system = Arc::new(lower(Arc::new(dae), &Options { conserve: false, ..Options::default() }));
         Ok(Tangent { system, sizes: parameters.iter().map(|p| p.1).collect(), raised: lifted.parameters })
     }
 

@@ -28,7 +28,7 @@ pub struct Exchange<'a> {
 
 impl<'a> Exchange<'a> {
     pub(super) fn new(simulation: &'a Simulation) -> Result<Self, Error> {
-        let system = &simulation.model().system;
+        let system = simulation.system_of_states();
         if let Some(why) = exchange::refuses(system) {
             let d = Diagnostic::new(Code::Unsupported, format!("the model cannot be integrated by others: {why}"));
             return Err(simulation.errors(vec![d]));

@@ -7,14 +7,14 @@ use crate::compile::{Model, Request, compile, deep};
 use crate::diag::{Code, Diagnostic, Error, Sources};
 use crate::expr::VarId;
 use crate::flat::Variability;
-use crate::lower;
+use crate::lower::{self, System};
 use crate::results::{Signal, Trajectory};
 use crate::solve::{self, Control, End, Input, Interpolation, Progress, Run, Settings, Sink, State, Statistics};
 use crate::structure::StateChoice;
 use crate::structure::parameters::out_of_range;
 use crate::world::{DiskWorld, MemoryWorld, World};
 use std::ops::ControlFlow;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// What a run gave.
 #[derive(Clone, Debug)]
@@ -46,6 +46,8 @@ pub struct Simulation {
     sources: Arc<Sources>,
     settings: Settings,
     inputs: Vec<Input>,
+    /// For callers who integrate the states themselves: without conserved quantities among the unknowns.
+    of_states: Arc<OnceLock<System>>,
     /// Remarks and warnings of the compilation.
     pub diagnostics: Vec<Diagnostic>,
 }
@@ -62,7 +64,7 @@ impl Simulation {
             Some(model) => {
                 let mut settings = Settings::from_experiment(&model.flat.experiment);
                 settings.wanted = visible(&model);
-                Ok(Simulation { model, sources, settings, inputs: Vec::new(), diagnostics: outcome.diagnostics })
+                Ok(Simulation { model, sources, settings, inputs: Vec::new(), of_states: Arc::default(), diagnostics: outcome.diagnostics })
             }
             None => Err(Error { diagnostics: outcome.diagnostics, sources }),
         }
@@ -326,6 +328,16 @@ impl Simulation {
         Exchange::new(self)
     }
 
+    /// The model with nothing but its states to integrate.
+    pub(super) fn system_of_states(&self) -> &System {
+        let system = &self.model.system;
+        if system.integrals.is_empty() {
+            return system;
+        }
+        let options = lower::Options { conserve: false, ..lower::Options::default() };
+        self.of_states.get_or_init(|| lower::lower(system.dae.clone(), &options))
+    }
+
     /// Why the model cannot be integrated by others; `None` where it can.
     pub fn keeps_its_integrator(&self) -> Option<&'static str> {
         solve::driver::exchange::refuses(&self.model.system)
@@ -333,7 +345,7 @@ impl Simulation {
 
     /// The continuous states, in the order of [`Exchange::states`].
     pub fn states(&self) -> Vec<Signal> {
-        let columns = self.model.system.columns.iter().filter(|c| c.state);
+        let columns = self.model.system.columns.iter().filter(|c| c.is_state());
         solve::signals(&self.model.dae, &columns.map(|c| c.variable).collect::<Vec<_>>())
     }
 

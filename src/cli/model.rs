@@ -48,7 +48,7 @@ pub(super) fn described(request: &Request, class: &str) -> String {
 
 /// The whole way to a system that can run.
 pub(super) fn compile(experiment: &Experiment, messages: &mut Messages) -> Result<Model, Failure> {
-    let outcome = crate::compile::compile(&DiskWorld, &request(experiment)?, &Options { native: true });
+    let outcome = crate::compile::compile(&DiskWorld, &request(experiment)?, &Options::default());
     pass(outcome, experiment, messages)
 }
 

@@ -25,7 +25,7 @@ pub(super) struct Opened {
 pub(super) fn open(path: &Path, data: Option<&Path>, messages: &mut Messages) -> Result<Opened, Failure> {
     let mut sources = Sources::default();
     let study = said(Study::read(&DiskWorld, path, &mut sources), &sources, messages)?;
-    let outcome = crate::compile::compile(&DiskWorld, &study.request(), &Options { native: true });
+    let outcome = crate::compile::compile(&DiskWorld, &study.request(), &Options::default());
     messages.sources = outcome.sources;
     let Some(model) = outcome.value else { return Err(Failure { diagnostics: outcome.diagnostics }) };
     messages.say(&outcome.diagnostics);

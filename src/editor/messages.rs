@@ -48,7 +48,7 @@ pub fn of_models(
             return found;
         }
         let one = Request { model: Some(name.clone()), ..request.clone() };
-        let outcome = compile(texts.world, &one, &Options { native: false });
+        let outcome = compile(texts.world, &one, &Options::INTERPRETED);
         if let Some(model) = &outcome.value {
             facts.learn(model);
         }

@@ -2,7 +2,7 @@
 
 use super::numbers::Numbers;
 use super::{
-    Assert, Equation, FlatModel, Message, MessagePart, Origin, OriginKind, Type, Variability, When, WhenAction,
+    Assert, Conserved, Equation, FlatModel, Message, MessagePart, Origin, OriginKind, Type, Variability, When, WhenAction,
     WhenBranch,
 };
 use crate::diag::{Code, Diagnostic, Span};
@@ -505,6 +505,24 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
         }
     }
 
+    /// `Connections.conserved(quantity, rate, state)`, of scalars.
+    fn conserved(&mut self, call: &'a Expr, view: View, span: Span) {
+        const FORM: &str = "`Connections.conserved(quantity, rate, state)` takes three real numbers, the last one a variable";
+        let ExprKind::Call { args, .. } = &call.kind else { return };
+        let mut values = Vec::with_capacity(args.len());
+        for arg in args {
+            let Some(value) = self.instance.eval(arg, view) else { return };
+            values.extend(value.scalar().filter(|(_, ty)| *ty == Type::Real).map(|(e, _)| e));
+        }
+        let origin = self.origin(span, view);
+        match values[..] {
+            [quantity, rate, state] if matches!(self.instance.exprs.node(state), Node::Var(_)) => {
+                self.flat.conserved.push(Conserved { quantity, rate, state, origin });
+            }
+            _ => self.bad_call(span, FORM),
+        }
+    }
+
     fn at_start_only(&mut self, condition: ExprId) -> ExprId {
         let start = self.instance.exprs.intern(Node::Initial);
         self.instance.exprs.implies(start, condition)
@@ -531,6 +549,9 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
             }
             // a statement about the connection graph, which `network` has read
             "Connections" if network::is_graph_statement(function) => {}
+            "Connections" if function.parts.get(1).is_some_and(|p| p.name.name.as_str() == "conserved") => {
+                self.conserved(call, view, span);
+            }
             _ => {
                 for call in self.instance.call_keeping_assertions(call, view) {
                     let origin = self.origin(call.span, view);

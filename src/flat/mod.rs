@@ -38,6 +38,8 @@ pub struct FlatModel {
     pub whens: Vec<When>,
     /// `assert`s outside `when`.
     pub asserts: Vec<Assert>,
+    /// Statements `Connections.conserved(..)`.
+    pub conserved: Vec<Conserved>,
     /// Component instances, parents before children; entry 0 is the model itself with an empty name.
     pub instances: Vec<InstanceInfo>,
     /// What seems wrong with signals or with the balance of single components: reported when the equations turn out not to
@@ -314,6 +316,20 @@ pub enum WhenAction {
         /// Where it stands.
         origin: Origin,
     },
+}
+
+/// `Connections.conserved(quantity, rate, state)`: what the equations imply, said so that the solver can integrate the
+/// quantity and let the state follow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Conserved {
+    /// What changes by its rate alone: an expression of states.
+    pub quantity: ExprId,
+    /// Its rate.
+    pub rate: ExprId,
+    /// The variable that follows from it.
+    pub state: ExprId,
+    /// Where it is stated.
+    pub origin: Origin,
 }
 
 /// `assert(condition, message, level)`

@@ -18,6 +18,10 @@ impl FlatModel {
         for assert in &self.asserts {
             let _ = writeln!(out, "  assert({}, {});", self.expr(assert.condition), self.message(&assert.message));
         }
+        for c in &self.conserved {
+            let [quantity, rate, state] = [c.quantity, c.rate, c.state].map(|e| self.expr(e));
+            let _ = writeln!(out, "  Connections.conserved({quantity}, {rate}, {state});");
+        }
         if !self.initial_equations.is_empty() {
             self.section(&mut out, "initial equation", &self.initial_equations);
         }

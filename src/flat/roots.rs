@@ -24,6 +24,7 @@ impl FlatModel {
             branch.actions.iter_mut().for_each(|a| action(a, &mut roots));
         }
         self.asserts.iter_mut().for_each(|a| assert(a, &mut roots));
+        roots.extend(self.conserved.iter_mut().flat_map(|c| [&mut c.quantity, &mut c.rate, &mut c.state]));
         roots
     }
 }

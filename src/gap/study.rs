@@ -314,7 +314,7 @@ fn floor(train: &[Recording], signal: usize, full_scale: f64) -> f64 {
 }
 
 fn parameter_values(dae: crate::structure::Dae) -> impl Fn(VarId) -> f64 {
-    let system = lower(Arc::new(dae), &Options { native: false });
+    let system = lower(Arc::new(dae), &Options::INTERPRETED);
     let mut values = system.layout.values();
     system.evaluate_parameters(&mut values, &[]);
     move |v| values[system.layout.var(v)]

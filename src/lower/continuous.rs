@@ -5,9 +5,9 @@ use super::jacobian::{Differentials, Entry, compress};
 use super::layout::{Layout, Slot, slot};
 use super::program::Defs;
 use super::shape::{Kernels, Rules, Shaper};
-use super::{Pattern, RowKind};
+use super::{Integral, Pattern, RowKind};
 use crate::expr::VarId;
-use crate::structure::{CrossingKind, Dae};
+use crate::structure::{CrossingKind, Dae, Unknown};
 use rustc_hash::FxHashMap;
 
 /// The definitions of the IDA system.
@@ -83,9 +83,11 @@ fn matrix(
         let diagonal = match row.kind {
             RowKind::Derivative => Some(slot(Layout::CJ)),
             RowKind::Explicit => Some(one),
+            RowKind::Follows(_) => Some(one),
             RowKind::Residual => None,
         };
-        entries.extend(diagonal.map(|plus| Entry { column: i, row: i, plus, minus: zero }));
+        let own = if let RowKind::Follows(column) = row.kind { slot(column) } else { i };
+        entries.extend(diagonal.map(|plus| Entry { column: own, row: i, plus, minus: zero }));
         for &(column, derivative) in jacobian.gradient(place) {
             let (plus, minus) = if diagonal.is_some() { (zero, derivative) } else { (derivative, zero) };
             entries.push(Entry { column, row: i, plus, minus });
@@ -148,6 +150,32 @@ impl Observables {
         all.append(defs);
         all
     }
+}
+
+/// Conserved quantities and their rates.
+#[derive(Debug, Default)]
+pub struct QuantitiesDraft {
+    /// Both, from the slots of variables.
+    pub defs: Defs,
+    /// The quantities.
+    pub integrals: Vec<Integral>,
+}
+
+/// The definitions of conserved quantities; rates go into the slots of their derivatives.
+pub fn quantities(plan: &Plan, shaper: &mut Shaper) -> QuantitiesDraft {
+    let mut draft = QuantitiesDraft::default();
+    let inline = FxHashMap::default();
+    let rules = Rules { initial: false, inline: &inline, hoist: true };
+    for &(conserved, column, state) in &plan.integrals {
+        let (slot, slope) = (shaper.layout.work(1), shaper.layout.work(1));
+        let rate = self::slot(shaper.layout.unknown(Unknown::Der(conserved.variable)));
+        for (value, target) in [(conserved.quantity, slot), (conserved.rate, rate)] {
+            let shaped = shaper.shape(value, &rules);
+            draft.defs.define(&mut shaper.kernels, target, &shaped);
+        }
+        draft.integrals.push(Integral { column, state, slot, slope, entry: None, row: Vec::new() });
+    }
+    draft
 }
 
 /// Root functions.

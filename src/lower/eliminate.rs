@@ -4,13 +4,16 @@
 //! computed once per evaluation into their slot (local). In large systems a variable that many rows use and that
 //! depends on many columns is kept as an algebraic unknown: eliminating it would fill the Jacobian with
 //! rows x columns entries in place of rows + columns + 1.
+//!
+//! A conserved quantity is an unknown beside the states: its row is its rate, and the row of the state that follows from
+//! it says what the quantity is by the states.
 
 use super::layout::{Layout, Slot, slot};
-use super::{Column, Row, RowKind};
+use super::{Column, ColumnRole, Row, RowKind};
 use crate::expr::visit::Walk;
 use crate::expr::{ExprId, VarId};
 use crate::flat::Type;
-use crate::structure::{Assign, Block, Dae, Unknown};
+use crate::structure::{Assign, Block, Conserved, Dae, Unknown};
 use rustc_hash::FxHashMap;
 
 /// Systems with at most this many unknowns keep no explicit variable.
@@ -51,13 +54,18 @@ pub struct Plan {
     pub users: Vec<u32>,
     /// States whose derivative is a tearing variable: column and slot of the derivative.
     pub torn: Vec<(usize, Slot)>,
+    /// The quantities that are integrated, with their columns and those of the states that follow.
+    pub integrals: Vec<(Conserved, usize, usize)>,
 }
 
 /// Sorts explicit assignments of `dae.continuous` into their fates, and gives every unknown its row. With `keep`, some
-/// explicit variables of large systems become unknowns.
-pub fn plan(dae: &Dae, layout: &Layout, keep: bool) -> Plan {
+/// explicit variables of large systems become unknowns; with `conserve`, conserved quantities do.
+pub fn plan(dae: &Dae, layout: &Layout, keep: bool, conserve: bool) -> Plan {
     let mut planner = Planner::new(dae, layout);
     planner.collect(&dae.continuous);
+    if conserve {
+        planner.choose_conserved();
+    }
     planner.find_leaves();
     planner.find_needed();
     planner.choose_inlined();
@@ -70,11 +78,32 @@ pub fn plan(dae: &Dae, layout: &Layout, keep: bool) -> Plan {
 
 const NOBODY: u32 = u32::MAX;
 
+/// What a row is made of that is no explicit assignment.
+#[derive(Clone, Copy)]
+enum Root {
+    /// The residual of a loop, with its equation and its unknown; whether that is the only one of its loop.
+    Residual(ExprId, u32, Unknown, bool),
+    /// The rate of a conserved quantity.
+    Rate(Conserved),
+    /// The quantity itself.
+    Quantity(Conserved),
+}
+
+impl Root {
+    fn value(&self) -> ExprId {
+        match self {
+            Root::Residual(value, ..) => *value,
+            Root::Rate(c) => c.rate,
+            Root::Quantity(c) => c.quantity,
+        }
+    }
+}
+
 struct Planner<'a> {
     dae: &'a Dae,
     layout: &'a Layout,
     explicit: Vec<Assign>,
-    residuals: Vec<(ExprId, u32, Unknown)>,
+    roots: Vec<Root>,
     /// Per slot, the explicit assignment that computes it.
     producer: Vec<u32>,
     /// Per explicit assignment, then per residual, the explicit assignments it reads.
@@ -88,6 +117,9 @@ struct Planner<'a> {
     /// Per slot, the column whose value or derivative it holds.
     seed: FxHashMap<Slot, u32>,
     torn: Vec<(usize, Slot)>,
+    /// States that follow from a quantity and whose derivatives no explicit assignment gives.
+    followers_torn: Vec<VarId>,
+    integrals: Vec<(Conserved, usize, usize)>,
 }
 
 impl<'a> Planner<'a> {
@@ -96,7 +128,7 @@ impl<'a> Planner<'a> {
             dae,
             layout,
             explicit: Vec::new(),
-            residuals: Vec::new(),
+            roots: Vec::new(),
             producer: vec![NOBODY; layout.len()],
             reads: Vec::new(),
             leaves: Vec::new(),
@@ -106,6 +138,8 @@ impl<'a> Planner<'a> {
             columns: Vec::new(),
             seed: FxHashMap::default(),
             torn: Vec::new(),
+            followers_torn: Vec::new(),
+            integrals: Vec::new(),
         }
     }
 
@@ -115,8 +149,11 @@ impl<'a> Planner<'a> {
                 Block::Assign(assign) => self.add_explicit(*assign),
                 Block::Loop(l) => {
                     l.inner.iter().for_each(|&assign| self.add_explicit(assign));
-                    let residuals = l.residuals.iter().zip(&l.tearing);
-                    self.residuals.extend(residuals.map(|(&(e, equation), &unknown)| (e, equation, unknown)));
+                    let (residuals, lone) = (l.residuals.iter().zip(&l.tearing), l.tearing.len() == 1);
+                    let root = |(&(e, equation), &unknown): (&(ExprId, u32), &Unknown)| {
+                        Root::Residual(e, equation, unknown, lone)
+                    };
+                    self.roots.extend(residuals.map(root));
                 }
                 Block::Mixed(mixed) => self.collect(&mixed.continuous),
             }
@@ -128,10 +165,52 @@ impl<'a> Planner<'a> {
         self.explicit.push(assign);
     }
 
+    /// Takes the conserved quantities whose rates do not hang on how fast their own states move, and takes the residuals
+    /// that give these derivatives out.
+    fn choose_conserved(&mut self) {
+        for &c in &self.dae.conserved {
+            let der = self.layout.unknown(Unknown::Der(c.state));
+            let torn = self.roots.iter().position(|r| matches!(r, Root::Residual(_, _, u, true) if *u == Unknown::Der(c.state)));
+            let given = torn.is_some() || self.producer[der] != NOBODY;
+            if !given || self.reaches(c.rate, der) || !self.reaches(c.quantity, self.layout.var(c.state)) {
+                continue;
+            }
+            if let Some(k) = torn {
+                self.roots.remove(k);
+                self.followers_torn.push(c.state);
+            }
+            self.roots.extend([Root::Rate(c), Root::Quantity(c)]);
+        }
+    }
+
+    /// Whether an expression depends on a slot, through explicit assignments too.
+    fn reaches(&self, e: ExprId, target: usize) -> bool {
+        let mut seen = vec![false; self.explicit.len()];
+        let mut open = vec![e];
+        let mut walk = Walk::default();
+        while let Some(e) = open.pop() {
+            let mut found = false;
+            walk.each(&self.dae.exprs, &[e], |_, node| {
+                if let Some(slot) = self.layout.leaf(node) {
+                    found |= slot as usize == target;
+                    let producer = self.producer[slot as usize];
+                    if producer != NOBODY && !std::mem::replace(&mut seen[producer as usize], true) {
+                        open.push(self.explicit[producer as usize].value);
+                    }
+                }
+                true
+            });
+            if found {
+                return true;
+            }
+        }
+        false
+    }
+
     fn find_leaves(&mut self) {
         let mut walk = Walk::default();
         let values = self.explicit.iter().map(|assign| assign.value);
-        for e in values.chain(self.residuals.iter().map(|&(e, ..)| e)) {
+        for e in values.chain(self.roots.iter().map(Root::value)) {
             let (mut reads, mut leaves) = (Vec::new(), Vec::new());
             walk.each(&self.dae.exprs, &[e], |_, node| {
                 if let Some(slot) = self.layout.leaf(node) {
@@ -186,24 +265,37 @@ impl<'a> Planner<'a> {
     /// States, then tearing variables.
     fn number_columns(&mut self) {
         for &x in &self.dae.states {
-            self.add_column(x, true);
+            self.add_column(x, ColumnRole::State);
         }
-        for k in 0..self.residuals.len() {
-            match self.residuals[k].2 {
-                Unknown::Var(v) => self.add_column(v, false),
-                Unknown::Der(x) => {
-                    let column = self.seed[&slot(self.layout.var(x))];
-                    let der = slot(self.layout.unknown(Unknown::Der(x)));
-                    self.seed.insert(der, column);
-                    self.torn.push((column as usize, der));
+        for k in 0..self.roots.len() {
+            match self.roots[k] {
+                Root::Residual(_, _, Unknown::Var(v), _) => self.add_column(v, ColumnRole::Algebraic),
+                Root::Residual(_, _, Unknown::Der(x), _) => self.add_torn(x),
+                Root::Rate(c) => {
+                    let state = self.seed[&slot(self.layout.var(c.state))] as usize;
+                    self.columns[state].role = ColumnRole::Following;
+                    self.integrals.push((c, self.columns.len(), state));
+                    self.add_column(c.variable, ColumnRole::Quantity);
                 }
+                Root::Quantity(_) => {}
             }
+        }
+        for x in std::mem::take(&mut self.followers_torn) {
+            self.add_torn(x);
         }
     }
 
-    fn add_column(&mut self, variable: VarId, state: bool) {
+    /// The derivative of a state is read from what the integrator has.
+    fn add_torn(&mut self, x: VarId) {
+        let column = self.seed[&slot(self.layout.var(x))];
+        let der = slot(self.layout.unknown(Unknown::Der(x)));
+        self.seed.insert(der, column);
+        self.torn.push((column as usize, der));
+    }
+
+    fn add_column(&mut self, variable: VarId, role: ColumnRole) {
         self.seed.insert(slot(self.layout.var(variable)), slot(self.columns.len()));
-        self.columns.push(Column { variable, state });
+        self.columns.push(Column { variable, role });
     }
 
     /// The Markowitz count decides: rows x columns against rows + columns + 1.
@@ -211,18 +303,34 @@ impl<'a> Planner<'a> {
         if self.columns.len() <= SMALL {
             return;
         }
+        // what a quantity is by its state must be seen along the state
+        let in_quantity = self.in_quantities();
         let mut spans: Vec<Vec<u32>> = Vec::with_capacity(self.explicit.len());
         for i in 0..self.explicit.len() {
             let mut span = if self.needed[i] { self.span(i, &spans) } else { Vec::new() };
             let (rows, columns) = (self.users[i] as usize, span.len());
-            if self.fates[i] == Fate::Local && self.can_be_kept(i) && rows * columns > rows + columns + 1 {
+            if self.fates[i] == Fate::Local && self.can_be_kept(i) && !in_quantity[i] && rows * columns > rows + columns + 1 {
                 let Unknown::Var(v) = self.explicit[i].unknown else { unreachable!("derivatives are not kept") };
                 self.fates[i] = Fate::Kept;
                 span = vec![slot(self.columns.len())];
-                self.add_column(v, false);
+                self.add_column(v, ColumnRole::Algebraic);
             }
             spans.push(span);
         }
+    }
+
+    /// The explicit assignments behind conserved quantities.
+    fn in_quantities(&self) -> Vec<bool> {
+        let explicit = self.explicit.len();
+        let quantities = (0..self.roots.len()).filter(|&k| matches!(self.roots[k], Root::Quantity(_)));
+        let mut found = vec![false; explicit];
+        quantities.flat_map(|k| &self.reads[explicit + k]).for_each(|&i| found[i as usize] = true);
+        for i in (0..explicit).rev() {
+            if found[i] {
+                self.reads[i].iter().for_each(|&read| found[read as usize] = true);
+            }
+        }
+        found
     }
 
     fn can_be_kept(&self, i: usize) -> bool {
@@ -252,6 +360,7 @@ impl<'a> Planner<'a> {
                 inline.insert(slot(self.layout.unknown(unknown)), value);
             }
             let kind = match (unknown, fate) {
+                (Unknown::Der(x), _) if self.follows(x) => continue,
                 (Unknown::Der(_), _) => RowKind::Derivative,
                 (_, Fate::Kept) => RowKind::Explicit,
                 _ => continue,
@@ -260,9 +369,16 @@ impl<'a> Planner<'a> {
                 rows[column] = Some((Row { equation, kind, value }, Some(i)));
             }
         }
-        for &(value, equation, unknown) in &self.residuals {
-            let column = self.column(unknown).expect("tearing unknowns have columns");
-            rows[column] = Some((Row { equation, kind: RowKind::Residual, value }, None));
+        for root in &self.roots {
+            let value = root.value();
+            let (column, equation, kind) = match *root {
+                Root::Residual(_, equation, unknown, _) => {
+                    (self.column(unknown).expect("tearing unknowns have columns"), equation, RowKind::Residual)
+                }
+                Root::Rate(c) => (self.place(c.variable), c.equation, RowKind::Derivative),
+                Root::Quantity(c) => (self.place(c.state), c.equation, RowKind::Follows(self.place(c.variable))),
+            };
+            rows[column] = Some((Row { equation, kind, value }, None));
         }
         let rows = rows.into_iter().map(|row| row.expect("the DAE determines every state and tearing unknown"));
         let (rows, row_explicit) = rows.unzip();
@@ -275,7 +391,16 @@ impl<'a> Planner<'a> {
             users: self.users,
             columns: self.columns,
             torn: self.torn,
+            integrals: self.integrals,
         }
+    }
+
+    fn place(&self, v: VarId) -> usize {
+        self.seed[&slot(self.layout.var(v))] as usize
+    }
+
+    fn follows(&self, x: VarId) -> bool {
+        self.columns[self.place(x)].role == ColumnRole::Following
     }
 
     /// The column of a variable or of a state's derivative.

@@ -44,6 +44,7 @@ impl Layout {
             len: Self::VARIABLES + variables,
         };
         dae.states.iter().for_each(|&x| layout.add_der(x));
+        dae.conserved.iter().for_each(|c| layout.add_der(c.variable));
         dae.discrete.iter().for_each(|&v| layout.add_pre(v));
         for block in dae.continuous.iter().chain(&dae.event).chain(&dae.initial) {
             layout.add_unknowns(block);

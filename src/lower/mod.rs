@@ -9,6 +9,7 @@ mod code;
 mod conditions;
 mod continuous;
 mod eliminate;
+mod follow;
 mod interpret;
 mod jacobian;
 mod layout;
@@ -28,7 +29,7 @@ pub use trap::Trap;
 use crate::expr::{ExprId, VarId};
 use crate::structure::{Dae, Unknown};
 use conditions::ConditionsDraft;
-use continuous::{ContinuousDraft, CrossingsDraft, Observables};
+use continuous::{ContinuousDraft, CrossingsDraft, Observables, QuantitiesDraft};
 use eliminate::Plan;
 use jacobian::Differentials;
 use layout::slot;
@@ -45,12 +46,20 @@ pub struct Options {
     /// Compile to machine code what runs often enough to pay for it; else everything is interpreted. Both give the same
     /// bits.
     pub native: bool,
+    /// Integrate conserved quantities where the model states them (`Dae::conserved`), and let the states follow. Not for
+    /// callers who integrate the states themselves or carry sensitivities along.
+    pub conserve: bool,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Options { native: true }
+        Options { native: true, conserve: true }
     }
+}
+
+impl Options {
+    /// Interpreted only: for models that run once.
+    pub const INTERPRETED: Options = Options { native: false, conserve: true };
 }
 
 /// A value that is not finite came out. [`System::trap`] finds where it was made.
@@ -62,8 +71,50 @@ pub struct NonFinite;
 pub struct Column {
     /// The variable.
     pub variable: VarId,
-    /// True for a state (differential), false for an algebraic unknown.
-    pub state: bool,
+    /// What it is to the integrator.
+    pub role: ColumnRole,
+}
+
+/// What an unknown is to the integrator.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ColumnRole {
+    /// A state that is integrated.
+    State,
+    /// A state that follows from a conserved quantity.
+    Following,
+    /// A conserved quantity: integrated, but no state of the model.
+    Quantity,
+    /// An algebraic unknown.
+    Algebraic,
+}
+
+impl Column {
+    /// A state of the model.
+    pub fn is_state(&self) -> bool {
+        matches!(self.role, ColumnRole::State | ColumnRole::Following)
+    }
+
+    /// Its derivative stands in the equations.
+    pub fn is_differential(&self) -> bool {
+        matches!(self.role, ColumnRole::State | ColumnRole::Quantity)
+    }
+}
+
+/// A conserved quantity that is integrated.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Integral {
+    /// The column of the quantity.
+    pub column: usize,
+    /// The column of the state that follows from it.
+    pub state: usize,
+    /// The slot of the quantity as it is by the states.
+    pub slot: Slot,
+    /// The slot of its derivative by the state that follows, as far as it is known.
+    pub slope: Slot,
+    /// Where that derivative stands in the Jacobian, with the sign turned; `None` where it vanishes.
+    pub entry: Option<usize>,
+    /// The entries of its row there.
+    pub row: Vec<usize>,
 }
 
 /// Compressed sparse columns: rows of column `j` are `rowidx[colptr[j]..colptr[j + 1]]`, ascending.
@@ -186,6 +237,8 @@ pub enum RowKind {
     Derivative,
     /// `v - value` for the algebraic unknown of the column with the row's own number.
     Explicit,
+    /// `x - solution` for the state of the row's own number: the solution has the quantity of this column.
+    Follows(usize),
     /// The residual of a loop.
     Residual,
 }
@@ -193,7 +246,7 @@ pub enum RowKind {
 /// Lowers a model.
 pub fn lower(dae: Arc<Dae>, options: &Options) -> System {
     let layout = Layout::new(&dae);
-    let plan = eliminate::plan(&dae, &layout, true);
+    let plan = eliminate::plan(&dae, &layout, true, options.conserve);
     lower_planned(dae, layout, plan, options)
 }
 
@@ -201,7 +254,7 @@ pub fn lower(dae: Arc<Dae>, options: &Options) -> System {
 /// because nobody factorises it.
 pub fn lower_explicit(dae: Arc<Dae>, options: &Options) -> System {
     let layout = Layout::new(&dae);
-    let plan = eliminate::plan(&dae, &layout, false);
+    let plan = eliminate::plan(&dae, &layout, false, false);
     lower_planned(dae, layout, plan, options)
 }
 
@@ -221,6 +274,7 @@ struct Drafts {
     continuous: ContinuousDraft,
     observables: Observables,
     crossings: CrossingsDraft,
+    quantities: QuantitiesDraft,
     actions: ConditionsDraft,
     asserts: ConditionsDraft,
     event: Vec<blocks::Draft>,
@@ -236,12 +290,13 @@ impl Drafts {
         let continuous = continuous::draft(plan, shaper);
         let observables = Observables::new(dae, plan, shaper);
         let crossings = continuous::crossings(dae, shaper);
+        let quantities = continuous::quantities(plan, shaper);
         let actions = conditions::actions(dae, shaper);
         let asserts = conditions::asserts(dae, shaper);
         let event = blocks::Drafter::new(shaper, false, &inline, &modes).blocks(&dae.event);
         let initial = blocks::Drafter::new(shaper, true, &inline, &modes).blocks(&dae.initial);
         let hoisted = shaper.hoisted_definitions();
-        Drafts { bindings, continuous, observables, crossings, actions, asserts, event, initial, hoisted }
+        Drafts { bindings, continuous, observables, crossings, quantities, actions, asserts, event, initial, hoisted }
     }
 
     fn assemble(self, dae: Arc<Dae>, plan: Plan, layout: Layout, kernels: Kernels, options: &Options) -> System {
@@ -269,6 +324,14 @@ impl Drafts {
         // a model with samples spends much of its time at events
         assembler.often(!dae.samples.is_empty());
         programs.crossings_alone = assembler.assemble(&self.crossings.defs, by_need, None);
+        programs.quantities = assembler.assemble(&self.quantities.defs, by_need, None);
+        assembler.often(true);
+        for integral in &self.quantities.integrals {
+            let alone = self.quantities.defs.producing(&kernels, integral.slot);
+            let with_observables = self.observables.before(&kernels, &alone);
+            programs.along.push(assembler.assemble(&with_observables, by_need, None));
+        }
+        assembler.often(false);
         programs.observe = assembler.assemble(&self.observables.defs, by_need, None);
         let actions = self.actions.assemble(None, &mut assembler);
         let asserts = self.asserts.assemble(Some(&self.observables), &mut assembler);
@@ -285,6 +348,7 @@ impl Drafts {
         let mut system = System {
             columns: plan.columns,
             rows: plan.rows,
+            integrals: located(self.quantities.integrals, &self.continuous.pattern),
             pattern: self.continuous.pattern,
             root_crossings: self.crossings.list,
             dae,
@@ -299,6 +363,16 @@ impl Drafts {
         system.finish(&entries);
         system
     }
+}
+
+/// With the places of the derivatives in the Jacobian.
+fn located(mut integrals: Vec<Integral>, pattern: &Pattern) -> Vec<Integral> {
+    for integral in &mut integrals {
+        let mut column = pattern.colptr[integral.state]..pattern.colptr[integral.state + 1];
+        integral.entry = column.find(|&k| pattern.rowidx[k] == integral.state);
+        integral.row = (0..pattern.nnz()).filter(|&k| pattern.rowidx[k] == integral.state).collect();
+    }
+    integrals
 }
 
 fn alias_slots(dae: &Dae, layout: &Layout) -> Vec<(Slot, Slot, bool)> {

@@ -8,7 +8,8 @@ use super::parameters::Bindings;
 use super::program::{Assembler, CompiledLoops, Order, late_scratch};
 use super::shape::Kernels;
 use super::trap::{self, Trap};
-use super::{BlockCode, Column, Conditions, Layout, NonFinite, Pattern, Program, Row, RowKind};
+use super::follow;
+use super::{BlockCode, Column, Conditions, Layout, Integral, NonFinite, Pattern, Program, Row, RowKind};
 use crate::expr::function::Function;
 use crate::expr::{ExprId, Node, VarId};
 use crate::structure::Dae;
@@ -30,6 +31,8 @@ pub struct System {
     pub pattern: Pattern,
     /// The entries of `Dae::crossings` that need a root function (relations and floors, not times), in order.
     pub root_crossings: Vec<usize>,
+    /// The conserved quantities among the unknowns.
+    pub integrals: Vec<Integral>,
     /// The system at events: given states, inputs and `pre` values, computes everything else.
     pub event: Vec<BlockCode>,
     /// The system at the start: computes states, derivatives and everything else.
@@ -66,6 +69,10 @@ pub(super) struct Programs {
     pub crossings: Program,
     pub crossings_alone: Program,
     pub crossing_slots: Vec<Slot>,
+    /// Conserved quantities and their rates, from all variables.
+    pub quantities: Program,
+    /// Each quantity alone, with the explicit variables it needs.
+    pub along: Vec<Program>,
     pub loops: Arc<CompiledLoops>,
     /// Whether programs that are made later are compiled when they run often.
     pub native: bool,
@@ -131,11 +138,43 @@ impl System {
     }
 
     /// The residual F(t, y, yp) into `r`. Rows are not scaled. A row made for an explicit derivative is
-    /// `der(x) - value`, one for a kept explicit variable `v - value`, one from a loop its residual as it stands.
+    /// `der(x) - value`, one for a kept explicit variable `v - value`, one for a state that follows from a quantity
+    /// `x - solution`, one from a loop its residual as it stands.
     ///
     /// # Errors
     /// When an entry of `r` is not finite.
     pub fn residual(&self, t: f64, y: &[f64], yp: &[f64], values: &mut [f64], r: &mut [f64]) -> Result<(), NonFinite> {
+        self.rows(t, y, yp, values, r)?;
+        for (integral, program) in self.integrals.iter().zip(&self.programs.along) {
+            r[integral.state] = y[integral.state] - self.following(integral, program, y, values, r).ok_or(NonFinite)?;
+        }
+        Ok(())
+    }
+
+    /// The value of a state that has the quantity in `y`, all else as it is.
+    fn following(
+        &self,
+        integral: &Integral,
+        program: &Program,
+        y: &[f64],
+        values: &mut [f64],
+        r: &[f64],
+    ) -> Option<f64> {
+        let place = self.programs.column_slots[integral.state] as usize;
+        let (start, wanted) = (y[integral.state], y[integral.column]);
+        let mut slope = values[integral.slope as usize];
+        let along = |x: f64| {
+            values[place] = x;
+            program.run(values);
+            values[integral.slot as usize]
+        };
+        let found = follow::solve(along, wanted, start, wanted - r[integral.state], &mut slope);
+        values[place] = start;
+        found
+    }
+
+    /// The rows, those of states that follow from a quantity as what it lacks.
+    fn rows(&self, t: f64, y: &[f64], yp: &[f64], values: &mut [f64], r: &mut [f64]) -> Result<(), NonFinite> {
         self.load(t, y, yp, values);
         self.programs.residual.run(values);
         let mut finite = true;
@@ -144,11 +183,48 @@ impl System {
             r[i] = match row.kind {
                 RowKind::Derivative => yp[i] - value,
                 RowKind::Explicit => y[i] - value,
+                RowKind::Follows(quantity) => y[quantity] - value,
                 RowKind::Residual => value,
             };
             finite &= r[i].is_finite();
         }
         if finite { Ok(()) } else { Err(NonFinite) }
+    }
+
+    /// Whether [`System::rate_residual`] is one in which every unknown has a derivative of its own.
+    pub fn gives_rates(&self) -> bool {
+        let torn = |column: usize| self.programs.torn.iter().any(|t| t.0 == column);
+        self.rows.iter().enumerate().all(|(i, row)| match row.kind {
+            RowKind::Derivative => true,
+            RowKind::Follows(_) => !torn(i),
+            RowKind::Explicit | RowKind::Residual => false,
+        })
+    }
+
+    /// The residual, with `der(x) - value` for states that follow from a quantity.
+    ///
+    /// # Errors
+    /// When an entry of `r` is not finite.
+    pub fn rate_residual(
+        &self,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+        values: &mut [f64],
+        r: &mut [f64],
+    ) -> Result<(), NonFinite> {
+        self.rows(t, y, yp, values, r)?;
+        for state in self.integrals.iter().map(|i| i.state) {
+            let der = self.layout.der(self.columns[state].variable).expect("a state");
+            r[state] = yp[state] - values[der];
+        }
+        if r.iter().all(|r| r.is_finite()) { Ok(()) } else { Err(NonFinite) }
+    }
+
+    /// Conserved quantities into their slots and their rates into those of their derivatives, from the slots of all
+    /// variables.
+    pub fn quantities(&self, values: &mut [f64]) {
+        self.programs.quantities.run(values);
     }
 
     /// dF/dy + cj dF/dyp into `val`, in the order of `pattern`.
@@ -171,6 +247,14 @@ impl System {
         for (entry, &(plus, minus)) in val.iter_mut().zip(&self.programs.entries) {
             *entry = values[plus as usize] - values[minus as usize];
             finite &= entry.is_finite();
+        }
+        for integral in &self.integrals {
+            let slope = integral.entry.map_or(0.0, |k| -val[k]);
+            values[integral.slope as usize] = slope;
+            for &k in &integral.row {
+                val[k] /= -slope;
+                finite &= val[k].is_finite();
+            }
         }
         if finite { Ok(()) } else { Err(NonFinite) }
     }
@@ -255,7 +339,7 @@ impl System {
         for program in [&mut p.hoisted, &mut p.residual, &mut p.jacobian, &mut p.crossings] {
             visit(program);
         }
-        for program in [&mut p.crossings_alone, &mut p.observe] {
+        for program in [&mut p.crossings_alone, &mut p.quantities, &mut p.observe].into_iter().chain(&mut p.along) {
             visit(program);
         }
         visit(&mut self.actions.program);

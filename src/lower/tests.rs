@@ -57,7 +57,7 @@ impl Model {
     }
 
     pub fn lower(self, native: bool) -> System {
-        let mut system = lower(Arc::new(self.dae), &Options { native });
+        let mut system = lower(Arc::new(self.dae), &Options { native, ..Options::default() });
         system.hurry();
         system
     }
@@ -252,7 +252,7 @@ fn tearing_variables_are_columns() {
     for native in [false, true] {
         let system = looped().lower(native);
         assert_eq!(system.columns.len(), 2);
-        assert!(!system.columns[1].state);
+        assert!(!system.columns[1].is_state());
         assert_eq!(system.rows[1].kind, RowKind::Residual);
         let mut values = values_of(&system);
         let p = point(&system, &mut values, &[10.0, 2.0], &[-2.0, 0.0], 3.0);

@@ -10,7 +10,7 @@
 use super::ida::{Equations, Evaluation};
 use super::linear::Lu;
 use super::model::Model;
-use crate::lower::System;
+use crate::lower::{ColumnRole, System};
 
 /// Weight of the derivatives in the matrix: so large that states do not move.
 const HOLD_STATES: f64 = 1e60;
@@ -28,14 +28,16 @@ const LOOSE: f64 = 10.0;
 /// The part of each unknown in the error test: as if states and algebraic unknowns were measured apart, each by the
 /// root of their mean square, so that the number of the ones does not change what the others may do.
 pub fn shares(system: &System) -> Vec<f64> {
-    let n = system.columns.len() as f64;
-    let states = system.columns.iter().filter(|c| c.state).count() as f64;
-    let share = |state| match state {
-        true => (n / states).sqrt(),
-        false if states == 0.0 => 1.0,
-        false => (n / (n - states)).sqrt() / LOOSE,
+    let count = |role| system.columns.iter().filter(|c| c.role == role).count() as f64;
+    let (n, states) = (system.columns.len() as f64, count(ColumnRole::State) + count(ColumnRole::Following));
+    let algebraic = count(ColumnRole::Algebraic);
+    let share = |role| match role {
+        ColumnRole::Algebraic if states == 0.0 => 1.0,
+        ColumnRole::Algebraic => (n / algebraic).sqrt() / LOOSE,
+        // a conserved quantity counts beside the states, not among them
+        _ => (n / states).sqrt(),
     };
-    system.columns.iter().map(|c| share(c.state)).collect()
+    system.columns.iter().map(|c| share(c.role)).collect()
 }
 
 /// Work done.
@@ -70,7 +72,8 @@ pub struct Algebraic {
 impl Algebraic {
     /// For the unknowns of a system with these nominal values.
     pub fn new(system: &System, nominal: &[f64], tolerance: f64) -> Self {
-        let needed = system.columns.iter().any(|c| !c.state);
+        // states that follow from a quantity are interpolated like others where nothing else has to be solved
+        let needed = system.columns.iter().any(|c| c.role == ColumnRole::Algebraic);
         Self::where_needed(system, nominal, tolerance, needed)
     }
 
@@ -80,7 +83,7 @@ impl Algebraic {
     }
 
     fn where_needed(system: &System, nominal: &[f64], tolerance: f64, needed: bool) -> Self {
-        let solved: Vec<bool> = system.columns.iter().map(|c| !c.state).collect();
+        let solved: Vec<bool> = system.columns.iter().map(|c| !c.is_differential()).collect();
         Algebraic {
             absolute: nominal.iter().map(|n| n * tolerance).collect(),
             relative: tolerance,

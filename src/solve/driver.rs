@@ -261,7 +261,10 @@ fn prepare<'a, 'c>(
     if from.is_some() {
         playback.seek(start, &mut values);
     }
-    let restart = Restart::new(system, &scales, settings.tolerance);
+    let mut restart = Restart::new(system, &scales, settings.tolerance);
+    if from.is_some() {
+        restart.resume(system, &mut values);
+    }
     let asked = settings.tangents.as_ref().filter(|_| !system.columns.is_empty());
     let carried = asked.map(|asked| Box::new(Carried::new(system, asked, &settings.wanted, restart.nominal())));
     let directions = settings.tangents.as_ref().map_or(0, |asked| asked.starts.len());
@@ -361,7 +364,7 @@ impl<'a> Driver<'a, '_> {
     /// Brings the statistics up to date.
     fn count_work(&mut self) {
         self.statistics.unknowns = self.system.columns.len();
-        self.statistics.states = self.system.columns.iter().filter(|c| c.state).count();
+        self.statistics.states = self.system.columns.iter().filter(|c| c.is_state()).count();
         if let Some(ida) = &self.ida {
             let work = ida.work();
             self.statistics.steps = work.steps;
@@ -445,7 +448,7 @@ impl<'a> Driver<'a, '_> {
     }
 
     /// Makes the integrator from the values of the start.
-    fn integrator(&mut self, model: Model<'a>) -> Flow {
+    fn integrator(&mut self, mut model: Model<'a>) -> Flow {
         let system = self.system;
         let still = system.columns.is_empty();
         // without unknowns IDA still finds the roots of functions of time: it integrates a constant
@@ -458,7 +461,7 @@ impl<'a> Driver<'a, '_> {
             share: if still { vec![1.0] } else { self.shares() },
         };
         let lu = Lu::new(&pattern, nominal);
-        self.restart.gather(system, &model.values);
+        self.restart.gather(system, &mut model.values);
         let roots = model.roots.len();
         let start = (self.t, self.restart.y(), self.restart.yp());
         let ida = Ida::new(model, &pattern, lu, roots, &tolerances, start);

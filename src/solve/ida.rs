@@ -33,6 +33,11 @@ pub trait Equations {
     /// Writes `F(t, y, yp)` to `r`.
     fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], r: &mut [f64]) -> Evaluation;
 
+    /// The same with rows that say how fast each unknown moves, where there are such rows.
+    fn rate_residual(&mut self, t: f64, y: &[f64], yp: &[f64], r: &mut [f64]) -> Evaluation {
+        self.residual(t, y, yp, r)
+    }
+
     /// Writes every entry of `dF/dy + cj dF/dyp` to `val`, in the order of the pattern.
     fn jacobian(&mut self, t: f64, cj: f64, y: &[f64], yp: &[f64], val: &mut [f64]) -> Evaluation;
 
@@ -281,12 +286,13 @@ impl<E: Equations> Ida<E> {
         out.clear();
         out.resize(self.n, 0.0);
         context.residual_calls += 1;
+        if explicit {
+            let done = context.equations.rate_residual(t + h, &predicted, yp, out) == Evaluation::Done;
+            out.iter_mut().for_each(|r| *r *= -h);
+            return done;
+        }
         if context.equations.residual(t + h, &predicted, yp, out) == Evaluation::Retry {
             return false;
-        }
-        if explicit {
-            out.iter_mut().for_each(|r| *r *= -h);
-            return true;
         }
         context.jacobian_calls += 1;
         if context.equations.jacobian(t + h, 1.0 / h, &predicted, yp, val) == Evaluation::Retry
@@ -312,7 +318,7 @@ impl<E: Equations> Ida<E> {
             let context = &mut *self.context;
             context.residual_calls += 1;
             let (y, yp) = (slice(self.scratch, self.n), slice(rate, self.n));
-            let done = known && context.equations.residual(t, y, yp, out) == Evaluation::Done;
+            let done = known && context.equations.rate_residual(t, y, yp, out) == Evaluation::Done;
             s::N_VDestroy(rate);
             done
         }

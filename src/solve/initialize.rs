@@ -275,7 +275,7 @@ mod tests {
         );
         let flat = crate::compile::flatten_text(&text, None).value.expect("sound").flat;
         let dae = crate::compile::analyze(&flat).value.expect("sound");
-        let system = lower(Arc::new(dae), &Options { native: false });
+        let system = lower(Arc::new(dae), &Options::INTERPRETED);
         let mut values = prepare(&system, &Settings::default());
         let scales = Scales::new(&system, &values);
         let mut modes = Modes::new(&system, 1e-6);

@@ -71,6 +71,15 @@ impl Equations for Model<'_> {
         self.judge(result, t, y, yp)
     }
 
+    fn rate_residual(&mut self, t: f64, y: &[f64], yp: &[f64], r: &mut [f64]) -> Evaluation {
+        if self.system.columns.is_empty() {
+            return self.residual(t, y, yp, r);
+        }
+        self.playback.follow(t, &mut self.values);
+        let result = self.system.rate_residual(t, y, yp, &mut self.values, r);
+        self.judge(result, t, y, yp)
+    }
+
     fn jacobian(&mut self, t: f64, cj: f64, y: &[f64], yp: &[f64], val: &mut [f64]) -> Evaluation {
         if self.system.columns.is_empty() {
             val[0] = cj;

@@ -8,7 +8,7 @@
 use super::ida::{Equations, Ida};
 use super::model::Model;
 use super::newton::Scales;
-use crate::lower::{RowKind, System};
+use crate::lower::{Column, ColumnRole, System};
 
 /// A jump of an unknown, in tolerances, that does not need a restart.
 const SMALL_JUMP: f64 = 1.0;
@@ -35,8 +35,10 @@ pub struct Restart {
     old_slopes: Vec<f64>,
     /// Slot of each unknown, and of its derivative if it is a state.
     slots: Vec<(usize, Option<usize>)>,
-    /// Every row gives the derivative of its own state: no algebraic unknowns.
+    /// The derivative of every unknown is given: no algebraic unknowns.
     explicit: bool,
+    /// Of each conserved quantity what the integrator had before the event, and what it was by the states then.
+    held: Vec<(f64, f64)>,
     correction: Vec<f64>,
     usual_step: f64,
     /// Length of the Euler step behind `correction`.
@@ -48,7 +50,7 @@ impl Restart {
     pub fn new(system: &System, scales: &Scales, tolerance: f64) -> Self {
         let mut nominal: Vec<f64> = system.columns.iter().map(|c| scales.nominal[c.variable.index()]).collect();
         let layout = &system.layout;
-        let der = |c: &crate::lower::Column| if c.state { layout.der(c.variable) } else { None };
+        let der = |c: &Column| if c.role == ColumnRole::Algebraic { None } else { layout.der(c.variable) };
         let slots = system.columns.iter().map(|c| (layout.var(c.variable), der(c))).collect();
         if nominal.is_empty() {
             nominal.push(1.0);
@@ -63,7 +65,8 @@ impl Restart {
             old: zeros(),
             old_slopes: zeros(),
             slots,
-            explicit: system.rows.iter().all(|r| r.kind == RowKind::Derivative),
+            explicit: system.gives_rates(),
+            held: vec![(0.0, 0.0); system.integrals.len()],
             correction: Vec::new(),
             usual_step: 0.0,
             probe: 1.0,
@@ -90,19 +93,40 @@ impl Restart {
         &self.yp
     }
 
-    /// Takes the unknowns from their slots after an event or the start.
-    pub fn gather(&mut self, _system: &System, values: &[f64]) {
+    /// Takes the unknowns from their slots after an event or the start. A conserved quantity changes by what the event has
+    /// changed of the states behind it: it does not lose what the corrector left in them.
+    pub fn gather(&mut self, system: &System, values: &mut [f64]) {
+        system.quantities(values);
         for (i, &(slot, der)) in self.slots.iter().enumerate() {
             self.y[i] = values[slot];
             self.yp[i] = der.map_or(0.0, |d| values[d]);
         }
+        for (integral, &(kept, before)) in system.integrals.iter().zip(&self.held) {
+            let value = kept + (values[integral.slot as usize] - before);
+            self.y[integral.column] = value;
+            values[self.slots[integral.column].0] = value;
+        }
     }
 
     /// Remembers the unknowns and the equations' derivatives just before an event.
-    pub fn before(&mut self, _system: &System, values: &[f64], y: &[f64]) {
+    pub fn before(&mut self, system: &System, values: &mut [f64], y: &[f64]) {
+        self.hold(system, values, |column, _| y[column]);
         self.old.copy_from_slice(y);
         for (old, &(_, der)) in self.old_slopes.iter_mut().zip(&self.slots) {
             *old = der.map_or(0.0, |d| values[d]);
+        }
+    }
+
+    /// Takes the conserved quantities of a saved state for what the integrator had.
+    pub fn resume(&mut self, system: &System, values: &mut [f64]) {
+        self.hold(system, values, |_, saved| saved);
+    }
+
+    fn hold(&mut self, system: &System, values: &mut [f64], kept: impl Fn(usize, f64) -> f64) {
+        system.quantities(values);
+        for (held, integral) in self.held.iter_mut().zip(&system.integrals) {
+            let saved = values[self.slots[integral.column].0];
+            *held = (kept(integral.column, saved), values[integral.slot as usize]);
         }
     }
 

@@ -124,7 +124,7 @@ mod tests {
              end M;";
         let flat = crate::compile::flatten_text(text, None).value.expect("sound").flat;
         let dae = crate::compile::analyze(&flat).value.expect("sound");
-        lower(Arc::new(dae), &Options { native: false })
+        lower(Arc::new(dae), &Options::INTERPRETED)
     }
 
     /// Whether a loop waits, and whether anything else does, after a slot has changed.

@@ -166,7 +166,7 @@ impl Make {
     }
 
     fn system(self) -> System {
-        lower(Arc::new(self.dae), &Options { native: false })
+        lower(Arc::new(self.dae), &Options::INTERPRETED)
     }
 }
 

@@ -9,7 +9,7 @@ use super::solve_block::BlockSolver;
 use super::sorting::{Columns, System, SystemRow};
 use super::{
     ActionKind, Alias, Assign, Block, Dae, Selection, StateChoice, Unknown, alias, assertions, cancelling,
-    closed_groups, delays, discrete, dummy_derivatives, duplicates, events, held, initial, messages, parameters,
+    closed_groups, conserved, delays, discrete, dummy_derivatives, duplicates, events, held, initial, messages, parameters,
     regularity, start_derivatives, zeros,
 };
 use crate::diag::{Checked, Diagnostic};
@@ -98,10 +98,13 @@ fn run(
     diagnostics.extend(start.diagnostics);
     let further = zeros::decisive(&mut draft, &mut known, [&running, &start.system]);
     blocks.sort_initial(&mut draft, &mut known, &start.system);
-    duplicates::share(&mut draft.exprs, &mut blocks.continuous);
+    let mut conserved = conserved::find(&mut draft, &mut known, &states.states);
+    let stated = conserved.iter_mut().flat_map(|c| [&mut c.quantity, &mut c.rate]);
+    duplicates::share(&mut draft.exprs, &mut blocks.continuous, stated);
     let rest = Rest { order, aliases, states: states.states, selections: chosen.selections };
     let mut dae = assemble(flat, draft, blocks, rest);
     dae.chosen_starts = start.chosen;
+    dae.conserved = conserved;
     dae.initial_checks.extend(start.checks);
     Ok((dae, further))
 }
@@ -331,6 +334,7 @@ fn assemble(flat: &FlatModel, mut draft: Draft, blocks: Blocks, rest: Rest) -> D
         event: blocks.event,
         initial: blocks.initial,
         selections: rest.selections,
+        conserved: Vec::new(),
         chosen_starts: Vec::new(),
         initial_checks,
         crossings: draft.crossings,

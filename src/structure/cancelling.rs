@@ -40,7 +40,7 @@ fn set(pool: &mut Exprs, equation: &mut Equation, v: VarId) {
 }
 
 /// Variables with their factors, in the order of variables.
-type Sum = Vec<(VarId, f64)>;
+pub(super) type Sum = Vec<(VarId, f64)>;
 
 #[derive(Default)]
 struct Sums {
@@ -125,7 +125,7 @@ fn single(a: &Sum, b: &Sum) -> Option<VarId> {
 }
 
 /// The terms of `lhs - rhs` where that is a sum of continuous unknowns with factors that no run changes.
-fn terms(draft: &Draft, known: &mut Known, equation: &Equation) -> Option<Sum> {
+pub(super) fn terms(draft: &Draft, known: &mut Known, equation: &Equation) -> Option<Sum> {
     let pool = &draft.exprs;
     let mut number = |e: ExprId| {
         let constant = |v: &VarId| draft.variables[v.index()].variability == Variability::Constant;

@@ -67,6 +67,7 @@ pub(super) struct Draft {
     pub before_start: Vec<(VarId, VarId)>,
     pub whens: Vec<flat::When>,
     pub asserts: Vec<flat::Assert>,
+    pub conserved: Vec<flat::Conserved>,
     pub crossings: Vec<Crossing>,
     pub samples: Vec<Sample>,
     pub delays: Vec<Delay>,
@@ -103,6 +104,7 @@ impl Draft {
             before_start: Vec::new(),
             whens: flat.whens.clone(),
             asserts: flat.asserts.clone(),
+            conserved: flat.conserved.clone(),
             instances: flat.instances.clone(),
             ..Draft::default()
         };
@@ -197,6 +199,7 @@ impl Draft {
             }
         }
         self.asserts.iter_mut().for_each(|assert| each_of_assert(assert, &mut visit));
+        self.conserved.iter_mut().flat_map(|c| [&mut c.quantity, &mut c.rate, &mut c.state]).for_each(&mut visit);
         self.crossings.iter_mut().for_each(|crossing| each_of_crossing(crossing, &mut visit));
         for sample in &mut self.samples {
             visit(&mut sample.start);

@@ -7,8 +7,8 @@ use super::{Assign, Block, Unknown};
 use crate::expr::{ExprId, Exprs, Node, VarId};
 use rustc_hash::FxHashMap;
 
-/// Lets equal assignments share their value, in the order of the blocks.
-pub(super) fn share(exprs: &mut Exprs, blocks: &mut [Block]) {
+/// Lets equal assignments share their value, in the order of the blocks, and expressions that are read behind all of them.
+pub(super) fn share<'e>(exprs: &mut Exprs, blocks: &mut [Block], behind: impl Iterator<Item = &'e mut ExprId>) {
     let mut shared = Shared { exprs, first: FxHashMap::default(), images: FxHashMap::default() };
     for block in blocks {
         match block {
@@ -22,6 +22,7 @@ pub(super) fn share(exprs: &mut Exprs, blocks: &mut [Block]) {
             Block::Mixed(_) => {}
         }
     }
+    behind.for_each(|e| *e = shared.read(*e));
 }
 
 struct Shared<'a> {
@@ -51,6 +52,24 @@ impl Shared<'_> {
                 self.images.insert(replaced, assign.value);
             }
         }
+    }
+
+    /// With variables in the place of all parts that an assignment has computed.
+    fn read(&mut self, e: ExprId) -> ExprId {
+        let e = self.image(e);
+        let mut images: FxHashMap<ExprId, ExprId> = FxHashMap::default();
+        for part in self.exprs.reachable(&[e], |_| true) {
+            let image = match self.first.get(&part) {
+                Some(&v) if part != e => self.exprs.var(v),
+                _ => {
+                    let operands = self.exprs.operands(part);
+                    let operands: Vec<(ExprId, ExprId)> = operands.as_slice().iter().map(|a| (*a, images[a])).collect();
+                    image_of(self.exprs, part, &operands)
+                }
+            };
+            images.insert(part, image);
+        }
+        images[&e]
     }
 
     fn image(&mut self, e: ExprId) -> ExprId {

@@ -9,6 +9,7 @@ mod assertions;
 mod blt;
 mod cancelling;
 mod closed_groups;
+mod conserved;
 mod delays;
 mod discrete;
 mod draft;
@@ -87,6 +88,8 @@ pub struct Dae {
     pub asserts: Vec<flat::Assert>,
     /// Groups among which the states were chosen; the solver asks for another choice when a group's pivots degenerate.
     pub selections: Vec<Selection>,
+    /// What may be integrated in place of states.
+    pub conserved: Vec<Conserved>,
     /// Expressions that must vanish at the start, each with its equation: fixed starts of variables that constraints
     /// tie to others, which hold only if they are consistent. Checked after the initial system is solved.
     pub initial_checks: Vec<(ExprId, u32)>,
@@ -235,6 +238,21 @@ pub enum ActionKind {
     Terminate(flat::Message),
     /// A condition is checked.
     Assert(flat::Assert),
+}
+
+/// A quantity that may be integrated in place of a state, which then follows from it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Conserved {
+    /// The state, one of `Dae::states`.
+    pub state: VarId,
+    /// Stands for the quantity as an unknown of the solver; no block computes it.
+    pub variable: VarId,
+    /// The quantity by the states.
+    pub quantity: ExprId,
+    /// Its rate.
+    pub rate: ExprId,
+    /// `variable = quantity`: index into `Dae::equations`.
+    pub equation: u32,
 }
 
 /// A group of constraints with more differentiated candidates than degrees of freedom.

@@ -37,7 +37,7 @@ pub fn report(text: &str, model: Option<&str>, run: bool) -> Report {
     let world = MemoryWorld::single("model.mo", text);
     let request = Request { source: "model.mo".into(), model: model.map(Into::into), ..Request::default() };
     let Outcome { sources, mut diagnostics, value } =
-        bramah::internals::compile::compile(&world, &request, &Options { native: false });
+        bramah::internals::compile::compile(&world, &request, &Options::INTERPRETED);
     if let Some(model) = value.filter(|_| run) {
         let all = (0..model.flat.variables.len()).map(|i| VarId(u32::try_from(i).expect("few variables")));
         let settings = Settings { wanted: all.collect(), ..Settings::from_experiment(&model.flat.experiment) };

@@ -65,7 +65,17 @@ protected
   SI.Voltage v_q(nominal = 100) "Voltage command before the limit, q axis";
   SI.Voltage u_d(nominal = 100) "Voltage, d axis";
   SI.Voltage u_q(nominal = 100) "Voltage, q axis";
-  Real k(unit = "1") "Share that the limit leaves";
+  parameter SI.Voltage U_d = U_max*sqrt(1 - 1e-4) "Limit of the d axis; a hundredth of U_max is left to the other, so that its limit has a slope";
+  SI.Voltage U_q(nominal = 100) "What the d axis leaves of U_max";
+  SI.Voltage E(nominal = 100) "Voltage that the flux asks for, q axis";
+  constant SI.Resistance Z_0 = 1e-6 "Keeps the impedance from 0";
+  SI.Resistance X(nominal = 1) "Transient reactance";
+  SI.Resistance Z(nominal = 1) "Transient impedance";
+  SI.Current i_mid(nominal = 10) "Current of the q axis that needs least voltage";
+  SI.Current i_way(nominal = 10) "Way from there to the limit of the voltage";
+  SI.Current i_low(nominal = 10) "Least current of the q axis that voltage and I_max allow";
+  SI.Current i_high(nominal = 10) "Greatest current of the q axis that they allow";
+  Real k_T(unit = "N.m/A", nominal = 1) "Torque per current of the q axis";
 initial equation
   if steady then
     {der(psi_ds), der(psi_qs), der(psi_dr), der(psi_qr), der(psi_hat)} = zeros(5);
@@ -103,23 +113,32 @@ equation
   end if;
   tau_w*der(w_est) = w_now - w_est;
   T_free = K_p*(w_ref - w_est) + x;
-  T_ref = min(max(T_free, -T_max), T_max);
+  T_ref = min(max(T_free, max(-T_max, k_T*i_low)), min(T_max, k_T*i_high));
   der(x) = K_i*(w_ref - w_est) + K_i/K_p*(T_ref - T_free);
   // currents
   psi_cmd = min(psi_ref, weakening*U_max*L_m/(L_s*Smooth.mag(w_e, 1)));
   i_d_ref = psi_cmd/L_m;
   i_q_max = sqrt(max(I_max^2 - i_d_ref^2, 0));
-  i_q_ref = min(max(T_ref*L_r/(1.5*p*L_m*max(psi_hat, psi_low)), -i_q_max), i_q_max);
+  E = w_e*(L_t*i_d + L_m/L_r*psi_hat);
+  X = w_e*L_t;
+  Z = sqrt(R_s^2 + X^2 + Z_0^2);
+  i_mid = R_s*(X*i_d - E)/Z^2;
+  i_way = sqrt(noEvent(max((U_max^2 - (R_s*i_d)^2 - E^2)/Z^2 + i_mid^2, (1e-3*I_max)^2)));
+  i_low = min(max(i_mid - i_way, -i_q_max), i_q_max);
+  i_high = min(max(i_mid + i_way, -i_q_max), i_q_max);
+  k_T = 1.5*p*L_m/L_r*max(psi_hat, psi_low);
+  i_q_ref = T_ref/k_T;
   v_d = L_t*w_c*(i_d_ref - i_d) + x_d - w_e*L_t*i_q;
-  v_q = L_t*w_c*(i_q_ref - i_q) + x_q + w_e*(L_t*i_d + L_m/L_r*psi_hat);
-  k = min(1, U_max/max(sqrt(v_d^2 + v_q^2), 1e-3));
-  u_d = k*v_d;
-  u_q = k*v_q;
+  v_q = L_t*w_c*(i_q_ref - i_q) + x_q + E;
+  u_d = min(max(v_d, -U_d), U_d);
+  U_q = sqrt(U_max^2 - u_d^2);
+  u_q = min(max(v_q, -U_q), U_q);
   u = sqrt(u_d^2 + u_q^2);
-  der(x_d) = R_t*w_c*(i_d_ref - i_d) + (k - 1)*v_d*w_c;
-  der(x_q) = R_t*w_c*(i_q_ref - i_q) + (k - 1)*v_q*w_c;
+  der(x_d) = R_t*w_c*(i_d_ref - i_d) + w_c*(u_d - v_d);
+  der(x_q) = R_t*w_c*(i_q_ref - i_q) + w_c*(u_q - v_q);
   annotation(Documentation(info = "<html>
-<p>The motor is that of <code>InductionMotor</code>, in axes that turn with <code>w_e = p w + w_sl</code>. The controller takes the flux of the rotor to lie along d: <code>d psi/dt = R_r/L_r (L_m i_d - psi)</code>, <code>w_sl = R_r L_m i_q/(L_r psi)</code>, with the resistance <code>k_Rr R_r</code> that it assumes. Current loops of bandwidth <code>w_c</code> with decoupling and a common limit of the voltage; the flux weakens beyond the speed at which it takes <code>weakening U_max</code>.</p>
+<p>The motor is that of <code>InductionMotor</code>, in axes that turn with <code>w_e = p w + w_sl</code>. The controller takes the flux of the rotor to lie along d: <code>d psi/dt = R_r/L_r (L_m i_d - psi)</code>, <code>w_sl = R_r L_m i_q/(L_r psi)</code>, with the resistance <code>k_Rr R_r</code> that it assumes. Current loops of bandwidth <code>w_c</code> with decoupling; the flux weakens beyond the speed at which it takes <code>weakening U_max</code>.</p>
+<p><b>Voltage limit</b>: the flux comes first. The d axis has all of <code>U_max</code> (but for 5e-5 of it), the q axis <code>sqrt(U_max^2 - u_d^2)</code>, and the integral part of each axis follows what its own limit leaves, so that lack of voltage for the torque never weakens or strengthens the flux. The torque commanded is held to the currents for which <code>(R_s i_d - X i_q)^2 + (R_s i_q + E)^2 = U_max^2</code> (<code>X = w_e L_t</code>, <code>E = w_e (L_t i_d + psi L_m/L_r)</code>) and to what the d axis leaves of <code>I_max</code>, and the integral part of the speed controller stops with it: a step of the speed ends where a slow ramp does. With a wrong <code>k_Rr</code> the true flux is not the commanded one, and the voltage may end at a lower speed.</p>
 <p><b>Detuning</b>: with currents held, the slip is <code>k_Rr</code> times too large, and the torque is <code>3/2 p L_m^2/L_r |i|^2 s/(1 + s^2)</code> with <code>s = k_Rr i_q/i_d</code>, instead of <code>3/2 p L_m^2/L_r i_d i_q</code>; the flux leaves the d axis (<code>psi_qr</code>).</p>
-<p><b>Without a speed sensor</b> the flux of the stator is integrated from the voltages, held by the currents below <code>w_o</code>; its part across the axes, which should be 0, turns the axes until it is: a PI controller gives the speed. Near standstill the voltages say little (an error of <code>k_Rs</code> makes the speed drift there). Source: C. Schauder, IEEE Trans. Ind. Appl. 28 (1992) 1054; W. Leonhard, Control of Electrical Drives, chapter 12. Inverter, saturation and iron loss are left out.</p></html>"));
+<p><b>Without a speed sensor</b> the flux of the stator is integrated from the voltages, held by the currents below <code>w_o</code>; its part across the axes, which should be 0, turns the axes until it is: a PI controller gives the speed. Near standstill the voltages say little (an error of <code>k_Rs</code> makes the speed drift there). Source: C. Schauder, IEEE Trans. Ind. Appl. 28 (1992) 1054; W. Leonhard, Control of Electrical Drives, chapter 12; priority of the flux at the limit of the voltage: R. De Doncker, D. W. J. Pulle, A. Veltman, Advanced Electrical Drives, 2011. Inverter, saturation and iron loss are left out.</p></html>"));
 end FieldOrientedInductionDrive;

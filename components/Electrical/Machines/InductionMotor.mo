@@ -12,7 +12,7 @@ model InductionMotor "Induction motor, flux model in synchronous axes"
   parameter SI.RotationalDampingConstant B(min = 0) = 0 "Friction and windage";
   parameter SI.TemperatureDifference dT(min = -200, max = 300) = 0 "Windings above T_ref, without heatPort";
   parameter Boolean useHeatPort = false "true: temperature and losses go through heatPort" annotation(Evaluate = true);
-  Interfaces.HeatPort heatPort(T = T_w, Q_flow = -P_cu) if useHeatPort "Windings";
+  Interfaces.HeatPort heatPort(T = T_w, Q_flow = -(P_cu + P_mech)) if useHeatPort "Windings, and the heat of friction and windage";
   parameter SI.Temperature T_ref(min = 200, max = 500) = 293.15 "Temperature of R_s and R_r";
   parameter SI.LinearTemperatureCoefficient alpha(min = 0, max = 0.02) = 0.0039 "Temperature coefficient of the resistances";
   SI.AngularVelocity w(nominal = 100) "Speed";
@@ -28,6 +28,7 @@ model InductionMotor "Induction motor, flux model in synchronous axes"
   SI.Current i_qr "Rotor current, q axis";
   SI.Torque T_e(nominal = 100) "Electromagnetic torque";
   SI.Power P_cu(nominal = 100) "Copper loss of stator and rotor";
+  SI.Power P_mech(nominal = 10) "Friction and windage";
   SI.Temperature T_w(nominal = 300) "Temperature of the windings";
 protected
   parameter SI.Inductance L_s = L_ls + L_m "Inductance of the stator";
@@ -57,6 +58,7 @@ equation
   der(psi_qr) = -R_2*i_qr - w_sl*psi_dr;
   T_e = 1.5*p*(psi_ds*i_qs - psi_qs*i_ds);
   P_cu = 1.5*(R_1*(i_ds^2 + i_qs^2) + R_2*(i_dr^2 + i_qr^2));
+  P_mech = B*w^2;
   flange.tau = -T_e + B*w;
-  annotation(Documentation(info = "<html><p>Peak values, d axis along the supply voltage. In steady state equal to <code>InductionMotorSteady</code>. Defaults: 50 hp, 460 V, 60 Hz, four poles. Joined to a heat capacity (<code>useHeatPort</code>) the windings warm up: the rotor slips more under load. Source: P. C. Krause, Analysis of Electric Machinery, chapter 4. Saturation, iron loss and harmonics are left out.</p></html>"));
+  annotation(Documentation(info = "<html><p>Peak values, d axis along the supply voltage. In steady state equal to <code>InductionMotorSteady</code>. Defaults: 50 hp, 460 V, 60 Hz, four poles. Joined to a heat capacity (<code>useHeatPort</code>) the windings warm up: the rotor slips more under load. Friction and windage, <code>B w^2</code>, go there too, so that what comes in is what is stored, given off at the shaft, and heat. Source: P. C. Krause, Analysis of Electric Machinery, chapter 4. Saturation, iron loss and harmonics are left out.</p></html>"));
 end InductionMotor;

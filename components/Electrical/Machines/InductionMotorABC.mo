@@ -19,7 +19,7 @@ model InductionMotorABC "Induction motor in phases, both ends of each winding le
   parameter SI.TemperatureDifference dT(min = -200, max = 300) = 0 "Windings above T_ref, without heatPort";
   parameter SI.LinearTemperatureCoefficient alpha(min = 0, max = 0.02) = 0.0039 "Temperature coefficient of the resistances";
   parameter Boolean useHeatPort = false "true: temperature and losses go through heatPort" annotation(Evaluate = true);
-  Interfaces.HeatPort heatPort(T = T_w, Q_flow = -P_cu) if useHeatPort "Windings";
+  Interfaces.HeatPort heatPort(T = T_w, Q_flow = -(P_cu + P_mech)) if useHeatPort "Windings, and the heat of friction and windage";
   SI.AngularVelocity w(nominal = 100) "Speed";
   SI.Current i[3](each nominal = 10) "Currents of the windings, from begin to end";
   SI.Voltage v[3](each nominal = 100) "Voltages of the windings";
@@ -32,6 +32,7 @@ model InductionMotorABC "Induction motor in phases, both ends of each winding le
   SI.Current i_br(nominal = 10) "Rotor current across winding U";
   SI.Torque T_e(nominal = 100) "Electromagnetic torque";
   SI.Power P_cu(nominal = 100) "Copper loss of stator and rotor";
+  SI.Power P_mech(nominal = 10) "Friction and windage";
   SI.Temperature T_w(nominal = 300) "Temperature of the windings";
 protected
   parameter SI.Inductance L_s = L_ls + L_m "Inductance of the stator";
@@ -71,9 +72,10 @@ equation
   der(psi_br) = -R_r*heat*i_br + p*w*psi_ar;
   T_e = 1.5*p*(psi_as*i_bs - psi_bs*i_as);
   P_cu = R_s*heat*((1 + unbalance[1])*i[1]^2 + (1 + unbalance[2])*i[2]^2 + (1 + unbalance[3])*i[3]^2) + 1.5*R_r*heat*(i_ar^2 + i_br^2);
+  P_mech = B*w^2;
   flange.tau = -T_e + B*w;
   annotation(Documentation(info = "<html>
-<p>Windings and rotor in axes that stand still, along and across winding U: <code>v_k = R_s i_k + d psi_k/dt</code>, the zero sequence by the leakage alone, <code>0 = R_r i_r + d psi_r/dt - j p w psi_r</code>, <code>T_e = 3/2 p (psi_as i_bs - psi_bs i_as)</code>. Both ends of each winding are led out: joined at U2, V2, W2 it is a star (with the neutral led out or not), U2 to V1, V2 to W1, W2 to U1 a delta. A line that opens, a winding with more resistance (<code>unbalance</code>), a supply that is not symmetric: all go through the pins. In steady state with a symmetric supply equal to <code>InductionMotor</code>.</p>
+<p>Windings and rotor in axes that stand still, along and across winding U: <code>v_k = R_s i_k + d psi_k/dt</code>, the zero sequence by the leakage alone, <code>0 = R_r i_r + d psi_r/dt - j p w psi_r</code>, <code>T_e = 3/2 p (psi_as i_bs - psi_bs i_as)</code>. Both ends of each winding are led out: joined at U2, V2, W2 it is a star (with the neutral led out or not), U2 to V1, V2 to W1, W2 to U1 a delta. A line that opens, a winding with more resistance (<code>unbalance</code>), a supply that is not symmetric: all go through the pins. In steady state with a symmetric supply equal to <code>InductionMotor</code>. Copper loss and friction with windage, <code>B w^2</code>, go to <code>heatPort</code>.</p>
 <p>A star without neutral has no zero sequence: <code>i_0</code> is no state then. Where a switch cuts a winding off, it must leave some conductance, for the flux cannot jump.</p>
 <p>Defaults: 50 hp, 460 V, 60 Hz, four poles. Source: P. C. Krause, Analysis of Electric Machinery, chapters 3 and 4. Saturation, iron loss and harmonics are left out.</p></html>"));
 end InductionMotorABC;

@@ -12,7 +12,7 @@ model InductionMotorSteady "Induction motor by its steady-state equivalent circu
   parameter SI.RotationalDampingConstant B(min = 0) = 0 "Friction and windage";
   parameter SI.TemperatureDifference dT(min = -200, max = 300) = 0 "Windings above T_ref, without heatPort";
   parameter Boolean useHeatPort = false "true: temperature and losses go through heatPort" annotation(Evaluate = true);
-  Interfaces.HeatPort heatPort(T = T_w, Q_flow = -P_cu) if useHeatPort "Windings";
+  Interfaces.HeatPort heatPort(T = T_w, Q_flow = -(P_cu + P_mech)) if useHeatPort "Windings, and the heat of friction and windage";
   parameter SI.Temperature T_ref(min = 200, max = 500) = 293.15 "Temperature of R_s and R_r";
   parameter SI.LinearTemperatureCoefficient alpha(min = 0, max = 0.02) = 0.0039 "Temperature coefficient of the resistances";
   SI.AngularVelocity w(nominal = 100) "Speed";
@@ -21,6 +21,7 @@ model InductionMotorSteady "Induction motor by its steady-state equivalent circu
   SI.Current I_1(nominal = 10) "Stator current, rms";
   SI.Torque T_e(nominal = 100) "Electromagnetic torque";
   SI.Power P_cu(nominal = 100) "Copper loss of stator and rotor";
+  SI.Power P_mech(nominal = 10) "Friction and windage";
   SI.Temperature T_w(nominal = 300) "Temperature of the windings";
 protected
   SI.Resistance R_1 "Stator resistance";
@@ -49,7 +50,8 @@ equation
   T_e = 3*p*U^2*L_m^2*R_2*w_sl/N_2;
   I_1 = U*sqrt((R_2^2 + a^2)/N_2);
   P_cu = 3*R_1*I_1^2 + T_e*w_sl/p;
+  P_mech = B*w^2;
   flange.tau = -T_e + B*w;
-  annotation(Documentation(info = "<html><p>T circuit: stator <code>R_s + j w_e L_ls</code>, magnetizing <code>j w_e L_m</code>, rotor <code>R_r w_e/w_sl + j w_e L_lr</code>, multiplied through with the slip so that nothing is singular at no load. <code>T_e = 3 p I_2^2 R_r/w_sl</code>.
+  annotation(Documentation(info = "<html><p>T circuit: stator <code>R_s + j w_e L_ls</code>, magnetizing <code>j w_e L_m</code>, rotor <code>R_r w_e/w_sl + j w_e L_lr</code>, multiplied through with the slip so that nothing is singular at no load. <code>T_e = 3 p I_2^2 R_r/w_sl</code>. Copper loss and friction with windage, <code>B w^2</code>, go to <code>heatPort</code>.
 The rotor loses the share of the slip in the power of the air gap. No electrical transients. Source: P. C. Krause, Analysis of Electric Machinery, chapter 4. Valid where speed and supply change slowly against the leakage time constants (some 10 ms).</p></html>"));
 end InductionMotorSteady;

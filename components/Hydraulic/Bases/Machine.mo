@@ -38,6 +38,11 @@ protected
   Real n_abs(unit = "Hz") "Its magnitude, rounded over 1e-3 rev/s";
   Real side(unit = "1") "1: A is the high side, 0: B is";
   Real fill(unit = "1") "Filling of the chambers";
+  Real full_a(unit = "1") "What of the oil between the voids the machine draws at A: its density over that, and less at a tenth";
+  Real full_b(unit = "1") "The same at B";
+  SI.SpecificEnthalpy w_a(nominal = 1e3) "What voids at A add to the integral of dp/rho";
+  SI.SpecificEnthalpy w_b(nominal = 1e3) "The same at B";
+  Real carried(unit = "Hz") "Revolutions per second that carry oil, times u";
   SI.DynamicViscosity mu_case(nominal = 0.03) "Viscosity at the temperature of the case and low pressure";
   SI.DynamicViscosity mu(nominal = 0.03) "Viscosity in the gaps";
   Real thin(unit = "1") "Leakage over that at mu_G";
@@ -47,8 +52,8 @@ protected
   SI.Density rho_a(nominal = 1000) "Density at A, at T_0";
   SI.Density rho_b(nominal = 1000) "Density at B, at T_0";
   SI.Density rho_high(nominal = 1000) "Density at the high side";
-  SI.Density rho_mean(nominal = 1000) "Mean density of the two sides";
-  SI.Density drho(nominal = 10) "Density at A less that at B";
+  SI.Density rho_mean(nominal = 1000) "Mean density of the two sides, voids left out";
+  SI.Density drho(nominal = 10) "Density at A less that at B, voids left out";
   SI.MassFlowRate m_ideal(nominal = 0.1) "Mass flow from B to A by displacement";
   SI.MassFlowRate m_out_a(nominal = 1e-3) = 0 "Mass flow from A to the case; for who extends it and has one";
   SI.MassFlowRate m_out_b(nominal = 1e-3) = 0 "Mass flow from B to the case";
@@ -56,7 +61,7 @@ protected
 equation
   assert(V > 0, "The displacement V must be positive");
   assert(deadVolume >= 0, "The dead volume must not be negative");
-  assert(fill > 0.5 or n_abs < 0.1, "The machine runs dry: the pressure at its inlet lies below p_cav + p_fill/2. Is the inlet open, and does it turn the right way?", AssertionLevel.warning);
+  assert(fill*(if n*u_used > 0 then full_b else full_a) > 0.5 or n_abs < 0.1, "The machine runs dry: the pressure at its inlet lies below p_cav + p_fill/2. Is the inlet open, and does it turn the right way?", AssertionLevel.warning);
   assert(abs(w) < w_max, "The machine turns faster than w_max: is a speed in rev/min given where rad/s are meant?", AssertionLevel.warning);
   connect(u, u_used);
   if not useInput then
@@ -95,31 +100,36 @@ equation
   else
     fill = 1;
   end if;
+  full_a = min(rho_a/oil.rho_l, 1)*Smooth.step(10*rho_a/oil.rho_l);
+  full_b = min(rho_b/oil.rho_l, 1)*Smooth.step(10*rho_b/oil.rho_l);
+  carried = max(n*u_used, 0)*full_b + min(n*u_used, 0)*full_a;
   if tangentModulus then
     drho = rho_high*dp/Functions.modulus(max(port_a.p, port_b.p), oil.p_0, oil.beta_0, oil.m, oil.alpha_0*oil.x_u, oil.n_g);
     rho_mean = rho_high - (2*side - 1)*drho/2;
   else
-    drho = rho_a - rho_b;
-    rho_mean = (rho_a + rho_b)/2;
+    drho = max(rho_a, oil.rho_l) - max(rho_b, oil.rho_l);
+    rho_mean = (max(rho_a, oil.rho_l) + max(rho_b, oil.rho_l))/2;
   end if;
   if compression then
-    m_ideal = fill*V*(n*u_used*rho_mean - n_abs*(0.5 + deadVolume)*drho);
+    m_ideal = fill*V*(carried*rho_mean - full_a*full_b*n_abs*(0.5 + deadVolume)*drho);
   else
-    m_ideal = fill*V*n*u_used*rho_high;
+    m_ideal = fill*V*carried*rho_high;
   end if;
   rho_a*Q_A = (m_ideal - rho_high*Q_leak - m_out_a)/(if oil.thermal then growth else 1);
   port_a.q = -Q_A;
   rho_a*port_a.q + rho_b*port_b.q = (m_out_a + m_out_b)/(if oil.thermal then growth else 1);
   T_sh = fill*u_used*D*dp + T_loss;
   flange.tau = T_sh;
-  lossPower = T_sh*w - dp*Q_A*(if oil.thermal then growth else 1)*rho_a/((rho_a + rho_b)/2) - casePower;
+  w_a = (oil.throttling(min(port_a.p, oil.p_l)) - oil.throttling(oil.p_l))*oil.c_p/(1 - oil.gamma*oil.T_0) - (min(port_a.p, oil.p_l) - oil.p_l)/oil.rho_l;
+  w_b = (oil.throttling(min(port_b.p, oil.p_l)) - oil.throttling(oil.p_l))*oil.c_p/(1 - oil.gamma*oil.T_0) - (min(port_b.p, oil.p_l) - oil.p_l)/oil.rho_l;
+  lossPower = T_sh*w - Q_A*(if oil.thermal then growth else 1)*rho_a*(2*dp/(max(rho_a, oil.rho_l) + max(rho_b, oil.rho_l)) + w_a - w_b) - casePower;
   annotation(Documentation(info = "<html>
 <p>Positive speed pushes oil from B to A. With <code>dp = p_A - p_B</code>, dp and speed of equal sign are pumping, of opposite sign motoring; a motor is the same machine.</p>
 <p><b>Delivery.</b> A chamber closes at the inlet with the density there and its dead volume returns what it holds at the outlet, so that a revolution carries the mass
 <code>rho_in (V + V_d) - rho_out V_d</code>. In one formula for both directions of rotation: <code>V (n (rho_A + rho_B)/2 - |n| (1/2 + V_d/V)(rho_A - rho_B))</code>. Pumping this is the known compression loss
 <code>n (V + V_d) dp/beta</code>, motoring <code>n V_d dp/beta</code>; mass is conserved exactly. Without <code>compression</code> the displacement counts at the high side.</p>
 <p><b>Variable displacement</b>: u scales the displacement; half the swept volume and the dead volume together, which compression sees, do not change with it.</p>
-<p><b>Starvation</b>: delivery falls smoothly between <code>p_cav + p_fill</code> and <code>p_cav</code> of inlet pressure, and the torque with it.</p>
+<p><b>Starvation</b>: delivery falls smoothly between <code>p_cav + p_fill</code> and <code>p_cav</code> of inlet pressure, and the torque with it. Whatever <code>starvation</code> says and however slowly it turns, it draws nothing where only vapour is left: what it carries has the share of voids that stands at its inlet, and falls to nothing as they take more than nine tenths. Voids at the outlet do not count: oil that comes in through the other side fills the chambers.</p>
 <p><b>Heat</b>: with <code>useHeatPort</code> the losses go to what is joined to <code>heatPort</code>, and leakage and friction follow the temperature there: join it to the oil (<code>Thermal.OilMass</code>), or to a heat capacity for a case of its own with a conductor to the oil. Without, the gaps have the temperature of the circuit.</p>
 <p><b>Oil that carries heat</b> (<code>Oil.Fluid(thermal = true)</code>): the machine holds <code>V_oil</code> of one temperature, <code>rho V_oil c_p dT/dt = sum of m (h - h_m) + T_sh w + Q</code> over its ports, h_m being the enthalpy of its oil at the reference pressure, and what leaves has that temperature. So losses warm the oil that leaves, and compression does by <code>gamma T dp/(rho c_p)</code>, some 0.13 K per MPa. <code>heatPort</code> then
 joins this oil to a housing (a conductor with a heat capacity): losses are not sent there twice.</p>

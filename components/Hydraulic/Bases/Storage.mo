@@ -14,6 +14,7 @@ protected
   SI.VolumeFlowRate inflow(nominal = 1e-4) "Rate at which the oil would grow at constant pressure: what comes in, comes out of solution, and expands";
   SI.HeatFlowRate Q_flow(nominal = 10) "Heat through heatPort";
   Real growth(unit = "1") "Volume of the oil over that at T_0";
+  SI.Mass stored(nominal = 1) "What the balance keeps: the mass, but for laws whose modulus does not belong to their density";
 equation
   if oil.thermal then
     growth = oil.growth(T_oil);
@@ -28,6 +29,8 @@ equation
     Q_flow = 0;
   end if;
   mass = air.rho*V_oil/(if oil.thermal then growth else 1);
+  stored = air.rho_s*V_oil/(if oil.thermal then growth else 1);
+  Connections.conserved(stored, air.rho_port*port.q, port.p);
   annotation(Documentation(info = "<html>
 <p>A component adds the volume <code>V_oil</code> and <code>V_oil/beta dp/dt + dV/dt = inflow</code>, V being the room for the oil: the balance of mass <code>d(rho V)/dt = m</code>.</p>
 <p><b>Heat</b>, where oil carries it: <code>m c_p dT/dt = sum of m_in c_p (T_in - T) + Q + gamma T v_0 m dp/dt</code>, the balance of energy with the enthalpy of <code>Oil.Heat</code>, v_0 being the specific volume at T_0; the last term warms oil that is

@@ -15,7 +15,8 @@ initial equation
   x = x_start;
 equation
   assert(p_sat > oil.p_0, "p_sat must lie above the reference pressure of the oil");
-  (rho, beta) = oil.density(p, x_u = x);
+  (rho, beta,, s) = oil.density(p, x_u = x);
+  rho_port = oil.density(p);
   rho_x = (oil.density(p, x_u = x + h) - oil.density(p, x_u = x - h))/(2*h);
   x_eq = 1 - Smooth.step((p - oil.p_0)/(p_sat - oil.p_0));
   tau = tau_r + (tau_d - tau_r)*(1 + tanh((x - x_eq)/0.02))/2;

@@ -7,6 +7,7 @@ partial function Law "What a law of density takes and gives"
   output SI.Density rho(nominal = 1000) "Density";
   output SI.BulkModulus beta(nominal = 1e9) "Tangent bulk modulus rho/(d rho/d p)";
   output SI.SpecificEnthalpy w(nominal = 1e4) = (p - p_0)/rho_0 "Integral of dp/rho from p_0: what it takes to push a kilogram in";
+  output SI.Density rho_s(nominal = 1000) = 0 "Density by which volumes store, of modulus beta: rho_0 exp(integral of dp/beta); 0: rho, as of every law whose modulus belongs to its density";
   annotation(Documentation(info = "<html><p>A law returns density and tangent modulus together, so that volumes conserve mass; <code>x_u</code> is the undissolved share of the air. Where oil carries
 heat, <code>w</code> is the part of its enthalpy that the pressure makes; a law that does not say it takes that of constant density.</p></html>"));
 end Law;

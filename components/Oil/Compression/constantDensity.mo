@@ -2,9 +2,19 @@ within Oil.Compression;
 function constantDensity "Textbook form: constant density and constant bulk modulus at the same time"
   extends Oil.Compression.Law;
   input SI.BulkModulus beta_0(min = 1e6) = 1.4e9 "Bulk modulus";
+  input SI.Pressure p_v = 0 "Pressure that is not reached however far the oil is drawn apart";
+  input SI.Pressure w_v(min = 1) = 1e3 "Fall of the pressure over which voids grow to e times their volume";
+protected
+  Real u "Depth below p_v over w_v; -25 where there are no voids";
+  Real v_v "Volume of voids over the volume of the oil at p_0";
 algorithm
-  rho := rho_0;
-  beta := beta_0;
+  u := max((p_v - p)/w_v, -25);
+  v_v := exp(min(u, 0) + 10)*(1 + max(u, 0)) - exp(-15)*(26 + u);
+  rho := rho_0/(1 + v_v);
+  beta := 1/(1/beta_0 + (exp(min(u, 0) + 10) - exp(-15))/(w_v*(1 + v_v)));
+  rho_s := rho_0*exp((p - p_0)/beta_0)/(1 + v_v);
+  w := (p - p_0)/rho_0 - w_v*v_v/rho_0;
   annotation(Inline = true, Documentation(info = "<html><p>Volume flows balance instead of masses, as in most textbooks: the oil that compression stores is not carried along, an error of dp/beta. For comparison with such models;
-<code>constantModulus</code> is the same oil with consistent density. Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, chapter 2.</p></html>"));
+<code>constantModulus</code> is the same oil with consistent density. Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, chapter 2.</p>
+<p>Oil that is drawn apart opens voids, of the volume <code>exp(10 - (p - p_v)/w_v)</code> over that of the oil as in <code>entrainedAir</code>, less its tangent 25 <code>w_v</code> above <code>p_v</code>: from there on, 25 kPa, there are none, and the law is the one above; as much as the oil at 10 kPa, twenty thousand times as much at <code>p_v</code>. The modulus adds their compliance to that of <code>beta_0</code>.</p></html>"));
 end constantDensity;

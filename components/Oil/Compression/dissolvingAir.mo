@@ -26,7 +26,7 @@ algorithm
   v_v := exp(min((p_v - p)/w_v, 0) + 10)*(1 + max((p_v - p)/w_v, 0));
   rho := rho_0/(v_l + alpha_0*x_eq*r + v_v);
   beta := (v_l + alpha_0*x_eq*r + v_v)/(v_l/(beta_0*x) + alpha_0*x_eq*r/(n_g*p_s) + alpha_0*r*6*u*(1 - u)/(p_sat - p_0) + exp(min((p_v - p)/w_v, 0) + 10)/w_v);
-  w := (1 - alpha_0)*beta_0/rho_0*(if abs(m - 1) > 1e-6 then (x^(1 - 1/m) - 1)/(m - 1) else log(x));
+  w := (1 - alpha_0)*beta_0/rho_0*(if abs(m - 1) > 1e-6 then (x^(1 - 1/m) - 1)/(m - 1) else log(x)) - w_v*v_v/rho_0;
   annotation(Inline = true, Documentation(info = "<html>
 <p>As <code>entrainedAir</code>, with the undissolved share <code>x_eq(p)</code> falling smoothly from 1 at p_0 to 0 at p_sat. The last term of the modulus is the air that
 goes into solution: it makes the oil softer in the transition. The argument <code>x_u</code> is not used. Suitable for slow processes only;

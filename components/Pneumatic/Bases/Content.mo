@@ -24,6 +24,8 @@ equation
   V_gas*der(p) + gas.kappa*p*V_flow = (gas.kappa - 1)*(H_flow + heatPort.Q_flow + G*(T_wall - T));
   V_gas*der(p) + p*V_flow - p*V_gas/T*der(T) = gas.R_s*T*m_flow;
   heatPort.T = T;
+  Connections.conserved(mass, m_flow, T);
+  Connections.conserved(U, H_flow + heatPort.Q_flow + G*(T_wall - T) - p*V_flow, p);
   annotation(Documentation(info = "<html>
 <p>Ideal gas of one pressure and one temperature. Energy, <code>dU/dt = H_flow + Q_flow - p dV/dt</code> with <code>U = p V/(kappa - 1)</code>, <code>V = V_gas</code>, gives
 <code>V dp/dt + kappa p dV/dt = (kappa - 1)(H_flow + Q_flow)</code>. Mass, <code>dm/dt = m_flow</code> with <code>m = p V/(R_s T)</code>, gives

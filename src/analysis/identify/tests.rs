@@ -59,7 +59,7 @@ pub(super) fn with_fit<T>(
 ) -> T {
     let mut sources = Sources::default();
     let study = Study::read(world, Path::new("study.toml"), &mut sources).value.expect("a study");
-    let outcome = crate::compile::compile(world, &study.request(), &crate::lower::Options { native: false });
+    let outcome = crate::compile::compile(world, &study.request(), &crate::lower::Options::INTERPRETED);
     let model = outcome.value.unwrap_or_else(|| panic!("{:?}", outcome.diagnostics));
     let bound = study.bind(&model.flat).value.expect("fits");
     let train = bound.load(world, None, Role::Train, &mut sources).value.expect("readable");
@@ -291,7 +291,7 @@ fn questions_without_sense() {
         let mut sources = Sources::default();
         let study = Study::read(&world, Path::new("study.toml"), &mut sources).value.expect("a study");
         let model =
-            crate::compile::compile(&world, &study.request(), &crate::lower::Options { native: false }).value.unwrap();
+            crate::compile::compile(&world, &study.request(), &crate::lower::Options::INTERPRETED).value.unwrap();
         let bound = study.bind(&model.flat).value.expect("fits");
         let train = bound.load(&world, None, Role::Train, &mut sources).value.expect("readable");
         match Problem::new(&model, &bound, &train) {

@@ -87,15 +87,15 @@ impl Plan {
         let mut states = Vec::new();
         let mut implicit = Vec::new();
         for (j, c) in system.columns.iter().enumerate() {
-            if c.state && roles[j] == Role::Nothing && !outputs.contains(&j) {
+            if c.is_state() && roles[j] == Role::Nothing && !outputs.contains(&j) {
                 roles[j] = Role::State(states.len());
                 states.push((j, c.variable));
             }
             if system.rows[j].kind != RowKind::Derivative {
-                if !c.state {
+                if !c.is_state() {
                     roles[j] = Role::Implicit(implicit.len());
                 }
-                implicit.push((j, c.state));
+                implicit.push((j, c.is_state()));
             }
         }
         let discrete = !system.dae.discrete.is_empty();
@@ -234,6 +234,6 @@ fn bound(system: &System, v: VarId) -> Diagnostic {
 fn column(system: &System, v: VarId) -> Option<(usize, bool)> {
     let alias = system.dae.aliases.iter().find(|a| a.variable == v);
     let (target, negated) = alias.map_or((v, false), |a| (a.target, a.negated));
-    let found = system.columns.iter().position(|c| c.state && c.variable == target);
+    let found = system.columns.iter().position(|c| c.is_state() && c.variable == target);
     Some((found?, negated))
 }

@@ -144,7 +144,7 @@ mod tests {
     fn model(text: &str) -> Model {
         let world = MemoryWorld::single("m.mo", text);
         let request = crate::Request { source: "m.mo".into(), ..crate::Request::default() };
-        crate::compile::compile(&world, &request, &crate::lower::Options { native: false }).value.expect("sound")
+        crate::compile::compile(&world, &request, &crate::lower::Options::INTERPRETED).value.expect("sound")
     }
 
     const DECAY: &str = "model M parameter Real k(unit = \"1/s\") = 1; parameter Integer n = 2; Real a[n];

@@ -98,7 +98,7 @@ impl<'a> Driver<'a, '_> {
         let outcome = self.with_model(|driver, model, y, yp| {
             let (y, yp) = driver.algebraic.solve(model, t, y, yp);
             model.observe(t, y, yp);
-            driver.restart.before(driver.system, &model.values, y);
+            driver.restart.before(driver.system, &mut model.values, y);
             if driver.carried.is_some() {
                 let (y, yp) = (y.to_vec(), yp.to_vec());
                 driver.tangents_before(model, cause, &y)?;
@@ -113,7 +113,7 @@ impl<'a> Driver<'a, '_> {
             driver.prepare_event(model, cause);
             let ready = driver.ready(model);
             let outcome = driver.iterate(model, cause)?;
-            driver.restart.gather(driver.system, &model.values);
+            driver.restart.gather(driver.system, &mut model.values);
             driver.remember_event(model, cause, &outcome, &before);
             driver.tangents_after(model, &outcome, ready)?;
             if recorded || same_time(driver.grid.next(), t) {

@@ -83,7 +83,7 @@ impl<'a> Exchange<'a> {
     fn settle(&mut self) {
         let system = self.system();
         let n = system.columns.len();
-        self.driver.restart.gather(system, &self.model.values);
+        self.driver.restart.gather(system, &mut self.model.values);
         self.y.copy_from_slice(&self.driver.restart.y()[..n]);
         self.yp.copy_from_slice(&self.driver.restart.yp()[..n]);
         self.model.crossings(self.driver.t, &self.y, &self.yp, &mut self.sides);
@@ -104,7 +104,7 @@ impl<'a> Exchange<'a> {
 
     /// The columns of the states.
     fn columns(&self) -> impl Iterator<Item = usize> + use<'a> {
-        self.system().columns.iter().enumerate().filter(|(_, c)| c.state).map(|(j, _)| j)
+        self.system().columns.iter().enumerate().filter(|(_, c)| c.is_state()).map(|(j, _)| j)
     }
 
     /// Sets the states; as many as there are.
@@ -191,16 +191,16 @@ impl<'a> Exchange<'a> {
         let Driver { events, scales, modes, restart, .. } = &mut self.driver;
         let mut values = self.model.values.clone();
         values[Layout::TIME] = t;
-        for (c, y) in system.columns.iter().zip(&self.y).filter(|(c, _)| c.state) {
+        for (c, y) in system.columns.iter().zip(&self.y).filter(|(c, _)| c.is_state()) {
             values[system.layout.var(c.variable)] = *y;
         }
         if events.iterate(system, scales, modes, &mut values).is_err() {
             return false;
         }
-        restart.gather(system, &values);
+        restart.gather(system, &mut values);
         for (j, c) in system.columns.iter().enumerate() {
             // a state may have been set by `reinit`: here it is what the caller says
-            self.y[j] = if c.state { self.y[j] } else { restart.y()[j] };
+            self.y[j] = if c.is_state() { self.y[j] } else { restart.y()[j] };
             self.yp[j] = restart.yp()[j];
         }
         true
@@ -269,7 +269,8 @@ impl<'a> Exchange<'a> {
         let root = self.driver.roots.iter().any(|d| *d != 0);
         let cause = if root { Cause::Root } else { Cause::Time };
         self.driver.statistics.events += 1;
-        self.driver.restart.before(self.driver.system, &self.model.values, &padded(&self.y));
+        let padded = padded(&self.y);
+        self.driver.restart.before(self.driver.system, &mut self.model.values, &padded);
         if root {
             self.driver.prepare_event(&mut self.model, Cause::Root);
         }

@@ -90,7 +90,7 @@ impl<'a> Driver<'a, '_> {
         let mut busy = vec![!done; n];
         for (j, column) in system.columns.iter().enumerate() {
             for k in pattern.colptr[j]..pattern.colptr[j + 1] {
-                let entry = if column.state { moving[k] - still[k] } else { still[k] };
+                let entry = if column.is_differential() { moving[k] - still[k] } else { still[k] };
                 busy[pattern.rowidx[k]] |= entry != 0.0;
             }
         }

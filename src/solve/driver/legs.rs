@@ -170,9 +170,9 @@ impl<'a> Driver<'a, '_> {
         let t = self.t;
         let solved = self.with_model(|driver, model, y, yp| {
             model.observe(t, y, yp);
-            driver.restart.before(driver.system, &model.values, y);
+            driver.restart.before(driver.system, &mut model.values, y);
             let solved = driver.iterate(model, Cause::Time).is_ok();
-            driver.restart.gather(driver.system, &model.values);
+            driver.restart.gather(driver.system, &mut model.values);
             solved
         });
         solved && self.first_step(Cause::Time)

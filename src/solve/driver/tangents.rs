@@ -77,7 +77,7 @@ impl Carried {
             yp: vec![0.0; n],
             sources: wanted.iter().map(|&v| column(system, v)).collect(),
             nominal: nominal.to_vec(),
-            states: system.columns.iter().map(|c| c.state).collect(),
+            states: system.columns.iter().map(|c| c.is_state()).collect(),
             shift: vec![0.0; count],
             before: vec![vec![0.0; n]; count],
             lu: Lu::new(&system.pattern, nominal),
@@ -185,7 +185,7 @@ impl<'a> Driver<'a, '_> {
     /// At the start, from the derivatives of the states.
     pub(super) fn start_tangents(&mut self, model: &mut Model<'a>) -> Flow {
         let Some(mut carried) = self.carried.take() else { return Ok(()) };
-        self.restart.gather(self.system, &model.values);
+        self.restart.gather(self.system, &mut model.values);
         carried.stand(self.restart.y(), self.restart.yp());
         let done = carried.prepare(model, self.t) && carried.complete_all(model);
         self.carried = Some(carried);
@@ -249,7 +249,7 @@ impl<'a> Driver<'a, '_> {
         let (t, step) = (self.t, self.last_step);
         let rates: Vec<f64> = {
             let layout = &self.system.layout;
-            let rate = |c: &Column| layout.der(c.variable).filter(|_| c.state).map_or(0.0, |d| model.values[d]);
+            let rate = |c: &Column| layout.der(c.variable).filter(|_| c.is_state()).map_or(0.0, |d| model.values[d]);
             self.system.columns.iter().map(rate).collect()
         };
         carried.stand(y, &rates);

@@ -1,0 +1,129 @@
+//! The state that follows from a conserved quantity, by a search along the state alone.
+//!
+//! The row of such a state could say `quantity - value = 0`. Where a void closes, the modulus of oil changes by a factor
+//! of a hundred thousand within some hundred pascals: the corrector of the integrator, which trusts that the equations of
+//! a step are nearly linear, takes a pressure there that belongs to another mass. So the row is `state - solution`, with
+//! the state that has this quantity: linear however the quantity bends, and in the unit of the state.
+
+/// Corrections smaller than this part of the first one, or of the state, end the search.
+const CONTRACTED: f64 = 1e-3;
+const ROUND_OFF: f64 = 1e-13;
+const MOST: u32 = 80;
+/// A step that is not bracketed is at most so many times as long as the one before.
+const GROWTH: f64 = 8.0;
+/// Step of the difference quotient where no slope is known, over the state's size.
+const DIFFERENCE: f64 = 1e-7;
+
+/// The `x` at which `quantity(x)`, which grows with x or falls with it, is `wanted`, from `start` where it is `there`.
+/// `slope` is the derivative as far as it is known, and is brought up to date. `None` where a value is not finite or none
+/// is found.
+pub fn solve(
+    mut quantity: impl FnMut(f64) -> f64,
+    wanted: f64,
+    start: f64,
+    there: f64,
+    slope: &mut f64,
+) -> Option<f64> {
+    if wanted == there {
+        return Some(start);
+    }
+    if *slope == 0.0 || !slope.is_finite() {
+        let step = DIFFERENCE * (start.abs() + f64::MIN_POSITIVE.sqrt());
+        *slope = (quantity(start + step) - there) / step;
+    }
+    if *slope == 0.0 || !slope.is_finite() || !(wanted - there).is_finite() {
+        return None;
+    }
+    let sign = slope.signum();
+    let mut rising = slope.abs();
+    let found = rise(|x| sign * quantity(x), sign * wanted, start, sign * there, &mut rising);
+    *slope = sign * rising;
+    found
+}
+
+/// The same of a quantity that grows.
+fn rise(
+    mut quantity: impl FnMut(f64) -> f64,
+    wanted: f64,
+    start: f64,
+    there: f64,
+    slope: &mut f64,
+) -> Option<f64> {
+    let (mut x, mut missing) = (start, wanted - there);
+    let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
+    let first = missing / *slope;
+    let (mut step, mut before) = (first, first.abs());
+    for _ in 0..MOST {
+        if missing > 0.0 { low = x } else { high = x }
+        let mut next = x + step;
+        if !(next > low && next < high) {
+            next = if low.is_finite() && high.is_finite() { 0.5 * (low + high) } else { x + GROWTH * before.copysign(missing) };
+        }
+        if next == x {
+            return Some(x);
+        }
+        let left = wanted - quantity(next);
+        if !left.is_finite() {
+            step = 0.5 * (next - x);
+            before = step.abs();
+            continue;
+        }
+        let secant = (missing - left) / (next - x);
+        if secant > 0.0 && secant.is_finite() {
+            *slope = secant;
+        }
+        before = (next - x).abs();
+        (x, missing) = (next, left);
+        step = missing / *slope;
+        if missing == 0.0 || step.abs() <= ROUND_OFF * x.abs() || step.abs() <= CONTRACTED * first.abs().min(before) {
+            return Some(x + step);
+        }
+        let bracketed = low.is_finite() && high.is_finite();
+        // slow from one side: halve
+        if bracketed && step.abs() > 0.5 * before {
+            step = 0.5 * (low + high) - x;
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Oil with voids: the volume of a kilogram falls by the exponential law of `Oil.Compression.entrainedAir`.
+    fn density(p: f64) -> f64 {
+        let v_v = (f64::min(-p / 1e3, 0.0) + 10.0).exp() * (1.0 + f64::max(-p / 1e3, 0.0));
+        860.0 / ((-(p - 1e5) / 1.5e9).exp() + 0.002 * (1e5 / f64::max(p, 2e3)).powf(1.0 / 1.2) + v_v)
+    }
+
+    proptest! {
+        #[test]
+        fn the_pressure_of_a_density_is_found_from_afar(from in 3.0..8.0_f64, to in 3.0..8.0_f64, wrong in -3.0..3.0_f64) {
+            let (start, target) = (10.0_f64.powf(from), 10.0_f64.powf(to));
+            let local = (density(start * 1.0001) - density(start)) / (start * 1e-4);
+            let mut slope = local * 10.0_f64.powf(wrong);
+            let mut calls = 0;
+            let counted = |p: f64| { calls += 1; density(p) };
+            let found = solve(counted, density(target), start, density(start), &mut slope).expect("found");
+            prop_assert!((density(found) / density(target) - 1.0).abs() < 1e-6, "{found} for {target}");
+            prop_assert!(calls < 80);
+        }
+    }
+
+    #[test]
+    fn a_good_slope_needs_one_evaluation() {
+        let mut calls = 0;
+        let mut slope = 2.0;
+        let found = solve(|x| { calls += 1; 2.0 * x + 1e-3 * x * x }, 2.002, 0.999, 1.999 , &mut slope);
+        assert!(found.is_some_and(|x| (x - 1.0).abs() < 1e-2));
+        assert!(calls <= 3);
+    }
+
+    #[test]
+    fn what_has_no_solution_is_refused() {
+        assert_eq!(solve(|_| 1.0, 2.0, 0.0, 1.0, &mut 0.0), None);
+        assert_eq!(solve(|_| f64::NAN, 2.0, 0.0, 1.0, &mut 1.0), None);
+    }
+}
