@@ -19,6 +19,9 @@ use crate::flat::{self, Type};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::VecDeque;
 
+/// Definitions are followed so far: from the density that a volume counts with to the law of the oil.
+const DEPTH: u32 = 3;
+
 /// The quantities of all states that have one.
 pub(super) fn find(draft: &mut Draft, known: &mut Known, states: &[VarId]) -> Vec<Conserved> {
     if draft.conserved.is_empty() {
@@ -118,7 +121,7 @@ impl Balances {
             });
             let (flow, affine) = flow?;
             sum = pool.add(sum, affine.rest);
-            let coefficient = self.meaning(pool, affine.coefficient);
+            let coefficient = self.meaning(pool, affine.coefficient, DEPTH);
             match flows.iter_mut().find(|(known, _)| *known == coefficient) {
                 Some((_, flows)) => flows.push(flow),
                 None => flows.push((coefficient, vec![flow])),
@@ -136,12 +139,22 @@ impl Balances {
         Some(sum)
     }
 
-    /// What a variable is by the equation that gives it: the densities at joined ports are variables of each volume.
-    fn meaning(&self, pool: &Exprs, e: ExprId) -> ExprId {
-        match pool.node(e) {
-            Node::Var(v) => self.given.get(&v).copied().unwrap_or(e),
-            _ => e,
+    /// An expression with what the equations give in the place of its variables, through a few of them: the densities at
+    /// joined ports are variables of each volume.
+    fn meaning(&self, pool: &mut Exprs, e: ExprId, depth: u32) -> ExprId {
+        let mut images: FxHashMap<ExprId, ExprId> = FxHashMap::default();
+        for part in pool.reachable(&[e], |_| true) {
+            let image = match pool.node(part) {
+                Node::Var(v) if depth > 0 => match self.given.get(&v) {
+                    Some(&given) => self.meaning(pool, given, depth - 1),
+                    None => part,
+                },
+                _ if pool.operands(part).as_slice().iter().all(|a| images[a] == *a) => part,
+                _ => pool.with_operands(part, |a| images[&a]),
+            };
+            images.insert(part, image);
         }
+        images[&e]
     }
 
     /// The sum of these flows as a sum of others.
