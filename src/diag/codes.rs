@@ -114,6 +114,7 @@ codes! {
     EventFailed = "E506", Error, "no consistent state after an event";
     Interrupted = "E507", Error, "the run was interrupted";
     CallbackPanicked = "E508", Error, "a callback panicked";
+    ImpulseLost = "E509", Error, "what is differentiated jumps";
     // 6xx data
     BadData = "E601", Error, "a data file cannot be used";
     BadExperiment = "E602", Error, "an experiment file cannot be used";

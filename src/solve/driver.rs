@@ -9,6 +9,7 @@ mod remember;
 mod tangents;
 
 use super::algebraic::{self, Algebraic};
+use super::continuity::Continuity;
 use super::events::{Events, Outcome};
 use super::ida::{Failure, Ida, Tolerances};
 use super::linear::Lu;
@@ -145,6 +146,7 @@ pub struct Driver<'a, 'c> {
     slots: Vec<usize>,
     row: Vec<f64>,
     restart: Restart,
+    continuity: Continuity,
     /// Sensitivities, where they are asked for.
     carried: Option<Box<Carried>>,
     /// Length of the last step before an event.
@@ -273,6 +275,7 @@ fn prepare<'a, 'c>(
         last_step: 0.0,
         algebraic: Algebraic::new(system, restart.nominal(), settings.tolerance),
         restart,
+        continuity: Continuity::new(system, &scales, settings.tolerance),
         events: Events::new(system, &scales, &modes),
         program: system.observe_only(&settings.wanted),
         slots: settings.wanted.iter().map(|&v| system.layout.var(v)).collect(),

@@ -5,6 +5,7 @@
 mod algebraic;
 mod blocks;
 mod checkpoint;
+mod continuity;
 pub(crate) mod driver;
 mod events;
 pub mod ida;

@@ -1,6 +1,7 @@
 //! What a run says when it fails: which variable of which component, which equation, and what to do.
 
 use super::blocks::BlockFailure;
+use super::continuity::Jump;
 use super::newton::{NewtonFailure, Reason};
 use crate::diag::{Code, Diagnostic};
 use crate::expr::{ExprId, VarId};
@@ -144,6 +145,17 @@ pub fn infinite_derivative(system: &System, t: f64, row: usize, column: usize) -
     equation_diagnostic(&system.dae, Code::NonFinite, text, system.rows[row].equation).help(
         "look for the root of 0, a power of 0 with an exponent below 1, or a parameter that is 0 where it divides",
     )
+}
+
+/// E509: what is differentiated jumps.
+pub fn jump(system: &System, t: f64, jump: &Jump) -> Diagnostic {
+    let variable = &system.dae.variables[jump.variable.index()];
+    let unit = variable.unit.as_deref().filter(|u| *u != "1").map_or_else(String::new, |u| format!(" {u}"));
+    let (from, to) = (number(jump.before), number(jump.after));
+    let text = format!("`{}` jumps from {from} to {to}{unit} at time {} s, and its derivative is needed", variable.name, number(t));
+    at_origin(&system.dae, Code::ImpulseLost, text, variable.origin, "this must be continuous")
+        .note("an equation that is differentiated ties it to a mass, a volume or the like; the jump takes an impulse that no equation holds, and that would be missing in all balances")
+        .help("smooth the command that jumps (`Signal.SecondOrder`, a ramp), let a source follow it by a filter of its own (`exact = false`), or put a spring, a resistance or another storage between")
 }
 
 /// What happened in a block, as a diagnostic of the given code; `when` says when, as in `at the start`.

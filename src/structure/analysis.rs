@@ -101,10 +101,11 @@ fn run(
     let mut conserved = conserved::find(&mut draft, &mut known, &states.states);
     let stated = conserved.iter_mut().flat_map(|c| [&mut c.quantity, &mut c.rate]);
     duplicates::share(&mut draft.exprs, &mut blocks.continuous, stated);
-    let rest = Rest { order, aliases, states: states.states, selections: chosen.selections };
+    let rest = Rest { order, aliases, states: states.states.clone(), selections: chosen.selections };
     let mut dae = assemble(flat, draft, blocks, rest);
     dae.chosen_starts = start.chosen;
     dae.conserved = conserved;
+    dae.differentiated = states.demoted;
     dae.initial_checks.extend(start.checks);
     Ok((dae, further))
 }
@@ -329,6 +330,7 @@ fn assemble(flat: &FlatModel, mut draft: Draft, blocks: Blocks, rest: Rest) -> D
         inputs: (0..flat.variables.len() as u32).map(VarId).filter(|v| flat.variables[v.index()].input).collect(),
         aliases: rest.aliases,
         states: rest.states,
+        differentiated: Vec::new(),
         discrete: draft.with_role(Role::Discrete),
         continuous: blocks.continuous,
         event: blocks.event,

@@ -67,6 +67,8 @@ pub struct Dae {
     pub aliases: Vec<Alias>,
     /// The states, in declaration order: their values are integrated.
     pub states: Vec<VarId>,
+    /// Variables whose derivatives the equations need but that are no states: they must be continuous.
+    pub differentiated: Vec<VarId>,
     /// Discrete unknowns (user's, modes and conditions), each assigned in exactly one `event` block.
     pub discrete: Vec<VarId>,
     /// All continuous unknowns given time, parameters, inputs, states and discrete values.

@@ -99,6 +99,7 @@ impl<'a> Driver<'a, '_> {
             let (y, yp) = driver.algebraic.solve(model, t, y, yp);
             model.observe(t, y, yp);
             driver.restart.before(driver.system, &mut model.values, y);
+            driver.continuity.remember(&model.values);
             if driver.carried.is_some() {
                 let (y, yp) = (y.to_vec(), yp.to_vec());
                 driver.tangents_before(model, cause, &y)?;
@@ -113,6 +114,11 @@ impl<'a> Driver<'a, '_> {
             driver.prepare_event(model, cause);
             let ready = driver.ready(model);
             let outcome = driver.iterate(model, cause)?;
+            if !outcome.reinitialised
+                && let Some(jump) = driver.continuity.jump(&model.values)
+            {
+                return Err(Stop::new(End::StepTooSmall, report::jump(driver.system, t, &jump)));
+            }
             driver.restart.gather(driver.system, &mut model.values);
             driver.remember_event(model, cause, &outcome, &before);
             driver.tangents_after(model, &outcome, ready)?;
