@@ -242,10 +242,13 @@ impl<'a> Instance<'a, '_> {
             return if known == 0.0 { self.if_expression(rest, otherwise, view, span) } else { self.eval(value, view) };
         }
         if self.is_evaluated(test) {
-            return match self.constant_boolean(condition, view)? {
-                true => self.eval(value, view),
-                false => self.if_expression(rest, otherwise, view, span),
-            };
+            let mark = self.diagnostics.len();
+            match self.constant_boolean(condition, view) {
+                Some(true) => return self.eval(value, view),
+                Some(false) => return self.if_expression(rest, otherwise, view, span),
+                // in the body of a function that is inlined, arguments are expressions
+                None => self.diagnostics.truncate(mark),
+            }
         }
         let mark = (self.diagnostics.len(), self.eval.calls.len());
         let not = self.exprs.not(test);
