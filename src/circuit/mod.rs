@@ -235,7 +235,7 @@ mod tests {
     fn values_with_wrong_units_are_errors() {
         let mut circuit = emptying(|_| {});
         circuit.add("other", "Hydraulic.Volume").set("V", "1 bar");
-        let said = circuit.compile().unwrap_err().to_string();
+        let said = circuit.compile().unwrap_err().full();
         assert!(said.contains("E023") && said.contains("`other.V` is in `m3`"), "{said}");
     }
 
