@@ -8,12 +8,13 @@ fn press() -> Circuit {
     let mut circuit = Circuit::new("Press");
     circuit
         .declare("model Pump extends Hydraulic.FlowSource(q = 1e-4); end Pump;")
+        .inner("oil", "Oil.ISOVG32")
         .add("tank", "Hydraulic.Tank")
         .add("pump", "Pump")
         .add("volume", "Hydraulic.Volume")
-        .set("V", 0.5e-3)
+        .set("V", "0.5 l")
         .add("relief", "Hydraulic.ReliefValve")
-        .set("p_set", 150e5)
+        .set("p_set", "150 bar")
         .connect("pump.port", "volume.port")
         .connect("volume.port", "relief.port_a");
     circuit

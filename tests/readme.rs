@@ -152,7 +152,8 @@ fn versions_are_those_of_the_manifest() {
 #[test]
 fn the_program_runs() -> Result<(), bramah::Error> {
     let mut circuit = bramah::Circuit::new("Emptying");
-    circuit.add("volume", "Hydraulic.Volume").set("p_start", 1e7);
+    circuit.inner("oil", "Oil.ISOVG32"); // all components take it
+    circuit.add("volume", "Hydraulic.Volume").set("V", "1 l").set("p_start", "100 bar");
     circuit.add("orifice", "Hydraulic.Orifice").add("tank", "Hydraulic.Tank");
     circuit.connect("volume.port", "orifice.port_a").connect("orifice.port_b", "tank.port");
     let mut simulation = circuit.compile()?; // once

@@ -124,6 +124,10 @@ fn number(value: &Value, signal: &Signal) -> Option<f64> {
         Value::Text(text) => {
             let (number, unit) = quantity(text).ok()?;
             let Some(unit) = unit else { return (signal.kind == Kind::Real).then_some(number) };
+            if unit.offset != 0.0 {
+                // a temperature or a difference: the compiler knows the parameter's type
+                return None;
+            }
             unit.convert(number, &Unit::parse(&signal.unit).ok()?)
         }
     }

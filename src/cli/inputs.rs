@@ -9,7 +9,7 @@ use crate::diag::{Code, Diagnostic, nearest};
 use crate::experiment::{Experiment, Hold, InputMap};
 use crate::expr::VarId;
 use crate::flat::{Type, Variable};
-use crate::results::{Strictness, Trajectory, number, read_csv};
+use crate::results::{Strictness, Trajectory, contradiction, number, read_csv};
 use crate::solve::{Input, Interpolation, missing_inputs};
 use crate::structure::Dae;
 use crate::units::Unit;
@@ -54,7 +54,7 @@ pub(super) fn prepare(experiment: &Experiment, dae: &Dae, messages: &mut Message
     let columns: Vec<String> = entries.iter().map(|e| e.column.clone()).collect();
     let strictness = Strictness::Recording { inputs: &columns, outputs: &[] };
     let checked = read_csv(&messages.sources, id, experiment.time_column.as_deref(), strictness);
-    let recording = checked.value.ok_or(Failure { diagnostics: checked.diagnostics })?;
+    let recording = messages.value(checked)?;
     let times: Arc<[f64]> = recording.times.as_slice().into();
     let mut inputs = Vec::new();
     for (k, entry) in entries.iter().enumerate() {
@@ -62,6 +62,14 @@ pub(super) fn prepare(experiment: &Experiment, dae: &Dae, messages: &mut Message
         inputs.push(track(entry, variable, dae, &recording, k, &times, experiment.interpolation)?);
     }
     all_driven(dae, &inputs)?;
+    for entry in &experiment.map {
+        let Some(unit) = entry.unit.as_deref() else { continue };
+        if let Some(d) = contradiction(&messages.sources, id, &entry.column, unit) {
+            let said = format!("`{}` is mapped to `{}[{unit}]`", entry.input, entry.column);
+            let help = format!("leave `[{unit}]` out of the map where the file is right; else correct the file");
+            return Err(d.note(said).help(help).into());
+        }
+    }
     Ok(Recorded { inputs, covered: covered(&recording) })
 }
 
@@ -124,6 +132,7 @@ fn convert(values: &mut [f64], unit: &str, target: &Variable, entry: &InputMap) 
         let text = format!("the column `{}` is in `{unit}`, the input `{}` in `{wanted}`", entry.column, target.name);
         return Err(wrong(text));
     }
+    let (from, to) = if target.difference { (from.of_difference(), to.of_difference()) } else { (from, to) };
     values.iter_mut().for_each(|v| *v = from.convert(*v, &to).unwrap_or(*v));
     Ok(())
 }

@@ -101,11 +101,20 @@ fn variable(instance: &mut Instance<'_, '_>, i: u32, numbers: &Numbers, flat: &m
     v
 }
 
+/// In K, degC, ...
+fn is_temperature(unit: &str) -> bool {
+    let parse = crate::units::Unit::parse;
+    matches!((parse(unit), parse("K")), (Ok(unit), Ok(kelvin)) if unit.dimension == kelvin.dimension)
+}
+
 fn attributes(instance: &mut Instance<'_, '_>, i: u32, v: &mut Variable) {
     for k in 0..instance.variables[i as usize].attributes.len() {
         let (name, b) = instance.variables[i as usize].attributes[k].clone();
         match name.as_str() {
-            "unit" => v.unit = instance.text_attribute(i, "unit").filter(|u| !u.is_empty()).map(Into::into),
+            "unit" => {
+                v.unit = instance.text_attribute(i, "unit").filter(|u| !u.is_empty()).map(Into::into);
+                v.difference = v.unit.as_deref().is_some_and(is_temperature) && instance.is_difference(i) == Some(true);
+            }
             "displayUnit" => {
                 v.display_unit = instance.text_attribute(i, "displayUnit").filter(|u| !u.is_empty()).map(Into::into);
             }

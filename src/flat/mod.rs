@@ -164,6 +164,8 @@ pub struct Variable {
     pub nominal: Option<ExprId>,
     /// `unit`, as written.
     pub unit: Option<Box<str>>,
+    /// A difference of temperatures: a value in degC means as many K.
+    pub difference: bool,
     /// `displayUnit`, as written.
     pub display_unit: Option<Box<str>>,
     /// The description string.
@@ -232,6 +234,7 @@ impl Variable {
             max: None,
             nominal: None,
             unit: None,
+            difference: false,
             display_unit: None,
             description: None,
             state_select: StateSelect::Default,

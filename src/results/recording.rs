@@ -75,6 +75,23 @@ pub fn column_names(text: &str) -> Vec<String> {
     cells.iter().map(|c| split_unit(&c.text).0.to_owned()).collect()
 }
 
+/// The unit that the file itself gives a column, and where it does.
+pub(super) fn unit_place(sources: &Sources, file: FileId, column: &str) -> Option<(String, Span)> {
+    let mut rows = Rows::new(&sources.get(file).text);
+    let mut cells = Vec::new();
+    if !rows.next_row(&mut cells) {
+        return None;
+    }
+    let mut head = Head::new(file, &cells, rows.decimal_comma());
+    let index = head.find(column).ok()?;
+    if rows.next_row(&mut cells) {
+        let time = (0..head.width).find(|&i| cells.get(i).is_some_and(|c| !c.text.is_empty())).unwrap_or(0);
+        head.take_units(&cells, time, rows.decimal_comma());
+    }
+    let unit = head.units[index].clone();
+    (!unit.is_empty()).then(|| (unit, span(file, &head.unit_places[index])))
+}
+
 /// A column that is read.
 #[derive(Clone, Copy, Debug)]
 struct Wanted {
@@ -90,6 +107,8 @@ struct Head {
     names: Vec<String>,
     units: Vec<String>,
     places: Vec<Range<usize>>,
+    /// Where the units stand: the cell of the name, or of the row of units.
+    unit_places: Vec<Range<usize>>,
     width: usize,
     numeric: bool,
 }
@@ -101,6 +120,7 @@ impl Head {
             names: Vec::new(),
             units: Vec::new(),
             places: Vec::new(),
+            unit_places: Vec::new(),
             width: cells.len(),
             numeric: cells.iter().all(|c| number::parse(&c.text, decimal_comma).is_some()),
         };
@@ -109,6 +129,7 @@ impl Head {
             head.names.push(name.to_owned());
             head.units.push(unit.to_owned());
             head.places.push(cell.place.clone());
+            head.unit_places.push(cell.place.clone());
         }
         head
     }
@@ -203,10 +224,11 @@ impl Head {
         if cells.len() != self.width || !words_only || !cells.get(time).is_some_and(is_word) {
             return false;
         }
-        for (unit, cell) in self.units.iter_mut().zip(cells) {
+        for (i, cell) in cells.iter().enumerate() {
             let text = cell.text.trim_matches(['[', ']', '(', ')', ' ']);
             if !text.is_empty() && text != "-" {
-                *unit = text.to_owned();
+                self.units[i] = text.to_owned();
+                self.unit_places[i] = cell.place.clone();
             }
         }
         true
@@ -408,6 +430,7 @@ impl Reader {
         if !diagnostics.is_empty() {
             return Checked::failed(diagnostics);
         }
+        let doubt = self.strict.then(|| self.doubt_seconds(head)).flatten();
         in_seconds(&mut self.times, &head.units[self.time]);
         let mut trajectory = Trajectory { times: self.times, ..Trajectory::default() };
         for (column, w) in self.columns.into_iter().zip(wanted) {
@@ -417,7 +440,44 @@ impl Reader {
             trajectory.signals.push(signal);
             trajectory.columns.push(values);
         }
-        Checked::new(trajectory, Vec::new())
+        Checked::new(trajectory, doubt.into_iter().collect())
+    }
+
+    /// A warning where times without a unit, which are read as seconds, look like counted milliseconds: equal steps of
+    /// one or more over a thousand and more. Steps of whole minutes are how slow rigs are sampled.
+    fn doubt_seconds(&self, head: &Head) -> Option<Diagnostic> {
+        let name = &head.names[self.time];
+        let says_seconds = name.to_ascii_lowercase().ends_with("_s");
+        if !head.units[self.time].is_empty() || says_seconds {
+            return None;
+        }
+        let length = self.times.last()? - self.times.first()?;
+        let mut steps: Vec<f64> = self.times.windows(2).map(|w| w[1] - w[0]).collect();
+        steps.sort_by(f64::total_cmp);
+        let usual = *steps.get(steps.len() / 2)?;
+        let whole = self.times.iter().all(|t| t.fract() == 0.0);
+        let even = steps.iter().all(|s| (s - usual).abs() <= 1e-6 * usual);
+        if usual < 1.0 || length < 1000.0 || usual % 60.0 == 0.0 || !(whole || even) {
+            return None;
+        }
+        let (unit, units, smaller) =
+            if usual < 1000.0 { ("ms", "milliseconds", 1e3) } else { ("us", "microseconds", 1e6) };
+        let shown = |x: f64| number::rounded(x, 4);
+        let message = format!(
+            "the time column `{name}` has no unit: read as seconds it lasts {} s, with a sample every {} s",
+            shown(length),
+            shown(usual)
+        );
+        Some(
+            Diagnostic::new(Code::TimeUnit, message)
+                .at(span(self.file, &head.places[self.time]), "no unit here, and no row of units below")
+                .note(format!(
+                    "as {units} it would last {} s, with {} samples a second",
+                    shown(length / smaller),
+                    shown(smaller / usual)
+                ))
+                .help(format!("write `{name} [{unit}]` where these are {units}, `{name} [s]` where they are seconds")),
+        )
     }
 }
 

@@ -43,8 +43,8 @@ pub struct Events {
     blocks: Blocks,
     /// Variable, its slot and the slot of its `pre` value, of every discrete variable.
     discrete: Vec<(VarId, usize, usize)>,
-    /// Slot of the mode of each `sample`, and of its `pre` value.
-    samples: Vec<(usize, Option<usize>)>,
+    /// Slot of the mode of each `sample`.
+    samples: Vec<usize>,
     /// Slots and values of the `reinit`s of one pass.
     reinits: Vec<(usize, f64)>,
     /// Made for the first event that takes a second pass.
@@ -62,7 +62,7 @@ impl Events {
         Events {
             blocks: Blocks::new(&system.event, scales, modes),
             discrete: variables.into_iter().filter_map(|v| Some((v, layout.var(v), layout.pre(v)?))).collect(),
-            samples: samples.map(|v| (layout.var(v), layout.pre(v))).collect(),
+            samples: samples.map(|v| layout.var(v)).collect(),
             reinits: Vec::new(),
             stale: None,
         }
@@ -87,7 +87,7 @@ impl Events {
 
     /// Raises the mode of a `sample`; the iteration lowers it again.
     pub fn raise(&self, sample: usize, values: &mut [f64]) {
-        values[self.samples[sample].0] = 1.0;
+        values[self.samples[sample]] = 1.0;
     }
 
     fn changed(&self, values: &[f64]) -> bool {
@@ -137,17 +137,16 @@ impl Events {
     }
 
     fn samples_up(&self, values: &[f64]) -> bool {
-        self.samples.iter().any(|&(now, _)| values[now] != 0.0)
+        self.samples.iter().any(|&now| values[now] != 0.0)
     }
 
-    /// `sample` holds only at its instant, behind which it has not been true: its end is no change that an event sees.
+    /// `sample` holds only at its instant (MLS 3.7.5). Its end is a change of its own, for which `pre` of it is still
+    /// true: `when pre(c) and not c` fires at the instant of the pulse.
     fn lower_samples(&self, stale: &mut Stale, values: &mut [f64]) {
-        for &(now, before) in &self.samples {
-            for slot in std::iter::once(now).chain(before) {
-                if values[slot] != 0.0 {
-                    values[slot] = 0.0;
-                    stale.touch(slot);
-                }
+        for &now in &self.samples {
+            if values[now] != 0.0 {
+                values[now] = 0.0;
+                stale.touch(now);
             }
         }
     }

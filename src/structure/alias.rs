@@ -19,12 +19,15 @@ pub(super) fn eliminate(
 ) -> Vec<Alias> {
     let mut classes = Classes::new(draft);
     let mut links = Vec::new();
+    let mut found = Vec::new();
     let mut kept = vec![true; draft.equations.len()];
     for (i, equation) in draft.equations.iter().enumerate() {
         match simple_form(&draft.exprs, equation) {
             Some(Simple::Equal(a, b)) if may_join(draft, a.variable, b) => {
                 kept[i] = !classes.join(draft, a.variable, b)
             }
+            Some(Simple::Equal(a, b)) if is_found(draft, a.variable) => found.push((a, b)),
+            Some(Simple::Equal(a, b)) if is_found(draft, b.variable) => found.push((b, a)),
             Some(Simple::Derivative(w, of)) => links.push((i, w, of)),
             _ => {}
         }
@@ -37,6 +40,11 @@ pub(super) fn eliminate(
     for alias in &aliases {
         merge(draft, known, *alias, diagnostics);
         draft.roles[alias.variable.index()] = Role::Alias;
+    }
+    for (parameter, variable) in found {
+        let target = targets[variable.variable.index()];
+        let negated = parameter.negated != (variable.negated != target.negated);
+        share_guess(draft, parameter.variable, Signed { variable: target.variable, negated });
     }
     rewrite(draft, &targets);
     // A ring of aliases leaves one that says nothing: it determines no unknown.
@@ -114,6 +122,26 @@ fn may_join(draft: &Draft, a: VarId, b: Signed) -> bool {
     };
     let same = draft.variables[a.index()].ty == draft.variables[b.variable.index()].ty;
     discrete(a) && discrete(b.variable) && same && !b.negated
+}
+
+/// A parameter that is found at the start.
+fn is_found(draft: &Draft, v: VarId) -> bool {
+    draft.role(v) == Role::FreeParameter && draft.variables[v.index()].ty == Type::Real
+}
+
+/// A variable that equals a parameter found at the start begins its search at the parameter's guess where it has none of
+/// its own, and the other way round.
+fn share_guess(draft: &mut Draft, parameter: VarId, equal: Signed) {
+    if draft.role(equal.variable) != Role::Continuous {
+        return;
+    }
+    let (p, v) = (&draft.variables[parameter.index()], &draft.variables[equal.variable.index()]);
+    let (from, to) = match (p.start, v.start) {
+        (Some(start), None) if !v.fixed => (start, equal.variable),
+        (None, Some(start)) => (start, parameter),
+        _ => return,
+    };
+    draft.variables[to.index()].start = Some(signed(&mut draft.exprs, from, equal.negated));
 }
 
 /// `w = der(x)` links `x` to `w` unless that closes a circle. If `x` has a derivative already, `w` equals it.

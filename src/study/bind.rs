@@ -32,6 +32,8 @@ pub struct BoundInput {
     pub name: String,
     /// Its unit; empty where it has none.
     pub unit: String,
+    /// It is a difference of temperatures.
+    pub difference: bool,
     /// Between samples.
     pub interpolation: Interpolation,
     /// The entry of the study.
@@ -47,6 +49,8 @@ pub struct BoundSignal {
     pub variable: VarId,
     /// The variable's unit; empty where it has none.
     pub unit: String,
+    /// It is a difference of temperatures.
+    pub difference: bool,
     /// The sensor's range in the variable's unit, where the study says it.
     pub full_scale: Option<f64>,
     /// One standard deviation of the sensor: of the full scale, or in the variable's unit.
@@ -166,7 +170,8 @@ impl<'a> Binder<'a> {
         self.check_unit(entry.span, entry.unit.as_deref(), &unit, &entry.name)?;
         let held = entry.hold || v.ty != Type::Real;
         let interpolation = if held { Interpolation::Held } else { Interpolation::Linear };
-        Some(BoundInput { variable, name: entry.name.clone(), unit, interpolation, entry: entry.clone() })
+        let (name, difference) = (entry.name.clone(), v.difference);
+        Some(BoundInput { variable, name, unit, difference, interpolation, entry: entry.clone() })
     }
 
     fn signal(&mut self, entry: &SignalColumn) -> Option<BoundSignal> {
@@ -185,7 +190,8 @@ impl<'a> Binder<'a> {
                 self.amount(entry.span, other.as_ref(), &unit, entry.unit.as_deref()).map(|v| Amount::Value(v, None))
             }
         };
-        Some(BoundSignal { name: entry.name.clone(), variable, unit, full_scale, accuracy, entry: entry.clone() })
+        let (name, difference) = (entry.name.clone(), v.difference);
+        Some(BoundSignal { name, variable, unit, difference, full_scale, accuracy, entry: entry.clone() })
     }
 
     /// A difference in the variable's unit; a plain number is one in the column's unit.
@@ -238,7 +244,8 @@ impl<'a> Binder<'a> {
             }
         }
         let unit = v.unit.as_deref().unwrap_or("").to_owned();
-        let (min, max) = (self.bound(entry, &entry.min, &unit), self.bound(entry, &entry.max, &unit));
+        let bound = |binder: &mut Self, b| binder.bound(entry, b, &unit, v.difference);
+        let (min, max) = (bound(self, &entry.min), bound(self, &entry.max));
         if min.zip(max).is_some_and(|(a, b)| a >= b) {
             self.report(entry.span, format!("`min` of `{}` does not lie below its `max`", entry.name), "here");
         }
@@ -251,9 +258,10 @@ impl<'a> Binder<'a> {
         Some(BoundParameter { variable, name: entry.name.clone(), unit, knowledge, min, max, span: entry.span })
     }
 
-    fn bound(&mut self, entry: &ParameterEntry, bound: &Option<Amount>, unit: &str) -> Option<f64> {
+    fn bound(&mut self, entry: &ParameterEntry, bound: &Option<Amount>, unit: &str, difference: bool) -> Option<f64> {
         let bound = bound.as_ref()?;
-        bound.in_unit(unit, 0.0).map_err(|why| self.report(entry.span, why, "a bound of this parameter")).ok()
+        let value = if difference { bound.difference_in_unit(unit, 0.0) } else { bound.in_unit(unit, 0.0) };
+        value.map_err(|why| self.report(entry.span, why, "a bound of this parameter")).ok()
     }
 
     /// Every input of the model has a column or a value of its own, and only one.

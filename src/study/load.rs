@@ -4,8 +4,9 @@ use super::bind::{Bound, conversion};
 use super::table::at;
 use super::{InputColumn, RecordingFile, Role};
 use crate::diag::{Checked, Code, Diagnostic, Sources, Span};
-use crate::results::{Strictness, Trajectory, number, read_csv};
+use crate::results::{Strictness, Trajectory, contradiction, number, read_csv};
 use crate::solve::Interpolation;
+use crate::units::Unit;
 use crate::world::World;
 use std::path::Path;
 
@@ -144,7 +145,9 @@ impl Loader<'_> {
         for (input, values) in self.bound.inputs.iter().zip(columns.by_ref()) {
             let said = &table.signals[inputs.len()].unit;
             let unit = input.entry.unit.as_deref().unwrap_or(said);
-            let values = self.in_unit(values, unit, &input.unit, 1.0, &input.entry.column, head);
+            self.check_said(&input.entry.column, input.entry.unit.as_deref(), input.entry.span, head);
+            let to = (input.unit.as_str(), input.difference);
+            let values = self.in_unit(values, unit, to, 1.0, &input.entry.column, head);
             if input.interpolation == Interpolation::Linear {
                 self.check_course(&values, &input.entry, head);
             }
@@ -154,17 +157,39 @@ impl Loader<'_> {
         for (signal, values) in self.bound.signals.iter().zip(columns) {
             let said = &table.signals[count + signals.len()].unit;
             let unit = signal.entry.unit.as_deref().unwrap_or(said);
-            let values = self.in_unit(values, unit, &signal.unit, signal.entry.sign, &signal.entry.column, head);
+            self.check_said(&signal.entry.column, signal.entry.unit.as_deref(), signal.entry.span, head);
+            let to = (signal.unit.as_str(), signal.difference);
+            let values = self.in_unit(values, unit, to, signal.entry.sign, &signal.entry.column, head);
             self.check_signal(&values, &signal.entry.column, head);
             signals.push(values);
         }
         Recording { file: file.file.clone(), role: self.role, times: table.times, inputs, signals, pieces: file.pieces }
     }
 
-    fn in_unit(&mut self, values: Vec<f64>, from: &str, to: &str, sign: f64, column: &str, head: Span) -> Vec<f64> {
+    /// A unit in the study may not contradict the file's own.
+    fn check_said(&mut self, column: &str, said: Option<&str>, entry: Span, head: Span) {
+        let Some(said) = said else { return };
+        if let Some(d) = contradiction(self.sources, head.file, column, said) {
+            let d = d.at(entry, format!("`unit = \"{said}\"` in the study"));
+            self.diagnostics
+                .push(d.help("leave `unit` out of the study where the file is right; else correct the file"));
+        }
+    }
+
+    fn in_unit(
+        &mut self,
+        values: Vec<f64>,
+        from: &str,
+        (to, difference): (&str, bool),
+        sign: f64,
+        column: &str,
+        head: Span,
+    ) -> Vec<f64> {
         let converted: Vec<f64> = match conversion(from, to) {
             Ok(None) => values.iter().map(|v| sign * v).collect(),
             Ok(Some((own, wanted))) => {
+                let of = |unit: Unit| if difference { unit.of_difference() } else { unit };
+                let (own, wanted) = (of(own), of(wanted));
                 values.iter().map(|v| sign * own.convert(*v, &wanted).unwrap_or(f64::NAN)).collect()
             }
             Err(()) => {

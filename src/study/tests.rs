@@ -204,3 +204,39 @@ fn an_input_that_stands_still_in_all_recordings_is_told() {
     assert!(reported.contains("W605") && reported.contains("`q` never changes"), "{reported}");
     assert!(!said(still, moving).contains("W605"), "{}", said(still, moving));
 }
+
+#[test]
+fn units_of_file_and_study_must_agree() {
+    let said = |recording: &str| {
+        let mut world = world(STUDY);
+        world.add("lab/a.csv", recording);
+        load(&world).1
+    };
+    let rows = "0;60;0\n1;60;-1\n2;120;-3\n";
+    assert_eq!(said(&format!("t_s;q;level\ns;lpm;bar\n{rows}")), "");
+    let row = said(&format!("t_s;q;level\ns;l/min;psi\n{rows}"));
+    assert!(row.contains("a.csv:2:9: error[E612]") && row.contains("`level` is `psi` in its file, but `bar`"), "{row}");
+    let name = said(&format!("t_s;q [ml/s];level\n{rows}"));
+    assert!(name.contains("a.csv:1:5: error[E612]") && name.contains("`q` is `ml/s`"), "{name}");
+}
+
+/// A time column that counts milliseconds and does not say so is read in seconds, with a word about it.
+#[test]
+fn times_that_look_like_milliseconds_are_told() {
+    let study = STUDY.replace("time = \"t_s\"", "time = \"Zeit\"").replace("window = [0.0, 2.5]", "");
+    let said = |head: &str, step: f64| {
+        let mut world = world(&study);
+        let rows: String = (0..500).map(|i| format!("{};{};{}\n", step * f64::from(i), i % 7, i % 5)).collect();
+        world.add("lab/a.csv", format!("{head}\n{rows}"));
+        load(&world).1
+    };
+    for step in [4.0, 2.5] {
+        let told = said("Zeit;q;level", step);
+        assert!(told.contains("a.csv:1:1: warning[W611]") && told.contains(&format!("every {step} s")), "{told}");
+    }
+    for (head, step) in
+        [("Zeit [s];q;level", 4.0), ("Zeit [ms];q;level", 4.0), ("Zeit;q;level", 0.004), ("Zeit;q;level", 60.0)]
+    {
+        assert_eq!(said(head, step), "", "{head} {step}");
+    }
+}

@@ -103,6 +103,12 @@ impl Unit {
         Some(if shift == 0.0 { scaled } else { scaled + ratio(shift, to.den, to.num, -to.decade) })
     }
 
+    /// The unit of a difference: without a zero point of its own, so that 5 degC are 5 K.
+    #[must_use]
+    pub fn of_difference(self) -> Unit {
+        Unit { offset: 0.0, ..self }
+    }
+
     fn of(symbol: Symbol) -> Unit {
         let Symbol { dimension, angle, num, den, decade, offset } = symbol;
         Unit { dimension, angle: 60 * angle, num, den, decade, offset }

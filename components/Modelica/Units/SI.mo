@@ -61,7 +61,7 @@ package SI "Types of physical quantities with SI units"
   type Efficiency = Real(final quantity = "Efficiency", final unit = "1", min = 0);
   type ThermodynamicTemperature = Real(final quantity = "ThermodynamicTemperature", final unit = "K", displayUnit = "degC", min = 0, start = 288.15, nominal = 300);
   type Temperature = Real(final quantity = "ThermodynamicTemperature", final unit = "K", displayUnit = "degC", min = 0, start = 288.15, nominal = 300);
-  type TemperatureDifference = Real(final quantity = "ThermodynamicTemperature", final unit = "K");
+  type TemperatureDifference = Real(final quantity = "ThermodynamicTemperature", final unit = "K") annotation(absoluteValue = false);
   type LinearExpansionCoefficient = Real(final quantity = "LinearExpansionCoefficient", final unit = "1/K");
   type CubicExpansionCoefficient = Real(final quantity = "CubicExpansionCoefficient", final unit = "1/K");
   type LinearTemperatureCoefficient = Real(final quantity = "LinearTemperatureCoefficient", final unit = "1/K");

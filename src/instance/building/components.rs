@@ -715,8 +715,12 @@ fn start_of<'a>(args: &[Arg<'a>]) -> Option<Binding<'a>> {
 
 /// What an annotation of a component that is true or false says (MLS 18.3).
 fn annotated(c: &ast::Component, name: &str) -> Option<bool> {
-    let arguments = c.annotation.iter().flat_map(|m| &m.arguments);
-    arguments.into_iter().find_map(|a| match &a.kind {
+    says(c.annotation.as_ref()?, name)
+}
+
+/// What an annotation says of something that is true or false.
+pub(in crate::instance) fn says(annotation: &ast::Modification, name: &str) -> Option<bool> {
+    annotation.arguments.iter().find_map(|a| match &a.kind {
         ast::ArgumentKind::Modify { path, modification: Some(m), .. } if path.parts[0].name == name => {
             match m.value.as_ref().map(|v| &v.kind) {
                 Some(ExprKind::Boolean(said)) => Some(*said),

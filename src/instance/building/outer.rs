@@ -4,8 +4,11 @@ use crate::diag::{Code, Diagnostic, Span};
 use crate::instance::building::components::Plan;
 use crate::instance::lookup::{Builtin, Found};
 use crate::instance::modifiers::Reached;
+use crate::instance::template::Kind;
 use crate::instance::{Inherited, Instance, Node, NodeId, ScopeId, View};
+use crate::resolve::ClassId;
 use crate::syntax::ast::{self};
+use crate::syntax::symbol::Symbol;
 use crate::types::Type;
 
 impl<'a> Instance<'a, '_> {
@@ -38,6 +41,12 @@ impl<'a> Instance<'a, '_> {
             self.report(no_inner(instance, help));
             return None;
         }
+        if let Some(meant) = self.meant_as_inner(scope, name, class.class) {
+            if self.diagnostics.iter().all(|d| d.message != meant.message) {
+                self.report(meant);
+            }
+            return None;
+        }
         let made = Diagnostic::new(Code::AutomaticInner, format!("`inner {full} {name}` was added to the model"))
             .at(declared.name.span, format!("`outer {name}` has no `inner` above it"))
             .help(format!("write `inner {full} {name};` in the model to choose its parameters"));
@@ -59,6 +68,36 @@ impl<'a> Instance<'a, '_> {
         let node = self.build_shaped(&plan, &found, &[], Reached::default())?;
         self.inner_declared.insert((root, name), node);
         Some(node)
+    }
+
+    /// A component further up that was meant for an `outer` one and is not found by it, because it is not `inner` or has
+    /// another name: all would go on with a default that was added instead.
+    fn meant_as_inner(&mut self, scope: ScopeId, name: Symbol, wanted: ClassId) -> Option<Diagnostic> {
+        let mut at = self.scope(scope).owner;
+        while let Some(owner) = at {
+            let template = self.scope(owner).template.clone();
+            for element in &template.elements {
+                let Kind::Component(c) = element.kind else { continue };
+                let view = View { scope: owner, base: element.base };
+                let Ok(Found::Class(class)) = self.lookup_path(view, &c.class) else { continue };
+                let template = self.template(class.class, class.parent);
+                if c.prefixes.outer || template.bases.iter().all(|b| b.class != wanted) {
+                    continue;
+                }
+                let (own, ty) = (c.name.name, c.class.dotted());
+                let (message, label) = if c.prefixes.inner {
+                    let message = format!("no component takes `inner {own}`: they look for `inner {name}`");
+                    (message, "has another name")
+                } else {
+                    (format!("no component takes `{own}`: `{own}` is not `inner`"), "without `inner` it is nobody's")
+                };
+                let made = Diagnostic::new(Code::NoInner, message).at(c.name.span, label);
+                let made = made.note(format!("with a default `{name}` in its place nothing would use its parameters"));
+                return Some(made.help(format!("write `inner {ty} {name}`")));
+            }
+            at = self.scope(owner).owner;
+        }
+        None
     }
 
     /// An empty place before the first element of the model.

@@ -39,6 +39,28 @@ const LEAST_FLOW: f64 = 1e-10;
 const UNSUPPORTED: [&str; 8] =
     ["spatialDistribution", "previous", "hold", "subSample", "superSample", "shiftSample", "backSample", "interval"];
 
+/// The arguments that a built-in function takes by name; MLS names them for these alone.
+fn named_arguments(name: &str) -> &'static [&'static str] {
+    match name {
+        "homotopy" => &["actual", "simplified"],
+        "String" => &["significantDigits", "minimumLength", "leftJustified", "format"],
+        _ => &[],
+    }
+}
+
+/// How many arguments a built-in function takes by place, where the function itself does not count them.
+fn count_of(name: &str) -> Option<std::ops::RangeInclusive<usize>> {
+    Some(match name {
+        "initial" | "terminal" | "getInstanceName" => 0..=0,
+        "noEvent" | "identity" => 1..=1,
+        "smooth" => 2..=2,
+        "homotopy" => 0..=2,
+        "zeros" | "ones" => 1..=usize::MAX,
+        "fill" => 2..=usize::MAX,
+        _ => return None,
+    })
+}
+
 impl<'a> Instance<'a, '_> {
     /// A built-in function; `None` if the name is not one, `Some(None)` after a message.
     pub(in crate::instance) fn builtin_call(
@@ -69,6 +91,44 @@ impl<'a> Instance<'a, '_> {
             self.unsupported_function(span, name);
             return Some(None);
         }
+        if let Some(count) = count_of(name)
+            && !count.contains(&args.len())
+        {
+            let wanted = match (*count.start(), *count.end()) {
+                (0, 0) => "no argument".to_string(),
+                (1, 1) => "one argument".to_string(),
+                (1, usize::MAX) => "one argument or more".to_string(),
+                (low, usize::MAX) => format!("{low} arguments or more"),
+                (_, high) => format!("{high} arguments"),
+            };
+            return Some(self.fail(Code::BadCall, &format!("`{name}` takes {wanted}, not {}", args.len()), span));
+        }
+        let value = self.builtin_value(function, args, named, view, span)?;
+        let takes = named_arguments(name);
+        match named.iter().find(|(n, _)| !takes.contains(&n.name.as_str())) {
+            Some((unknown, _)) if value.is_some() => {
+                let message = format!("`{name}` has no argument `{}`", unknown.name);
+                let d = Diagnostic::new(Code::BadCall, message).at(unknown.span, "not an argument");
+                self.report(match takes {
+                    [] => d.help(format!("`{name}` takes its arguments by their place")),
+                    _ => d.help(format!("by name it takes `{}`", takes.join("`, `"))),
+                });
+                Some(None)
+            }
+            _ => Some(value),
+        }
+    }
+
+    /// The value of a call by the name of its function; `None` if that is not built in.
+    fn builtin_value(
+        &mut self,
+        function: &'a Reference,
+        args: &'a [Expr],
+        named: &'a [(Ident, Expr)],
+        view: View,
+        span: Span,
+    ) -> Option<Option<Val>> {
+        let name = function.parts[0].name.name.as_str();
         Some(match name {
             "der" => self.one(name, args, view, span).and_then(|v| self.der(&v, span)),
             "noEvent" => self.without_events(args.first(), name, view, span),
@@ -88,7 +148,7 @@ impl<'a> Instance<'a, '_> {
             "semiLinear" => self.semi_linear(args, view, span),
             "size" | "ndims" | "zeros" | "ones" | "fill" | "identity" | "diagonal" | "linspace" | "transpose"
             | "cat" | "outerProduct" | "symmetric" | "cross" | "skew" | "scalar" | "vector" | "matrix" | "array"
-            | "promote" => self.array_function(name, args, named, view, span),
+            | "promote" => self.array_function(name, args, view, span),
             "sum" | "product" => self.one(name, args, view, span).and_then(|v| {
                 let values = v.elements().to_vec();
                 self.reduction(function, values, span)
@@ -487,15 +547,7 @@ impl<'a> Instance<'a, '_> {
         Some(result)
     }
 
-    fn array_function(
-        &mut self,
-        name: &str,
-        args: &'a [Expr],
-        named: &'a [(Ident, Expr)],
-        view: View,
-        span: Span,
-    ) -> Option<Val> {
-        let _ = named;
+    fn array_function(&mut self, name: &str, args: &'a [Expr], view: View, span: Span) -> Option<Val> {
         match name {
             "zeros" | "ones" | "identity" => {
                 let dims: Option<Vec<usize>> = args.iter().map(|a| self.dimension_in(a, view)).collect();

@@ -1,12 +1,15 @@
 //! Values of constants and parameters, and of attributes, where they must be known; values given from outside.
 
 use crate::diag::{Code, Diagnostic, Span};
-use crate::instance::Instance;
+use crate::instance::building::components::says;
 use crate::instance::building::given::QUANTITY;
 use crate::instance::errors::short;
+use crate::instance::lookup::Found;
 use crate::instance::modifiers::Binding;
+use crate::instance::template::Kind;
 use crate::instance::value::Val;
-use crate::syntax::ast::ExprKind;
+use crate::instance::{Instance, View};
+use crate::syntax::ast::{self, ExprKind};
 use crate::syntax::symbol::Symbol;
 use crate::types::{Type, Variability};
 
@@ -127,6 +130,23 @@ impl<'a> Instance<'a, '_> {
         let own = self.text_attribute(i, "unit").unwrap_or_default();
         let parsed = (crate::units::Unit::parse(unit), crate::units::Unit::parse(&own));
         let converted = match parsed {
+            (Ok(from), Ok(to)) if from.dimension == to.dimension && from.offset != to.offset => {
+                match self.is_difference(i) {
+                    Some(true) => from.of_difference().convert(x, &to.of_difference()),
+                    Some(false) => from.convert(x, &to),
+                    None => {
+                        self.report(
+                            Diagnostic::new(Code::BadSet, format!("`{x} {unit}` can be two values of `{name}`"))
+                                .note(format!(
+                                    "`{name}` is in `{own}`, and its type does not tell a temperature from a difference"
+                                ))
+                                .help(format!("give it in `{own}`"))
+                                .help("or declare it as `Modelica.Units.SI.Temperature` or `TemperatureDifference`"),
+                        );
+                        return None;
+                    }
+                }
+            }
             (Ok(from), Ok(to)) => from.convert(x, &to),
             _ => None,
         };
@@ -142,6 +162,43 @@ impl<'a> Instance<'a, '_> {
             );
         }
         converted
+    }
+
+    /// Whether a variable in a unit of temperature is a difference, by the annotation `absoluteValue` of its type (MLS
+    /// 18.9), its unit for people or its quantity; `None` where none of them tells.
+    pub fn is_difference(&mut self, i: u32) -> Option<bool> {
+        let types = self.types_of(i);
+        let said = types.iter().find_map(|t| says(t.annotation.as_ref()?, "absoluteValue"));
+        if let Some(absolute) = said {
+            return Some(!absolute);
+        }
+        let quantity = self.text_attribute(i, "quantity").unwrap_or_default();
+        let named = |name: &str| name.contains("Difference");
+        if named(&quantity) || types.iter().any(|t| named(t.name.name.as_str())) {
+            return Some(true);
+        }
+        let mut from_a_zero = |attribute: &str| {
+            let unit = self.text_attribute(i, attribute).unwrap_or_default();
+            crate::units::Unit::parse(&unit).is_ok_and(|u| u.offset != 0.0)
+        };
+        let from_a_zero = from_a_zero("unit") || from_a_zero("displayUnit");
+        (from_a_zero || quantity.ends_with("Temperature")).then_some(false)
+    }
+
+    /// The declared type of a variable and what it extends, outermost first; nothing for a built-in one.
+    fn types_of(&mut self, i: u32) -> Vec<&'a ast::Class> {
+        let data = &self.variables[i as usize];
+        let (scope, last) = (data.scope, data.name.rsplit('.').next().unwrap_or(""));
+        let name = Symbol::new(last.split('[').next().unwrap_or(""));
+        let template = self.scope(scope).template.clone();
+        let Some(element) = template.by_name.get(&name).map(|&e| &template.elements[e as usize]) else {
+            return Vec::new();
+        };
+        let Kind::Component(declared) = element.kind else { return Vec::new() };
+        match self.lookup_path(View { scope, base: element.base }, &declared.class) {
+            Ok(Found::Class(c)) => self.template(c.class, c.parent).bases.iter().map(|b| b.ast).collect(),
+            _ => Vec::new(),
+        }
     }
 
     /// An attribute that is a text, such as `unit`.
