@@ -60,7 +60,7 @@ fn failures(name: &str, text: &str) -> Vec<String> {
     };
     let wrong = case.values.iter().filter_map(|(variable, time, value)| {
         let got = at(&run, variable, *time);
-        let fits = 
+        let fits =
             got.is_some_and(|x| relative_eq!(x, *value, epsilon = case.tolerance, max_relative = case.tolerance));
         (!fits).then(|| format!("{name}: {variable}({time}) is {got:?}, not {value}"))
     });
