@@ -8,6 +8,7 @@
 //!   where an event makes two.
 #![allow(clippy::disallowed_methods, reason = "reads its cases")]
 
+use approx::relative_eq;
 use bramah::results::Trajectory;
 use bramah::world::MemoryWorld;
 use bramah::{Request, Simulation};
@@ -59,7 +60,8 @@ fn failures(name: &str, text: &str) -> Vec<String> {
     };
     let wrong = case.values.iter().filter_map(|(variable, time, value)| {
         let got = at(&run, variable, *time);
-        let fits = got.is_some_and(|x| (x - value).abs() <= case.tolerance * value.abs().max(1.0));
+        let fits =
+            got.is_some_and(|x| relative_eq!(x, *value, epsilon = case.tolerance, max_relative = case.tolerance));
         (!fits).then(|| format!("{name}: {variable}({time}) is {got:?}, not {value}"))
     });
     wrong.collect()

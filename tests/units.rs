@@ -5,6 +5,7 @@
 #[path = "units/pack.rs"]
 mod pack;
 
+use approx::abs_diff_eq;
 use bramah::internals::compile::Request;
 use bramah::world::DiskWorld;
 use bramah::{Error, Outcome, Simulation};
@@ -50,8 +51,10 @@ fn column(outcome: &Outcome, name: &str) -> Vec<f64> {
 
 fn assert_near(outcome: &Outcome, name: &str, tolerance: f64, truth: impl Fn(f64) -> f64) {
     let (times, values) = (&outcome.trajectory.times, column(outcome, name));
-    let worst = times.iter().zip(&values).map(|(t, y)| (y - truth(*t)).abs()).fold(0.0, f64::max);
-    assert!(worst < tolerance, "{name}: {worst:e}");
+    for (t, y) in times.iter().zip(values) {
+        let wanted = truth(*t);
+        assert!(abs_diff_eq!(y, wanted, epsilon = tolerance), "{name} at {t}: {y} instead of {wanted}");
+    }
 }
 
 /// Free motion of the oscillator.

@@ -1,4 +1,5 @@
 use super::*;
+use approx::relative_eq;
 use proptest::prelude::*;
 
 /// An expression before it is simplified.
@@ -88,7 +89,7 @@ fn at(p: &Exprs, e: ExprId, x: &[f64]) -> f64 {
 }
 
 fn close(a: f64, b: f64, tolerance: f64) -> bool {
-    (a - b).abs() <= tolerance * (1.0 + a.abs() + b.abs())
+    relative_eq!(a, b, epsilon = tolerance, max_relative = tolerance)
 }
 
 proptest! {

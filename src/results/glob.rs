@@ -2,6 +2,8 @@
 //!
 //! Brackets are literal, since names contain them: `v[1].p`, `v[*].p`. The name of an array means all its elements.
 
+use wildmatch::WildMatch;
+
 /// Patterns of which at least one must match.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Globs {
@@ -69,30 +71,8 @@ fn array(name: &str) -> Option<&str> {
     name.strip_suffix(']')?.rsplit_once('[').map(|(array, _)| array)
 }
 
-/// Walks both texts and, after a mismatch, returns to the last `*` and lets it take one character more.
 fn whole(pattern: &str, name: &str) -> bool {
-    let (p, n): (Vec<char>, Vec<char>) = (pattern.chars().collect(), name.chars().collect());
-    let (mut i, mut k) = (0, 0);
-    let mut star: Option<(usize, usize)> = None;
-    while k < n.len() {
-        match p.get(i) {
-            Some('*') => {
-                star = Some((i, k));
-                i += 1;
-            }
-            Some(&c) if c == '?' || c == n[k] => {
-                i += 1;
-                k += 1;
-            }
-            _ => {
-                let Some((at, taken)) = star else { return false };
-                star = Some((at, taken + 1));
-                i = at + 1;
-                k = taken + 1;
-            }
-        }
-    }
-    p[i..].iter().all(|&c| c == '*')
+    WildMatch::new(pattern).matches(name)
 }
 
 #[cfg(test)]

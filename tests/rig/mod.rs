@@ -2,6 +2,7 @@
 
 #![allow(dead_code, reason = "each test file uses a part")]
 
+use approx::relative_eq;
 use bramah::Override;
 use bramah::results::Trajectory;
 use bramah::world::MemoryWorld;
@@ -71,9 +72,10 @@ pub fn mean_from(t: &Trajectory, name: &str, from: f64) -> f64 {
     area / (t.times[t.len() - 1] - t.times[first])
 }
 
+/// Fails unless two numbers agree to this part of the larger one.
 #[track_caller]
 pub fn near(found: f64, wanted: f64, relative: f64) {
-    assert!((found - wanted).abs() <= relative * wanted.abs(), "{found} instead of {wanted}");
+    assert!(relative_eq!(found, wanted, epsilon = 0.0, max_relative = relative), "{found} instead of {wanted}");
 }
 
 /// Slope and intercept of the straight line through points, and the share of the variance that it explains.

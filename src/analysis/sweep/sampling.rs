@@ -4,6 +4,8 @@ use super::sobol;
 use crate::analysis::grid;
 use crate::experiment::{Sampling, Spread, Sweep};
 use crate::study::Amount;
+use statrs::function::erf::erfc_inv;
+use std::f64::consts::SQRT_2;
 
 /// A parameter that varies.
 #[derive(Clone, Debug, PartialEq)]
@@ -151,41 +153,9 @@ impl Map {
     }
 }
 
-/// The quantile of the standard normal distribution, to 1e-9: Newton's method on its distribution function.
+/// The quantile of the standard normal distribution.
 pub fn quantile(share: f64) -> f64 {
-    let share = share.clamp(1e-15, 1.0 - 1e-15);
-    // a first guess (A. M. Shore 1982), good to a few per cent
-    let mut x = 5.5556 * (1.0 - ((1.0 - share.max(1.0 - share)) / share.max(1.0 - share)).powf(0.1186));
-    let tail = share.min(1.0 - share);
-    for _ in 0..50 {
-        let density = (-0.5 * x * x).exp() / (2.0 * std::f64::consts::PI).sqrt();
-        let step = (upper_tail(x) - tail) / density.max(1e-300);
-        x += step.clamp(-0.5, 0.5);
-        if step.abs() < 1e-12 {
-            break;
-        }
-    }
-    if share < 0.5 { -x } else { x }
-}
-
-/// The probability above x >= 0: a series for small x, a continued fraction for large.
-fn upper_tail(x: f64) -> f64 {
-    let density = (-0.5 * x * x).exp() / (2.0 * std::f64::consts::PI).sqrt();
-    if x < 2.5 {
-        let (mut term, mut sum, mut k) = (x, x, 1.0);
-        while term.abs() > 1e-17 {
-            k += 2.0;
-            term *= x * x / k;
-            sum += term;
-        }
-        0.5 - density * sum
-    } else {
-        let mut fraction = x;
-        for k in (1..=60).rev() {
-            fraction = x + f64::from(k) / fraction;
-        }
-        density / fraction
-    }
+    -SQRT_2 * erfc_inv(2.0 * share.clamp(1e-15, 1.0 - 1e-15))
 }
 
 #[cfg(test)]

@@ -29,7 +29,7 @@ macro_rules! functions {
         impl $table {
             fn load(library: &Library) -> Self {
                 // SAFETY: the types are those of the standard's headers for functions of these names.
-                unsafe { $table { $($field: library.get(concat!($symbol, "\0").as_bytes()).ok().map(|s| *s),)* } }
+                unsafe { $table { $($field: library.get($symbol).ok().map(|s| *s),)* } }
             }
         }
     };
