@@ -82,7 +82,9 @@ fn lowering(c: &mut Criterion) {
         group.throughput(Throughput::Elements(sections as u64));
         for native in [false, true] {
             let id = BenchmarkId::new(way(native), sections);
-            group.bench_function(id, |b| b.iter(|| lower(black_box(dae.clone()), &Options { native, ..Options::default() })));
+            group.bench_function(id, |b| {
+                b.iter(|| lower(black_box(dae.clone()), &Options { native, ..Options::default() }))
+            });
         }
     }
 }

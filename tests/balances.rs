@@ -135,7 +135,11 @@ impl Circuit {
         let known = |c: &String| !infinite.iter().any(|s| class_of(c).rsplit('.').next() == Some(*s));
         let oil: Vec<(String, bool)> = names(&|flow| flow == "q").into_iter().map(|c| (c.clone(), known(&c))).collect();
         let all = names(&|_| true).into_iter().map(|c| (c.clone(), class_of(&c))).collect();
-        let has_oil = !oil.is_empty() && flattened.flat.variables.iter().any(|v| v.name == "oil.T");
+        // a source of flow alone asks for the density of the circuit's oil, and holds none
+        let holds =
+            |v: &bramah::internals::flat::Variable| v.name.ends_with(".mass") && v.unit.as_deref() == Some("kg");
+        let variables = &flattened.flat.variables;
+        let has_oil = !oil.is_empty() && variables.iter().any(|v| v.name == "oil.T") && variables.iter().any(holds);
         let closed = oil.iter().all(|c| c.1);
         let class = class.to_owned();
         let heat = |v: &bramah::internals::flat::Variable| v.name.ends_with(".T_oil") || v.name.ends_with(".T_case");

@@ -62,8 +62,6 @@ protected
   SI.Pressure dp_a[z](each nominal = 1e6) "Pressure drops to port A";
   SI.Pressure dp_b[z](each nominal = 1e6) "Pressure drops from port B";
   SI.Density rho[z](each nominal = 1000) "Densities of the chambers";
-  SI.Mass stored[z](each nominal = 860*V_d) "Oil in the chambers, at T_0";
-  SI.MassFlowRate m_in[z](each nominal = 1e-2) "Mass flows into the chambers";
   SI.BulkModulus beta[z](each nominal = 1e9) "Moduli of the chambers";
   SI.HeatFlowRate Q_heat(nominal = 10) "Heat that comes in through heatPort";
   Real growth(unit = "1") "Volume of the oil over that at T_0";
@@ -119,10 +117,7 @@ equation
     q_a[i] = C_d*A_a[i]*sqrt(4/(rho[i] + rho_a))*Smooth.root(dp_a[i], t);
     q_b[i] = C_d*A_b[i]*sqrt(4/(rho[i] + rho_b))*Smooth.root(dp_b[i], t);
     q_l[i] = pi*d*h^3*(1 + 1.5*eps^2)/(12*oil.thickening(mu_oil, (p[i] + port_case.p)/2 - oil.p_0)*L)*(p[i] - port_case.p) - A_drag*v[i];
-    m_in[i] = (rho[i] + rho_b)/2*q_b[i] - (rho[i] + rho_a)/2*q_a[i] - (rho[i] + rho_c)/2*q_l[i];
-    rho[i]*V[i]/beta[i]*der(p[i]) = rho[i]*A_p*v[i] + m_in[i];
-    stored[i] = rho[i]*V[i];
-    Connections.conserved(stored[i], m_in[i], p[i]);
+    rho[i]*V[i]/beta[i]*der(p[i]) = rho[i]*A_p*v[i] - (rho[i] + rho_c)/2*q_l[i] - (rho[i] + rho_a)/2*q_a[i] + (rho[i] + rho_b)/2*q_b[i];
   end for;
   rho_a*Q_A = sum((rho[i] + rho_a)/2*q_a[i] for i in 1:z)/(if oil.thermal then growth else 1);
   port_a.q = -Q_A;

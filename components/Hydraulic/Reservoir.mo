@@ -18,6 +18,8 @@ model Reservoir "Reservoir with a level: open, or closed with a cushion of gas"
   SI.Mass mass(nominal = oil.rho_0*A*h_start) "Mass of the oil";
 protected
   SI.Density rho(nominal = 1000) "Density of the oil at the bottom, at T_0";
+  SI.BulkModulus beta(nominal = 1e7) "Modulus of the oil there";
+  Real yield(unit = "1") "Oil that a rise of the level takes, over that of constant density";
   SI.HeatFlowRate Q_flow(nominal = 10) "Heat through heatPort";
   Real growth(unit = "1") "Volume of the oil over that at T_0";
 equation
@@ -29,15 +31,16 @@ equation
   else
     p = p_gas;
   end if;
-  rho = oil.density(port.p);
+  (rho, beta) = oil.density(port.p);
+  yield = 1 + h/beta*(rho/growth*Modelica.Constants.g_n + (if closed then n_g*p/max(h_max - h, 1e-3*h_max) else 0));
   if oil.thermal then
     growth = oil.growth(T_oil);
-    A*der(h) = growth*port.q + A*h*oil.gamma/growth*der(T_oil);
+    A*yield*der(h) = growth*port.q + A*h*oil.gamma/growth*der(T_oil);
     mass*oil.c_p*der(T_oil) = rho*oil.c_p*Connections.inflow(port.dT_outflow)*(inStream(port.dT_outflow) - port.dT_outflow) + Q_flow;
   else
     T_oil = oil.T;
     growth = 1;
-    A*der(h) = port.q;
+    A*yield*der(h) = port.q;
   end if;
   if not useHeatPort then
     Q_flow = 0;
@@ -45,5 +48,5 @@ equation
   port.p = p + rho/growth*Modelica.Constants.g_n*h;
   mass = rho/growth*A*h;
   Connections.conserved(mass, rho*port.q, h);
-  annotation(Documentation(info = "<html><p><code>A dh/dt = q</code>, <code>p_port = p + rho g h</code>. Closed, the gas is compressed as the level rises, <code>p (h_max - h)^n = const</code>: what differential cylinders do to a small sealed tank. The compressibility of the oil at this pressure is left out. The run ends when the reservoir runs dry or overflows.</p><p>Where the level does not matter: <code>Tank</code>. Source: hydrostatics.</p></html>"));
+  annotation(Documentation(info = "<html><p><code>A dh/dt = q</code>, <code>p_port = p + rho g h</code>. Closed, the gas is compressed as the level rises, <code>p (h_max - h)^n = const</code>: what differential cylinders do to a small sealed tank. Oil at the bottom is a little denser than at the top; the density at the bottom counts for all of it. The run ends when the reservoir runs dry or overflows.</p><p>Where the level does not matter: <code>Tank</code>. Source: hydrostatics.</p></html>"));
 end Reservoir;

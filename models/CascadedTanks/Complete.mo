@@ -14,6 +14,7 @@ model Complete "The tanks with overflow, dead zone of the pump, curve and end of
   parameter SI.Voltage y_max(min = 0, nominal = 10) = 10 "End of the sensor's range";
   parameter SI.Height h_1_start(min = 0, max = 10, nominal = 0.5) = 0.536 "Level of the upper tank at the start";
   parameter SI.Height h_2_start(min = 0, max = 10, nominal = 0.5) = 0.515 "Level of the lower tank at the start";
+  inner Oil.Water oil "What the tanks hold";
   Interfaces.RealInput u(unit = "V", nominal = 3) "Voltage of the pump";
   Interfaces.RealOutput y(unit = "V", nominal = 5) "Level of the lower tank, measured";
   Signal.DeadZone deadZone(uMax = u_0) "Dead zone of the pump";

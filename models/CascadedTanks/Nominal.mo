@@ -8,6 +8,7 @@ model Nominal "The tanks without overflow, pump without dead zone, sensor withou
   parameter Real k_y(unit = "V/m", min = 0, nominal = 10) = 10 "Level sensor";
   parameter SI.Height h_1_start(min = 0, max = 10, nominal = 0.5) = 1.40 "Level of the upper tank at the start";
   parameter SI.Height h_2_start(min = 0, max = 10, nominal = 0.5) = 0.513 "Level of the lower tank at the start";
+  inner Oil.Water oil "What the tanks hold";
   Interfaces.RealInput u(unit = "V", nominal = 3) "Voltage of the pump";
   Interfaces.RealOutput y(unit = "V", nominal = 5) "Level of the lower tank, measured";
   Signal.Gain pump(k = k_p) "Pump";

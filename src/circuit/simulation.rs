@@ -64,7 +64,14 @@ impl Simulation {
             Some(model) => {
                 let mut settings = Settings::from_experiment(&model.flat.experiment);
                 settings.wanted = visible(&model);
-                Ok(Simulation { model, sources, settings, inputs: Vec::new(), of_states: Arc::default(), diagnostics: outcome.diagnostics })
+                Ok(Simulation {
+                    model,
+                    sources,
+                    settings,
+                    inputs: Vec::new(),
+                    of_states: Arc::default(),
+                    diagnostics: outcome.diagnostics,
+                })
             }
             None => Err(Error { diagnostics: outcome.diagnostics, sources }),
         }

@@ -2,8 +2,8 @@
 
 use super::numbers::Numbers;
 use super::{
-    Assert, Conserved, Equation, FlatModel, Message, MessagePart, Origin, OriginKind, Type, Variability, When, WhenAction,
-    WhenBranch,
+    Assert, Conserved, Equation, FlatModel, Message, MessagePart, Origin, OriginKind, Type, Variability, When,
+    WhenAction, WhenBranch,
 };
 use crate::diag::{Code, Diagnostic, Span};
 use crate::expr::{ExprId, Exprs, Node, VarId};
@@ -507,7 +507,8 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
 
     /// `Connections.conserved(quantity, rate, state)`, of scalars.
     fn conserved(&mut self, call: &'a Expr, view: View, span: Span) {
-        const FORM: &str = "`Connections.conserved(quantity, rate, state)` takes three real numbers, the last one a variable";
+        const FORM: &str =
+            "`Connections.conserved(quantity, rate, state)` takes three real numbers, the last one a variable";
         let ExprKind::Call { args, .. } = &call.kind else { return };
         let mut values = Vec::with_capacity(args.len());
         for arg in args {

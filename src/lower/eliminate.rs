@@ -170,7 +170,10 @@ impl<'a> Planner<'a> {
     fn choose_conserved(&mut self) {
         for &c in &self.dae.conserved {
             let der = self.layout.unknown(Unknown::Der(c.state));
-            let torn = self.roots.iter().position(|r| matches!(r, Root::Residual(_, _, u, true) if *u == Unknown::Der(c.state)));
+            let torn = self
+                .roots
+                .iter()
+                .position(|r| matches!(r, Root::Residual(_, _, u, true) if *u == Unknown::Der(c.state)));
             let given = torn.is_some() || self.producer[der] != NOBODY;
             if !given || self.reaches(c.rate, der) || !self.reaches(c.quantity, self.layout.var(c.state)) {
                 continue;
@@ -309,7 +312,11 @@ impl<'a> Planner<'a> {
         for i in 0..self.explicit.len() {
             let mut span = if self.needed[i] { self.span(i, &spans) } else { Vec::new() };
             let (rows, columns) = (self.users[i] as usize, span.len());
-            if self.fates[i] == Fate::Local && self.can_be_kept(i) && !in_quantity[i] && rows * columns > rows + columns + 1 {
+            if self.fates[i] == Fate::Local
+                && self.can_be_kept(i)
+                && !in_quantity[i]
+                && rows * columns > rows + columns + 1
+            {
                 let Unknown::Var(v) = self.explicit[i].unknown else { unreachable!("derivatives are not kept") };
                 self.fates[i] = Fate::Kept;
                 span = vec![slot(self.columns.len())];

@@ -42,22 +42,24 @@ pub fn solve(
 }
 
 /// The same of a quantity that grows.
-fn rise(
-    mut quantity: impl FnMut(f64) -> f64,
-    wanted: f64,
-    start: f64,
-    there: f64,
-    slope: &mut f64,
-) -> Option<f64> {
+fn rise(mut quantity: impl FnMut(f64) -> f64, wanted: f64, start: f64, there: f64, slope: &mut f64) -> Option<f64> {
     let (mut x, mut missing) = (start, wanted - there);
     let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
     let first = missing / *slope;
     let (mut step, mut before) = (first, first.abs());
     for _ in 0..MOST {
-        if missing > 0.0 { low = x } else { high = x }
+        if missing > 0.0 {
+            low = x
+        } else {
+            high = x
+        }
         let mut next = x + step;
         if !(next > low && next < high) {
-            next = if low.is_finite() && high.is_finite() { 0.5 * (low + high) } else { x + GROWTH * before.copysign(missing) };
+            next = if low.is_finite() && high.is_finite() {
+                0.5 * (low + high)
+            } else {
+                x + GROWTH * before.copysign(missing)
+            };
         }
         if next == x {
             return Some(x);
@@ -116,7 +118,16 @@ mod tests {
     fn a_good_slope_needs_one_evaluation() {
         let mut calls = 0;
         let mut slope = 2.0;
-        let found = solve(|x| { calls += 1; 2.0 * x + 1e-3 * x * x }, 2.002, 0.999, 1.999 , &mut slope);
+        let found = solve(
+            |x| {
+                calls += 1;
+                2.0 * x + 1e-3 * x * x
+            },
+            2.002,
+            0.999,
+            1.999,
+            &mut slope,
+        );
         assert!(found.is_some_and(|x| (x - 1.0).abs() < 1e-2));
         assert!(calls <= 3);
     }

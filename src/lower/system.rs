@@ -2,14 +2,14 @@
 
 use super::blocks;
 use super::continuous::Observables;
+use super::follow;
 use super::layout::Slot;
 use super::native::Entry;
 use super::parameters::Bindings;
 use super::program::{Assembler, CompiledLoops, Order, late_scratch};
 use super::shape::Kernels;
 use super::trap::{self, Trap};
-use super::follow;
-use super::{BlockCode, Column, Conditions, Layout, Integral, NonFinite, Pattern, Program, Row, RowKind};
+use super::{BlockCode, Column, Conditions, Integral, Layout, NonFinite, Pattern, Program, Row, RowKind};
 use crate::expr::function::Function;
 use crate::expr::{ExprId, Node, VarId};
 use crate::structure::Dae;

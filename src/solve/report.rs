@@ -152,7 +152,11 @@ pub fn jump(system: &System, t: f64, jump: &Jump) -> Diagnostic {
     let variable = &system.dae.variables[jump.variable.index()];
     let unit = variable.unit.as_deref().filter(|u| *u != "1").map_or_else(String::new, |u| format!(" {u}"));
     let (from, to) = (number(jump.before), number(jump.after));
-    let text = format!("`{}` jumps from {from} to {to}{unit} at time {} s, and its derivative is needed", variable.name, number(t));
+    let text = format!(
+        "`{}` jumps from {from} to {to}{unit} at time {} s, and its derivative is needed",
+        variable.name,
+        number(t)
+    );
     at_origin(&system.dae, Code::ImpulseLost, text, variable.origin, "this must be continuous")
         .note("an equation that is differentiated ties it to a mass, a volume or the like; the jump takes an impulse that no equation holds, and that would be missing in all balances")
         .help("smooth the command that jumps (`Signal.SecondOrder`, a ramp), let a source follow it by a filter of its own (`exact = false`), or put a spring, a resistance or another storage between")

@@ -39,7 +39,8 @@ pub struct Slopes {
 impl Slopes {
     /// For a system.
     pub fn new(system: &System) -> Slopes {
-        let implicit = |(c, r): (&crate::lower::Column, &crate::lower::Row)| c.is_state() && r.kind != RowKind::Derivative;
+        let implicit =
+            |(c, r): (&crate::lower::Column, &crate::lower::Row)| c.is_state() && r.kind != RowKind::Derivative;
         let torn = system.columns.iter().zip(&system.rows).any(implicit);
         let entries = system.pattern.nnz();
         Slopes { at: None, here: vec![0.0; entries], rates: vec![0.0; if torn { entries } else { 0 }] }

@@ -14,7 +14,7 @@ use super::Conserved;
 use super::cancelling::{Sum, terms};
 use super::draft::{Draft, Role, RowKind};
 use super::parameters::Known;
-use crate::expr::{ExprId, Exprs, Node, VarId};
+use crate::expr::{ExprId, Exprs, Node, Unary, VarId};
 use crate::flat::{self, Type};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::VecDeque;
@@ -44,12 +44,7 @@ pub(super) fn find(draft: &mut Draft, known: &mut Known, states: &[VarId]) -> Ve
     groups.into_iter().filter_map(|(state, members)| conserved(draft, &balances, state, &members)).collect()
 }
 
-fn conserved(
-    draft: &mut Draft,
-    balances: &Balances,
-    state: VarId,
-    members: &[flat::Conserved],
-) -> Option<Conserved> {
+fn conserved(draft: &mut Draft, balances: &Balances, state: VarId, members: &[flat::Conserved]) -> Option<Conserved> {
     let rate = match members {
         [one] => one.rate,
         all => balances.joint_rate(&mut draft.exprs, &all.iter().map(|m| m.rate).collect::<Vec<_>>())?,
@@ -111,7 +106,7 @@ impl Balances {
     /// with the same density. `None` where the connections do not show that.
     fn joint_rate(&self, pool: &mut Exprs, rates: &[ExprId]) -> Option<ExprId> {
         let mut sum = Exprs::ZERO;
-        let mut flows: Vec<(ExprId, Vec<VarId>)> = Vec::new();
+        let mut flows: Vec<(ExprId, Sum)> = Vec::new();
         for &rate in rates {
             let candidates = pool.variables(rate);
             let flow = candidates.into_iter().filter(|v| self.users.contains_key(v)).find_map(|v| {
@@ -121,10 +116,14 @@ impl Balances {
             });
             let (flow, affine) = flow?;
             sum = pool.add(sum, affine.rest);
-            let coefficient = self.meaning(pool, affine.coefficient, DEPTH);
-            match flows.iter_mut().find(|(known, _)| *known == coefficient) {
-                Some((_, flows)) => flows.push(flow),
-                None => flows.push((coefficient, vec![flow])),
+            let (density, sign) = match pool.node(affine.coefficient) {
+                Node::Unary(Unary::Neg, density) => (density, -1.0),
+                _ => (affine.coefficient, 1.0),
+            };
+            let density = self.meaning(pool, density, DEPTH);
+            match flows.iter_mut().find(|(known, _)| *known == density) {
+                Some((_, flows)) => flows.push((flow, sign)),
+                None => flows.push((density, vec![(flow, sign)])),
             }
         }
         for (coefficient, flows) in flows {
@@ -158,17 +157,17 @@ impl Balances {
     }
 
     /// The sum of these flows as a sum of others.
-    fn brought(&self, flows: &[VarId]) -> Option<Sum> {
-        let wanted: FxHashSet<VarId> = flows.iter().copied().collect();
-        let (&first, rest) = flows.split_first()?;
+    fn brought(&self, flows: &[(VarId, f64)]) -> Option<Sum> {
+        let wanted: FxHashSet<VarId> = flows.iter().map(|f| f.0).collect();
+        let (first, rest) = flows.split_first()?;
         if rest.is_empty() {
-            return Some(vec![(first, 1.0)]);
+            return Some(vec![*first]);
         }
-        let start = *self.users.get(&first)?.iter().find(|&&r| self.rows[r].len() > 1)?;
+        let start = *self.users.get(&first.0)?.iter().find(|&&r| self.rows[r].len() > 1)?;
         let mut joint = self.rows[start].clone();
         let mut used: FxHashSet<usize> = FxHashSet::default();
         used.insert(start);
-        for flow in rest {
+        for (flow, _) in rest {
             if joint.iter().all(|(v, _)| v != flow) {
                 let way = self.way(&joint, &used, &wanted, *flow)?;
                 for (shared, row) in way {
@@ -177,9 +176,10 @@ impl Balances {
                 }
             }
         }
-        let factor = |v: &VarId| joint.iter().find(|t| t.0 == *v).map(|t| t.1);
-        let one = factor(&first)?;
-        let equal = flows.iter().all(|v| factor(v).is_some_and(|f| (f - one).abs() <= 1e-12 * one.abs()));
+        // each flow in its own direction
+        let factor = |(v, sign): &(VarId, f64)| joint.iter().find(|t| t.0 == *v).map(|t| t.1 * sign);
+        let one = factor(first)?;
+        let equal = flows.iter().all(|flow| factor(flow).is_some_and(|f| (f - one).abs() <= 1e-12 * one.abs()));
         let others = joint.iter().filter(|(v, _)| !wanted.contains(v)).map(|&(v, f)| (v, -f / one));
         equal.then(|| others.collect())
     }

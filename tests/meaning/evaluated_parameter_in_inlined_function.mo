@@ -1,4 +1,3 @@
-//! The argument of a function that is inlined hangs on a parameter that is evaluated: its conditions are expressions.
 //! stop 1
 //! u[1](1) = 0.6
 //! u[2](1) = 0.8

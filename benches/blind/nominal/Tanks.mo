@@ -5,6 +5,7 @@ model Tanks "Two tanks side by side, joined by a pipe near the bottom, each with
   parameter Modelica.Units.SI.Area a_2(min = 0, nominal = 1e-5) = 3e-5 "Outlet of the right tank";
   parameter Modelica.Units.SI.Area A_1(min = 0, nominal = 1e-2) = 1e-2 "Cross section of the left tank";
   parameter Modelica.Units.SI.Area A_2(min = 0, nominal = 1e-2) = 1e-2 "Cross section of the right tank";
+  inner Oil.Water oil "What the tanks hold";
   Interfaces.RealInput u(unit = "V", nominal = 3) "Voltage of the pump";
   Signal.Gain pump(k = k_p) "Pump";
   Hydraulic.FlowSource feed(useInput = true) "What it delivers";

@@ -113,7 +113,7 @@ equation
   end if;
   tau_w*der(w_est) = w_now - w_est;
   T_free = K_p*(w_ref - w_est) + x;
-  T_ref = min(max(T_free, max(-T_max, k_T*i_low)), min(T_max, k_T*i_high));
+  T_ref = homotopy(min(max(T_free, max(-T_max, k_T*i_low)), min(T_max, k_T*i_high)), min(max(T_free, -T_max), T_max));
   der(x) = K_i*(w_ref - w_est) + K_i/K_p*(T_ref - T_free);
   // currents
   psi_cmd = min(psi_ref, weakening*U_max*L_m/(L_s*Smooth.mag(w_e, 1)));
@@ -127,12 +127,13 @@ equation
   i_low = min(max(i_mid - i_way, -i_q_max), i_q_max);
   i_high = min(max(i_mid + i_way, -i_q_max), i_q_max);
   k_T = 1.5*p*L_m/L_r*max(psi_hat, psi_low);
-  i_q_ref = T_ref/k_T;
+  i_q_ref = min(max(T_ref/k_T, -i_q_max), i_q_max);
   v_d = L_t*w_c*(i_d_ref - i_d) + x_d - w_e*L_t*i_q;
   v_q = L_t*w_c*(i_q_ref - i_q) + x_q + E;
-  u_d = min(max(v_d, -U_d), U_d);
-  U_q = sqrt(U_max^2 - u_d^2);
-  u_q = min(max(v_q, -U_q), U_q);
+  // a steady start is one below the limits of the voltage: with them, it is not found
+  u_d = if initial() then (if steady then v_d else min(max(v_d, -U_d), U_d)) else min(max(v_d, -U_d), U_d);
+  U_q = sqrt(noEvent(max(U_max^2 - u_d^2, U_max^2 - U_d^2)));
+  u_q = if initial() then (if steady then v_q else min(max(v_q, -U_q), U_q)) else min(max(v_q, -U_q), U_q);
   u = sqrt(u_d^2 + u_q^2);
   der(x_d) = R_t*w_c*(i_d_ref - i_d) + w_c*(u_d - v_d);
   der(x_q) = R_t*w_c*(i_q_ref - i_q) + w_c*(u_q - v_q);
