@@ -91,6 +91,8 @@ fn run(
     let running = running_system(&draft, &reduction, &states)?;
 
     let mut blocks = Blocks::sort_running(&mut draft, &mut known, &running, &states.states);
+    // before the conditions of the start stand among the equations
+    let mut conserved = conserved::find(&mut draft, &mut known, &states.states);
     let with_derivatives = start_derivatives::add(&mut draft, &running, &states.states)?;
     let at_start = with_derivatives.as_ref().unwrap_or(&running);
     let model = initial::Model { running: at_start, states: &states.states, demoted: &states.demoted };
@@ -98,7 +100,6 @@ fn run(
     diagnostics.extend(start.diagnostics);
     let further = zeros::decisive(&mut draft, &mut known, [&running, &start.system]);
     blocks.sort_initial(&mut draft, &mut known, &start.system);
-    let mut conserved = conserved::find(&mut draft, &mut known, &states.states);
     let stated = conserved.iter_mut().flat_map(|c| [&mut c.quantity, &mut c.rate]);
     duplicates::share(&mut draft.exprs, &mut blocks.continuous, stated);
     let rest = Rest { order, aliases, states: states.states.clone(), selections: chosen.selections };

@@ -127,7 +127,7 @@ impl Balances {
             }
         }
         for (coefficient, flows) in flows {
-            let others = self.brought(&flows)?;
+            let others = self.brought(&netted(flows))?;
             for (v, factor) in others {
                 let (v, factor) = (pool.var(v), pool.num(factor));
                 let term = pool.mul(factor, v);
@@ -159,7 +159,7 @@ impl Balances {
     /// The sum of these flows as a sum of others.
     fn brought(&self, flows: &[(VarId, f64)]) -> Option<Sum> {
         let wanted: FxHashSet<VarId> = flows.iter().map(|f| f.0).collect();
-        let (first, rest) = flows.split_first()?;
+        let Some((first, rest)) = flows.split_first() else { return Some(Sum::new()) };
         if rest.is_empty() {
             return Some(vec![*first]);
         }
@@ -221,6 +221,18 @@ impl Balances {
         }
         None
     }
+}
+
+/// With each variable once: what only passes from one volume to the other goes.
+fn netted(mut flows: Sum) -> Sum {
+    flows.sort_unstable_by_key(|f| f.0);
+    flows.dedup_by(|later, kept| {
+        let same = later.0 == kept.0;
+        kept.1 += if same { later.1 } else { 0.0 };
+        same
+    });
+    flows.retain(|f| f.1 != 0.0);
+    flows
 }
 
 /// The combination of two sums in which a variable of both does not occur.
