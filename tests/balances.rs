@@ -371,5 +371,5 @@ fn mass_of_every_example_balances() {
         }
     }
     none(&found);
-    assert_eq!(textbook, ["Hydraulic.Examples.EfficiencyMapFileExample", "Oil.Examples.ConstantDensityExample"]);
+    assert_eq!(textbook, ["Oil.Examples.ConstantDensityExample"]);
 }

@@ -78,13 +78,16 @@ struct Balances {
     rows: Vec<Sum>,
     /// The rows that hold a variable.
     users: FxHashMap<VarId, Vec<usize>>,
+    /// Whether a variable is the flow of a connector.
+    flows: Vec<bool>,
     /// What equations `variable = expression` say.
     given: FxHashMap<VarId, ExprId>,
 }
 
 impl Balances {
     fn new(draft: &Draft, known: &mut Known) -> Balances {
-        let mut balances = Balances::default();
+        let flows = draft.variables.iter().map(|v| v.flow).collect();
+        let mut balances = Balances { flows, ..Balances::default() };
         for (equation, kind) in draft.equations.iter().zip(&draft.kinds) {
             if *kind != RowKind::Continuous {
                 continue;
@@ -109,7 +112,7 @@ impl Balances {
         let mut flows: Vec<(ExprId, Sum)> = Vec::new();
         for &rate in rates {
             let candidates = pool.variables(rate);
-            let flow = candidates.into_iter().filter(|v| self.users.contains_key(v)).find_map(|v| {
+            let flow = candidates.into_iter().filter(|v| self.flows[v.index()]).find_map(|v| {
                 let leaf = pool.var(v);
                 let affine = pool.linear_in(rate, leaf)?;
                 (pool.as_num(affine.coefficient).is_none()).then_some((v, affine))
