@@ -18,7 +18,7 @@ const SAMPLE: [&str; 20] = [
     "Modelica.Electrical.Machines.Examples.InductionMachines.IMC_DOL",
     "Modelica.Electrical.QuasiStatic.SinglePhase.Examples.SeriesResonance",
     "Modelica.Fluid.Examples.Tanks.ThreeTanks",
-    "Modelica.Magnetic.FluxTubes.Examples.BasicExamples.QuadraticCoreAirgap",
+    "Modelica.Magnetic.FluxTubes.Examples.BasicExamples.SaturatedInductor",
     "Modelica.Mechanics.MultiBody.Examples.Elementary.Pendulum",
     "Modelica.Mechanics.MultiBody.Examples.Elementary.DoublePendulum",
     "Modelica.Mechanics.MultiBody.Examples.Elementary.PointGravity",

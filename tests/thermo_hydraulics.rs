@@ -93,7 +93,7 @@ fn oil_that_is_compressed_warms() {
              Mechanical.Translational.Position piston; Signal.Sine move(amplitude = 1.5e-3, f = 1);"
         ),
         "connect(chamber.port, plug.port); connect(piston.flange, chamber.flange); connect(move.y, piston.s_ref);
-         annotation(experiment(StopTime = 2, Interval = 0.01, Tolerance = 1e-10));",
+         annotation(experiment(StopTime = 0.5, Interval = 0.01, Tolerance = 1e-9));",
     );
     let t = run(&press);
     let (p, temperature) = (column(&t, "chamber.p"), column(&t, "chamber.T_oil"));

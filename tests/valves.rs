@@ -187,8 +187,8 @@ fn the_reservoir_keeps_its_oil_and_its_gas() {
     for (i, time) in t.times.iter().enumerate() {
         let omega = 2.0 * std::f64::consts::PI * 0.2;
         let taken = 1e-3 / omega * (1.0 - (omega * time).cos());
-        // the oil at the bottom is denser by rho g h/beta, a few parts in ten thousand
-        assert!((h[i] - (0.2 - taken / 0.02)).abs() < 6e-5, "{time}: {}", h[i]);
+        // oil with free air grows by up to two parts in a thousand as the pressure of the gas falls
+        assert!((h[i] - (0.2 - taken / 0.02)).abs() < 2e-3 * h[i], "{time}: {}", h[i]);
         near(p[i], 101_325.0 * (0.1 / (0.3 - h[i])).powf(1.2), 1e-9);
     }
     let empty = circuit(
