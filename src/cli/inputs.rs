@@ -132,7 +132,7 @@ fn convert(values: &mut [f64], unit: &str, target: &Variable, entry: &InputMap) 
         let text = format!("the column `{}` is in `{unit}`, the input `{}` in `{wanted}`", entry.column, target.name);
         return Err(wrong(text));
     }
-    let (from, to) = if target.difference { (from.of_difference(), to.of_difference()) } else { (from, to) };
+    let (from, to) = (from.meant(target.difference), to.meant(target.difference));
     values.iter_mut().for_each(|v| *v = from.convert(*v, &to).unwrap_or(*v));
     Ok(())
 }

@@ -8,7 +8,7 @@ use super::shape::{Kernels, Rules, Shaper};
 use super::{Integral, Pattern, RowKind};
 use crate::expr::VarId;
 use crate::structure::{CrossingKind, Dae, Unknown};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// The definitions of the IDA system.
 #[derive(Debug)]
@@ -130,16 +130,17 @@ impl Observables {
 
     /// The definitions that these slots need, in order.
     pub fn needed(&self, kernels: &Kernels, slots: impl IntoIterator<Item = Slot>) -> Defs {
-        let mut wanted = vec![false; self.defs.len()];
+        let mut wanted: FxHashSet<u32> = FxHashSet::default();
         let mut stack: Vec<Slot> = slots.into_iter().collect();
         while let Some(slot) = stack.pop() {
             if let Some(&i) = self.producer.get(&slot)
-                && !std::mem::replace(&mut wanted[i as usize], true)
+                && wanted.insert(i)
             {
                 stack.extend_from_slice(self.defs.get(kernels, i as usize).1);
             }
         }
-        let chosen = wanted.iter().enumerate().filter_map(|(i, &wanted)| wanted.then_some(i));
+        let mut chosen: Vec<usize> = wanted.into_iter().map(|i| i as usize).collect();
+        chosen.sort_unstable();
         self.defs.select(kernels, chosen)
     }
 
@@ -157,6 +158,8 @@ impl Observables {
 pub struct QuantitiesDraft {
     /// Both, from the slots of variables.
     pub defs: Defs,
+    /// Each quantity by itself.
+    pub alone: Vec<Defs>,
     /// The quantities.
     pub integrals: Vec<Integral>,
 }
@@ -169,10 +172,12 @@ pub fn quantities(plan: &Plan, shaper: &mut Shaper) -> QuantitiesDraft {
     for &(conserved, column, state) in &plan.integrals {
         let (slot, slope) = (shaper.layout.work(1), shaper.layout.work(1));
         let rate = self::slot(shaper.layout.unknown(Unknown::Der(conserved.variable)));
-        for (value, target) in [(conserved.quantity, slot), (conserved.rate, rate)] {
-            let shaped = shaper.shape(value, &rules);
-            draft.defs.define(&mut shaper.kernels, target, &shaped);
-        }
+        let [quantity, growth] = [conserved.quantity, conserved.rate].map(|e| shaper.shape(e, &rules));
+        let mut alone = Defs::default();
+        alone.define(&mut shaper.kernels, slot, &quantity);
+        draft.defs.append(&alone);
+        draft.defs.define(&mut shaper.kernels, rate, &growth);
+        draft.alone.push(alone);
         draft.integrals.push(Integral { column, state, slot, slope, entry: None, row: Vec::new() });
     }
     draft

@@ -14,7 +14,7 @@ use crate::expr::visit::Walk;
 use crate::expr::{ExprId, VarId};
 use crate::flat::Type;
 use crate::structure::{Assign, Block, Conserved, Dae, Unknown};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Systems with at most this many unknowns keep no explicit variable.
 const SMALL: usize = 60;
@@ -168,27 +168,33 @@ impl<'a> Planner<'a> {
     /// Takes the conserved quantities whose rates do not hang on how fast their own states move, and takes the residuals
     /// that give these derivatives out.
     fn choose_conserved(&mut self) {
+        let lone = |root: &Root| match root {
+            Root::Residual(_, _, Unknown::Der(x), true) => Some(*x),
+            _ => None,
+        };
+        let torn: FxHashSet<VarId> = self.roots.iter().filter_map(lone).collect();
+        let mut taken: FxHashSet<VarId> = FxHashSet::default();
         for &c in &self.dae.conserved {
             let der = self.layout.unknown(Unknown::Der(c.state));
-            let torn = self
-                .roots
-                .iter()
-                .position(|r| matches!(r, Root::Residual(_, _, u, true) if *u == Unknown::Der(c.state)));
-            let given = torn.is_some() || self.producer[der] != NOBODY;
-            if !given || self.reaches(c.rate, der) || !self.reaches(c.quantity, self.layout.var(c.state)) {
+            let is_torn = torn.contains(&c.state);
+            if !(is_torn || self.producer[der] != NOBODY)
+                || self.reaches(c.rate, der)
+                || !self.reaches(c.quantity, self.layout.var(c.state))
+            {
                 continue;
             }
-            if let Some(k) = torn {
-                self.roots.remove(k);
+            if is_torn {
+                taken.insert(c.state);
                 self.followers_torn.push(c.state);
             }
             self.roots.extend([Root::Rate(c), Root::Quantity(c)]);
         }
+        self.roots.retain(|root| lone(root).is_none_or(|x| !taken.contains(&x)));
     }
 
     /// Whether an expression depends on a slot, through explicit assignments too.
     fn reaches(&self, e: ExprId, target: usize) -> bool {
-        let mut seen = vec![false; self.explicit.len()];
+        let mut seen: FxHashSet<u32> = FxHashSet::default();
         let mut open = vec![e];
         let mut walk = Walk::default();
         while let Some(e) = open.pop() {
@@ -197,7 +203,7 @@ impl<'a> Planner<'a> {
                 if let Some(slot) = self.layout.leaf(node) {
                     found |= slot as usize == target;
                     let producer = self.producer[slot as usize];
-                    if producer != NOBODY && !std::mem::replace(&mut seen[producer as usize], true) {
+                    if producer != NOBODY && seen.insert(producer) {
                         open.push(self.explicit[producer as usize].value);
                     }
                 }

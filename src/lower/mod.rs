@@ -326,9 +326,8 @@ impl Drafts {
         programs.crossings_alone = assembler.assemble(&self.crossings.defs, by_need, None);
         programs.quantities = assembler.assemble(&self.quantities.defs, by_need, None);
         assembler.often(true);
-        for integral in &self.quantities.integrals {
-            let alone = self.quantities.defs.producing(&kernels, integral.slot);
-            let with_observables = self.observables.before(&kernels, &alone);
+        for alone in &self.quantities.alone {
+            let with_observables = self.observables.before(&kernels, alone);
             programs.along.push(assembler.assemble(&with_observables, by_need, None));
         }
         assembler.often(false);
@@ -367,10 +366,17 @@ impl Drafts {
 
 /// With the places of the derivatives in the Jacobian.
 fn located(mut integrals: Vec<Integral>, pattern: &Pattern) -> Vec<Integral> {
-    for integral in &mut integrals {
-        let mut column = pattern.colptr[integral.state]..pattern.colptr[integral.state + 1];
-        integral.entry = column.find(|&k| pattern.rowidx[k] == integral.state);
-        integral.row = (0..pattern.nnz()).filter(|&k| pattern.rowidx[k] == integral.state).collect();
+    let of_row: FxHashMap<usize, usize> =
+        integrals.iter().enumerate().map(|(i, integral)| (integral.state, i)).collect();
+    for column in 0..pattern.n {
+        for k in pattern.colptr[column]..pattern.colptr[column + 1] {
+            let row = pattern.rowidx[k];
+            let Some(&i) = of_row.get(&row) else { continue };
+            integrals[i].row.push(k);
+            if row == column {
+                integrals[i].entry = Some(k);
+            }
+        }
     }
     integrals
 }

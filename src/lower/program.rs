@@ -88,12 +88,6 @@ impl Defs {
         (kernel, inputs, targets)
     }
 
-    /// The definitions of one slot.
-    pub fn producing(&self, kernels: &Kernels, target: Slot) -> Defs {
-        let produces = |&i: &usize| self.get(kernels, i).2.contains(&target);
-        self.select(kernels, (0..self.items.len()).filter(produces))
-    }
-
     /// The definitions with these numbers, in this order.
     pub fn select(&self, kernels: &Kernels, chosen: impl IntoIterator<Item = usize>) -> Defs {
         let mut defs = Defs::default();

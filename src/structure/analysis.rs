@@ -8,7 +8,7 @@ use super::parameters::Known;
 use super::solve_block::BlockSolver;
 use super::sorting::{Columns, System, SystemRow};
 use super::{
-    ActionKind, Alias, Assign, Block, Dae, Selection, StateChoice, Unknown, alias, assertions, cancelling,
+    ActionKind, Alias, Assign, Block, Conserved, Dae, Selection, StateChoice, Unknown, alias, assertions, cancelling,
     closed_groups, conserved, delays, discrete, dummy_derivatives, duplicates, events, held, initial, messages,
     parameters, regularity, start_derivatives, zeros,
 };
@@ -102,11 +102,10 @@ fn run(
     blocks.sort_initial(&mut draft, &mut known, &start.system);
     let stated = conserved.iter_mut().flat_map(|c| [&mut c.quantity, &mut c.rate]);
     duplicates::share(&mut draft.exprs, &mut blocks.continuous, stated);
-    let rest = Rest { order, aliases, states: states.states.clone(), selections: chosen.selections };
+    let States { states, demoted, .. } = states;
+    let rest = Rest { order, aliases, states, demoted, selections: chosen.selections, conserved };
     let mut dae = assemble(flat, draft, blocks, rest);
     dae.chosen_starts = start.chosen;
-    dae.conserved = conserved;
-    dae.differentiated = states.demoted;
     dae.initial_checks.extend(start.checks);
     Ok((dae, further))
 }
@@ -311,7 +310,9 @@ struct Rest {
     order: Vec<VarId>,
     aliases: Vec<Alias>,
     states: Vec<VarId>,
+    demoted: Vec<VarId>,
     selections: Vec<Selection>,
+    conserved: Vec<Conserved>,
 }
 
 fn assemble(flat: &FlatModel, mut draft: Draft, blocks: Blocks, rest: Rest) -> Dae {
@@ -331,13 +332,13 @@ fn assemble(flat: &FlatModel, mut draft: Draft, blocks: Blocks, rest: Rest) -> D
         inputs: (0..flat.variables.len() as u32).map(VarId).filter(|v| flat.variables[v.index()].input).collect(),
         aliases: rest.aliases,
         states: rest.states,
-        differentiated: Vec::new(),
+        differentiated: rest.demoted,
         discrete: draft.with_role(Role::Discrete),
         continuous: blocks.continuous,
         event: blocks.event,
         initial: blocks.initial,
         selections: rest.selections,
-        conserved: Vec::new(),
+        conserved: rest.conserved,
         chosen_starts: Vec::new(),
         initial_checks,
         crossings: draft.crossings,

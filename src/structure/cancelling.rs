@@ -102,12 +102,16 @@ impl Sums {
     }
 }
 
+/// The factor of a variable in a sum; 0 where it does not occur.
+pub(super) fn factor(sum: &Sum, v: VarId) -> f64 {
+    sum.binary_search_by_key(&v, |t| t.0).map_or(0.0, |i| sum[i].1)
+}
+
 /// The only variable of a multiple of `b`, as long or longer by one, taken from `a`.
 fn single(a: &Sum, b: &Sum) -> Option<VarId> {
     if a.len() < 2 || b.len() < a.len() || b.len() > a.len() + 1 {
         return None;
     }
-    let factor = |sum: &Sum, v: VarId| sum.binary_search_by_key(&v, |t| t.0).map_or(0.0, |i| sum[i].1);
     let ratios = a.iter().map(|&(v, x)| x / factor(b, v)).filter(|r| r.is_finite());
     ratios.take(2).find_map(|ratio| {
         let all = a.iter().chain(b).map(|t| t.0);

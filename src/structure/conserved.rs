@@ -11,7 +11,7 @@
 //! the sum of their flows by the equations of the connections between them.
 
 use super::Conserved;
-use super::cancelling::{Sum, terms};
+use super::cancelling::{Sum, factor, terms};
 use super::draft::{Draft, Role, RowKind};
 use super::parameters::Known;
 use crate::expr::{ExprId, Exprs, Node, Unary, VarId};
@@ -180,11 +180,11 @@ impl Balances {
             }
         }
         // each flow in its own direction
-        let factor = |(v, sign): &(VarId, f64)| joint.iter().find(|t| t.0 == *v).map(|t| t.1 * sign);
-        let one = factor(first)?;
-        let equal = flows.iter().all(|flow| factor(flow).is_some_and(|f| (f - one).abs() <= 1e-12 * one.abs()));
+        let directed = |(v, sign): &(VarId, f64)| factor(&joint, *v) * sign;
+        let one = directed(first);
+        let equal = flows.iter().all(|flow| (directed(flow) - one).abs() <= 1e-12 * one.abs());
         let others = joint.iter().filter(|(v, _)| !wanted.contains(v)).map(|&(v, f)| (v, -f / one));
-        equal.then(|| others.collect())
+        (equal && one != 0.0).then(|| others.collect())
     }
 
     /// The rows that lead from a sum to one with `flow`, each with the variable that it shares with those before.
@@ -240,7 +240,6 @@ fn netted(mut flows: Sum) -> Sum {
 
 /// The combination of two sums in which a variable of both does not occur.
 fn without(a: &Sum, b: &Sum, shared: VarId) -> Option<Sum> {
-    let factor = |sum: &Sum, v: VarId| sum.binary_search_by_key(&v, |t| t.0).map_or(0.0, |i| sum[i].1);
     let ratio = factor(a, shared) / factor(b, shared);
     let mut all: Vec<VarId> = a.iter().chain(b).map(|t| t.0).filter(|&v| v != shared).collect();
     all.sort_unstable();

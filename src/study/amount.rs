@@ -73,11 +73,9 @@ impl Amount {
 }
 
 fn convert(own: &str, unit: &str, value: f64, difference: bool) -> Result<f64, String> {
-    let from = Unit::parse(own).map_err(|e| e.to_string())?;
-    let to = Unit::parse(unit).map_err(|e| e.to_string())?;
-    let at = |x: f64| from.convert(x, &to);
-    let converted = if difference { at(value).zip(at(0.0)).map(|(a, b)| a - b) } else { at(value) };
-    converted.ok_or_else(|| {
+    let from = Unit::parse(own).map_err(|e| e.to_string())?.meant(difference);
+    let to = Unit::parse(unit).map_err(|e| e.to_string())?.meant(difference);
+    from.convert(value, &to).ok_or_else(|| {
         let unit = if unit.is_empty() { "a pure number" } else { unit };
         format!("`{own}` cannot be converted to {unit}")
     })

@@ -6,7 +6,6 @@ use super::{InputColumn, RecordingFile, Role};
 use crate::diag::{Checked, Code, Diagnostic, Sources, Span};
 use crate::results::{Strictness, Trajectory, contradiction, number, read_csv};
 use crate::solve::Interpolation;
-use crate::units::Unit;
 use crate::world::World;
 use std::path::Path;
 
@@ -188,8 +187,7 @@ impl Loader<'_> {
         let converted: Vec<f64> = match conversion(from, to) {
             Ok(None) => values.iter().map(|v| sign * v).collect(),
             Ok(Some((own, wanted))) => {
-                let of = |unit: Unit| if difference { unit.of_difference() } else { unit };
-                let (own, wanted) = (of(own), of(wanted));
+                let (own, wanted) = (own.meant(difference), wanted.meant(difference));
                 values.iter().map(|v| sign * own.convert(*v, &wanted).unwrap_or(f64::NAN)).collect()
             }
             Err(()) => {

@@ -103,10 +103,10 @@ impl Unit {
         Some(if shift == 0.0 { scaled } else { scaled + ratio(shift, to.den, to.num, -to.decade) })
     }
 
-    /// The unit of a difference: without a zero point of its own, so that 5 degC are 5 K.
+    /// The unit of a value, or of a difference of two: that has no zero point of its own, so that 5 degC are 5 K.
     #[must_use]
-    pub fn of_difference(self) -> Unit {
-        Unit { offset: 0.0, ..self }
+    pub fn meant(self, difference: bool) -> Unit {
+        Unit { offset: if difference { 0.0 } else { self.offset }, ..self }
     }
 
     fn of(symbol: Symbol) -> Unit {

@@ -132,8 +132,7 @@ impl<'a> Instance<'a, '_> {
         let converted = match parsed {
             (Ok(from), Ok(to)) if from.dimension == to.dimension && from.offset != to.offset => {
                 match self.is_difference(i) {
-                    Some(true) => from.of_difference().convert(x, &to.of_difference()),
-                    Some(false) => from.convert(x, &to),
+                    Some(difference) => from.meant(difference).convert(x, &to.meant(difference)),
                     None => {
                         self.report(
                             Diagnostic::new(Code::BadSet, format!("`{x} {unit}` can be two values of `{name}`"))
