@@ -65,7 +65,7 @@ equation
   rho_a*port_a.q = rho*q + m_a;
   rho_b*port_b.q = -rho*q + m_b;
   rho_x*port_x.q = -m_a - m_b;
-  w_void = (oil.throttling(min(port_a.p, oil.p_l)) - oil.throttling(min(port_b.p, oil.p_l)))*oil.c_p/(1 - oil.gamma*oil.T_0) - (min(port_a.p, oil.p_l) - min(port_b.p, oil.p_l))/oil.rho_l;
+  w_void = oil.voidWork(port_a.p) - oil.voidWork(port_b.p);
   lossPower = dp*q*full + rho*q*w_void;
   annotation(Documentation(info = "<html>
 <p>Balance of the poppet <code>p_A A_A + p_B A_B = p_spring A_X + F_0 + c x + F_flow</code>, <code>A_B = (ratio - 1) A_A</code>; cross section <code>pi d sin(alpha) x</code>, flow force <code>2 C_d cos(alpha) A |dp|</code>, closing. The poppet has no mass: what it displaces must pass the throttle <code>d_x</code> to X, <code>A_X dx/dt = q_x(p_spring - p_X)</code>, and that takes far longer than its mass would.</p>

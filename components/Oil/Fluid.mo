@@ -26,6 +26,7 @@ model Fluid "Oil of the circuit: laws of density with bulk modulus and of viscos
   replaceable function thickening = Oil.Thickening.none
     constrainedby Oil.Thickening.Law "Dynamic viscosity at a pressure from that at low pressure";
   function throttling = Oil.Heat.throttling(redeclare function law = density, c_p = c_p, gamma = gamma, T_0 = T_0) "Gain of temperature from a pressure down to p_0";
+  function voidWork = Oil.Heat.voidWork(redeclare function law = density, p_l = p_l, rho_l = rho_l) "What voids add to the integral of dp/rho below p_l";
   function growth = Oil.Heat.growth(gamma = gamma, T_0 = T_0) "Volume at a temperature over that at T_0";
   Interfaces.RealInput T_in(unit = "K") if useTemperatureInput "Temperature of the oil";
   SI.Temperature T "Temperature of the oil in the circuit";

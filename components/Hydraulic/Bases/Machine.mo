@@ -120,8 +120,8 @@ equation
   rho_a*port_a.q + rho_b*port_b.q = (m_out_a + m_out_b)/(if oil.thermal then growth else 1);
   T_sh = fill*u_used*D*dp + T_loss;
   flange.tau = T_sh;
-  w_a = (oil.throttling(min(port_a.p, oil.p_l)) - oil.throttling(oil.p_l))*oil.c_p/(1 - oil.gamma*oil.T_0) - (min(port_a.p, oil.p_l) - oil.p_l)/oil.rho_l;
-  w_b = (oil.throttling(min(port_b.p, oil.p_l)) - oil.throttling(oil.p_l))*oil.c_p/(1 - oil.gamma*oil.T_0) - (min(port_b.p, oil.p_l) - oil.p_l)/oil.rho_l;
+  w_a = oil.voidWork(port_a.p);
+  w_b = oil.voidWork(port_b.p);
   lossPower = T_sh*w - Q_A*(if oil.thermal then growth else 1)*rho_a*(2*dp/(max(rho_a, oil.rho_l) + max(rho_b, oil.rho_l)) + w_a - w_b) - casePower;
   annotation(Documentation(info = "<html>
 <p>Positive speed pushes oil from B to A. With <code>dp = p_A - p_B</code>, dp and speed of equal sign are pumping, of opposite sign motoring; a motor is the same machine.</p>

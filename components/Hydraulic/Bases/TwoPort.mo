@@ -36,7 +36,7 @@ equation
     rho = (max(rho_a, oil.rho_l) + max(rho_b, oil.rho_l))/2*full;
   end if;
   m_flow = rho*q;
-  w_void = (oil.throttling(min(port_a.p, oil.p_l)) - oil.throttling(min(port_b.p, oil.p_l)))*oil.c_p/(1 - oil.gamma*oil.T_0) - (min(port_a.p, oil.p_l) - min(port_b.p, oil.p_l))/oil.rho_l;
+  w_void = oil.voidWork(port_a.p) - oil.voidWork(port_b.p);
   lossPower = dp*q*full + m_flow*w_void;
   rho_a*port_a.q = m_flow;
   rho_b*port_b.q = -m_flow;

@@ -5,13 +5,12 @@ function constantDensity "Textbook form: constant density and constant bulk modu
   input SI.Pressure p_v = 0 "Pressure that is not reached however far the oil is drawn apart";
   input SI.Pressure w_v(min = 1) = 1e3 "Fall of the pressure over which voids grow to e times their volume";
 protected
-  Real u "Depth below p_v over w_v; -25 where there are no voids";
   Real v_v "Volume of voids over the volume of the oil at p_0";
+  Real fall "How fast it falls with the pressure, times w_v";
 algorithm
-  u := max((p_v - p)/w_v, -25);
-  v_v := exp(min(u, 0) + 10)*(1 + max(u, 0)) - exp(-15)*(26 + u);
+  (v_v, fall) := voids(p, p_v, w_v);
   rho := rho_0/(1 + v_v);
-  beta := 1/(1/beta_0 + (exp(min(u, 0) + 10) - exp(-15))/(w_v*(1 + v_v)));
+  beta := 1/(1/beta_0 + fall/(w_v*(1 + v_v)));
   rho_s := rho_0*exp((p - p_0)/beta_0)/(1 + v_v);
   w := (p - p_0)/rho_0 - w_v*v_v/rho_0;
   annotation(Inline = true, Documentation(info = "<html><p>Volume flows balance instead of masses, as in most textbooks: the oil that compression stores is not carried along, an error of dp/beta. For comparison with such models;
