@@ -321,7 +321,7 @@ fn mass_and_energy_of_every_circuit_balance() {
             "{}: mass {mass:.1e}, energy of a component {energy:.1e}, of the circuit {whole:.1e}, {place}",
             circuit.class
         );
-        if mass > 1e-6 {
+        if mass > 1e-9 {
             found.push(format!("{}: {mass} of the mass at {at}", circuit.class));
         }
         if energy > 1e-2 {
