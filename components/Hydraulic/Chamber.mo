@@ -23,8 +23,8 @@ equation
   p = port.p;
   v = der(flange.s);
   V = V_0 + side*A*(flange.s - s_0);
-  V_oil = noEvent(if V > V_min then V else V_min*exp(V/V_min - 1));
-  share = noEvent(if V > V_min then 1 else V_oil/V_min);
+  share = exp(min(V/V_min - 1, 0));
+  V_oil = max(V, V_min)*share;
   V_oil/air.beta*der(p) = inflow - side*A*share*v;
   flange.f = -side*A*share*(p - p_ambient);
   annotation(Documentation(info = "<html><p><code>V/beta dp/dt = q - A v</code>, force <code>A (p - p_ambient)</code>. Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, section 6.1. Below <code>V_min</code> the oil keeps the volume <code>V_min exp(V/V_min - 1)</code>, which never ends; the oil has one pressure throughout, so no waves. The air in the oil is frozen; <code>redeclare model Air = EntrainedAir.Dissolving</code> lets it dissolve and come out of solution with time.</p></html>"));

@@ -22,8 +22,8 @@ equation
   p = port.p;
   w = der(flange.phi);
   V = V_0 + side*D*(flange.phi - phi_0);
-  V_oil = noEvent(if V > V_min then V else V_min*exp(V/V_min - 1));
-  share = noEvent(if V > V_min then 1 else V_oil/V_min);
+  share = exp(min(V/V_min - 1, 0));
+  V_oil = max(V, V_min)*share;
   V_oil/air.beta*der(p) = inflow - side*D*share*w;
   flange.tau = -side*D*share*(p - p_ambient);
   annotation(Documentation(info = "<html><p><code>V/beta dp/dt = q - D w</code>, torque <code>D (p - p_ambient)</code>: <code>Chamber</code> with angle and torque. Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, section 6.1, with the displacement per radian instead of the area. Below <code>V_min</code> the oil keeps the volume <code>V_min exp(V/V_min - 1)</code>, which never ends; the oil has one pressure throughout, so no waves.</p></html>"));

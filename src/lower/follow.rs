@@ -5,8 +5,10 @@
 //! a step are nearly linear, takes a pressure there that belongs to another mass. So the row is `state - solution`, with
 //! the state that has this quantity: linear however the quantity bends, and in the unit of the state.
 
-/// Corrections smaller than this part of the first one, or of the state, end the search.
+/// Corrections smaller than this part of the first one, or of the state, end the search ...
 const CONTRACTED: f64 = 1e-3;
+/// ... the first kind where the last two slopes differ by less than this factor: else the correction is a guess across a bend.
+const STRAIGHT: f64 = 2.0;
 const ROUND_OFF: f64 = 1e-13;
 const MOST: u32 = 80;
 /// A step that is not bracketed is at most so many times as long as the one before.
@@ -71,13 +73,15 @@ fn rise(mut quantity: impl FnMut(f64) -> f64, wanted: f64, start: f64, there: f6
             continue;
         }
         let secant = (missing - left) / (next - x);
+        let straight = secant < STRAIGHT * *slope && *slope < STRAIGHT * secant;
         if secant > 0.0 && secant.is_finite() {
             *slope = secant;
         }
         before = (next - x).abs();
         (x, missing) = (next, left);
         step = missing / *slope;
-        if missing == 0.0 || step.abs() <= ROUND_OFF * x.abs() || step.abs() <= CONTRACTED * first.abs().min(before) {
+        let contracted = straight && step.abs() <= CONTRACTED * first.abs().min(before);
+        if missing == 0.0 || contracted || step.abs() <= ROUND_OFF * x.abs() {
             return Some(x + step);
         }
         let bracketed = low.is_finite() && high.is_finite();

@@ -17,12 +17,12 @@ algorithm
   p_s := max(p, p_v + 2*w_v);
   x := max(1 + m*(p - p_0)/beta_0, 1e-3);
   v_l := (1 - alpha_0)*x^(-1/m);
-  v_g := alpha_0*x_u*(p_0/p_s)^(1/n_g);
+  v_g := alpha_0*max(x_u, 0)*(p_0/p_s)^(1/n_g);
   v_v := exp(min((p_v - p)/w_v, 0) + 10)*(1 + max((p_v - p)/w_v, 0));
   rho := rho_0/(v_l + v_g + v_v);
   beta := (v_l + v_g + v_v)/(v_l/(beta_0*x) + v_g/(n_g*p_s) + exp(min((p_v - p)/w_v, 0) + 10)/w_v);
   w := (1 - alpha_0)*beta_0/rho_0*(if abs(m - 1) > 1e-6 then (x^(1 - 1/m) - 1)/(m - 1) else log(x))
-    + alpha_0*x_u*p_0/rho_0*(if abs(n_g - 1) > 1e-6 then ((p_s/p_0)^(1 - 1/n_g) - 1)/(1 - 1/n_g) else log(p_s/p_0)) - w_v*v_v/rho_0;
+    + alpha_0*max(x_u, 0)*p_0/rho_0*(if abs(n_g - 1) > 1e-6 then ((p_s/p_0)^(1 - 1/n_g) - 1)/(1 - 1/n_g) else log(p_s/p_0)) - w_v*v_v/rho_0;
   annotation(Inline = true, Documentation(info = "<html>
 <p>Volume of oil and of bubbles added, <code>v = (1 - alpha_0) (1 + m (p - p_0)/beta_0)^(-1/m) + alpha_0 x_u (p_0/p)^(1/n_g)</code>, the bulk modulus
 being its exact logarithmic derivative. The mass of the air is neglected. 1 % of frozen air gives 0.012, 0.196, 0.992, 1.407 and

@@ -9,7 +9,7 @@ protected
   Real u "Depth below p_v over w_v; -25 where there are no voids";
 algorithm
   u := max((p_v - p)/w_v, -25);
-  v := exp(min(u, 0) + 10)*(1 + max(u, 0)) - exp(-15)*(26 + u);
-  fall := exp(min(u, 0) + 10) - exp(-15);
+  v := max(exp(min(u, 0) + 10)*(1 + max(u, 0)) - exp(-15)*(26 + u), 0);
+  fall := max(exp(min(u, 0) + 10) - exp(-15), 0);
   annotation(Inline = true, Documentation(info = "<html><p><code>exp(10 - (p - p_v)/w_v)</code> as in <code>entrainedAir</code>, less its tangent 25 <code>w_v</code> above <code>p_v</code>: from there on, 25 kPa, there are none. As much as the oil at 10 kPa, twenty thousand times as much at <code>p_v</code>, and linear below. Source: regularisation of an empty space.</p></html>"));
 end voids;
