@@ -1,5 +1,6 @@
-//! Relations that time alone changes between events: where they change next is known ahead of the integrator, whose steps
-//! may be longer than a peak.
+//! Relations that time alone changes between events: where they change next, and where they change back, is known ahead of
+//! the integrator. Its steps may be longer than a peak; it must not step over both ends of one. One end it sees by itself,
+//! so steps that are short enough stay what they are.
 //!
 //! Bounds of the difference of both sides, and of its slope, over a stretch of time tell whether it can have a zero there;
 //! where it can, the stretch is halved, down to the rounding of time. So no change is missed. Where a function has no
@@ -27,6 +28,8 @@ const PIECES_PER_CHANGE: u64 = 1000;
 const SAMPLES: f64 = 10_000.0;
 /// The same between two known events.
 const FEWEST: f64 = 8.0;
+/// Where in a peak the integrator must not pass without having seen its beginning: near its end, to disturb few steps.
+const WITHIN: f64 = 0.9;
 /// Steps towards the top of a hump.
 const TOWARDS_TOP: u32 = 20;
 
@@ -51,10 +54,12 @@ struct Watched {
     shift: f64,
     /// What is known begins here.
     from: f64,
-    /// No change before this time.
-    clear: f64,
     /// The next change, once it is found.
-    next: Option<f64>,
+    change: Option<f64>,
+    /// No change before this time, or no change back.
+    clear: f64,
+    /// Between the change and the one back, once both are found.
+    within: Option<f64>,
     /// Stretches that may still be looked at.
     pieces: u64,
 }
@@ -72,8 +77,8 @@ impl<'a> Foresight<'a> {
         Foresight { functions: &system.dae.exprs.functions, watched: watched.collect(), span: span.abs() }
     }
 
-    /// The first change after `t`, or `until` if there is none before, with the values and sides as an event has left
-    /// them.
+    /// The first time after `t` that must not be passed without an event, within a peak; `until` if there is none before.
+    /// `roots` and `values` are as the last event has left them.
     pub fn next(&mut self, roots: &RootFunctions, values: &[f64], t: f64, until: f64) -> f64 {
         let mut first = until;
         for watched in &mut self.watched {
@@ -83,59 +88,69 @@ impl<'a> Foresight<'a> {
         first
     }
 
-    /// Notes in which directions root functions change at `t`; whether any does.
+    /// Notes in which directions root functions have changed at `t`; whether any has.
     pub fn note(&self, t: f64, count: usize, directions: &mut Vec<i32>) -> bool {
-        let mut due = self.watched.iter().filter(|w| w.next.is_some_and(|next| next <= t || same_time(next, t)));
-        let any = due.clone().next().is_some();
-        if any {
+        let due = self.watched.iter().filter(|w| w.within.is_some_and(|within| reached(within, t)));
+        let mut any = false;
+        for watched in due {
+            any = true;
             directions.resize(count, 0);
-            due.by_ref().for_each(|w| directions[w.root] = if w.shift > 0.0 { -1 } else { 1 });
+            directions[watched.root] = if watched.shift > 0.0 { -1 } else { 1 };
         }
         any
     }
 }
 
+fn reached(at: f64, t: f64) -> bool {
+    at <= t || same_time(at, t)
+}
+
 impl Watched {
     fn new(root: usize, tape: Tape) -> Self {
         let pieces = if tape.bounded { PIECES } else { 0 };
-        Watched { root, tape, held: Vec::new(), shift: 0.0, from: 0.0, clear: 0.0, next: None, pieces }
+        let (shift, from, clear) = (0.0, 0.0, 0.0);
+        Watched { root, tape, held: Vec::new(), shift, from, clear, change: None, within: None, pieces }
     }
 
     /// Keeps what is known while it holds: the side and the values at events have not changed.
     fn look(&mut self, shift: f64, values: &[f64], t: f64) {
-        let passed = self.next.is_some_and(|next| next <= t || same_time(next, t));
+        let passed = self.change.is_some_and(|change| reached(change, t));
         let same = self.shift.signum() == shift.signum() && self.held.len() == self.tape.held.len();
         let held = || self.tape.held.iter().map(|&slot| values[slot]);
         if same && !passed && self.from <= t && held().zip(&self.held).all(|(now, then)| now == *then) {
             return;
         }
         self.held = held().collect();
-        (self.shift, self.from, self.clear, self.next) = (shift, t, t, None);
+        (self.shift, self.from, self.clear) = (shift, t, t);
+        (self.change, self.within) = (None, None);
     }
 
-    /// The next change after `t` and before `until`, or infinity.
+    /// A time within the next peak after `t` that ends before `until`, or infinity.
     fn next(&mut self, functions: &[Function], span: f64, t: f64, until: f64) -> f64 {
-        if self.next.is_none() && self.clear < until && until.is_finite() {
-            let clear = self.clear.max(t);
-            let from = clear + 2.0 * SHORTEST * clear.abs().max(SHORTEST_OF_RUN / SHORTEST * span);
-            let mut search = Search {
-                tape: &self.tape,
-                functions,
-                held: &self.held,
-                shift: self.shift,
-                span,
-                values: Vec::new(),
-                bounds: Vec::new(),
-            };
-            if from < until {
-                self.next = search.first(from, until, &mut self.pieces);
-            }
-            self.clear = self.next.unwrap_or(until);
-            if self.next.is_some() && self.tape.bounded && self.pieces > 0 {
-                self.pieces += PIECES_PER_CHANGE;
+        while self.within.is_none() && self.clear < until && until.is_finite() {
+            self.clear = self.clear.max(t);
+            match (self.search(functions, span, until), self.change) {
+                (None, _) => self.clear = until,
+                (Some(change), None) => (self.change, self.clear) = (Some(change), change),
+                (Some(back), Some(change)) => self.within = Some(change + WITHIN * (back - change)),
             }
         }
-        self.next.unwrap_or(f64::INFINITY)
+        self.within.unwrap_or(f64::INFINITY)
+    }
+
+    /// The next change, or the one back, behind what is clear and not behind `until`.
+    fn search(&mut self, functions: &[Function], span: f64, until: f64) -> Option<f64> {
+        let from = self.clear + 2.0 * SHORTEST * self.clear.abs().max(SHORTEST_OF_RUN / SHORTEST * span);
+        if from >= until {
+            return None;
+        }
+        let shift = if self.change.is_none() { self.shift } else { -self.shift };
+        let (tape, held, values, bounds) = (&self.tape, &self.held, Vec::new(), Vec::new());
+        let found = Search { tape, functions, held, shift, span, values, bounds }.first(from, until, &mut self.pieces);
+        if found.is_some() && self.pieces > 0 {
+            self.pieces += PIECES_PER_CHANGE;
+        }
+        found
     }
 }
 

@@ -50,7 +50,7 @@ impl<'a> Driver<'a, '_> {
         known.min(self.ida().equations().playback.next_jump(t))
     }
 
-    /// Where the integrator must stop next: an event, a relation of time that changes, a bend of an input, the end.
+    /// Where the integrator must stop next: an event, a peak of a function of time, a bend of an input, the end.
     pub(super) fn next_stop(&mut self) -> f64 {
         let t = self.t;
         let kink = self.ida().equations().playback.next_kink(t);
@@ -127,7 +127,7 @@ impl<'a> Driver<'a, '_> {
         }
     }
 
-    /// Whether a relation of time changes where the integrator stands; notes which.
+    /// Whether a relation of time has changed, unseen, where the integrator stands; notes which.
     fn changes_by_time(&mut self) -> bool {
         let count = self.ida().equations().roots.len();
         self.foresight.note(self.t, count, &mut self.roots)

@@ -2,7 +2,7 @@
 
 use super::bounds::{Bounds, Span};
 use crate::expr::function::Function;
-use crate::expr::{Binary, ExprId, FunctionId, Node, Rel, Unary, VarId, math};
+use crate::expr::{Binary, ExprId, Exprs, FunctionId, Node, Rel, Unary, VarId, math};
 use crate::lower::System;
 use crate::structure::{Assign, Block, Unknown};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -99,6 +99,12 @@ impl<'a> Writer<'a> {
         let columns = system.columns.iter().map(|c| c.variable);
         let mut moving: FxHashSet<VarId> =
             dae.inputs.iter().chain(&dae.states).copied().chain(columns).chain(delayed).collect();
+        // parameters that an analysis has made states stand still
+        let still = dae.continuous.iter().filter_map(|block| match block {
+            Block::Assign(Assign { unknown: Unknown::Der(v), value: Exprs::ZERO, .. }) => Some(v),
+            _ => None,
+        });
+        still.for_each(|v| _ = moving.remove(v));
         let mut formulas = FxHashMap::default();
         for block in &dae.continuous {
             match block {
