@@ -108,7 +108,8 @@ fn reached(at: f64, t: f64) -> bool {
 impl Watched {
     fn new(root: usize, tape: Tape) -> Self {
         let pieces = if tape.bounded { PIECES } else { 0 };
-        let (shift, from, clear) = (0.0, 0.0, 0.0);
+        // of no side yet
+        let (shift, from, clear) = (f64::NAN, 0.0, 0.0);
         Watched { root, tape, held: Vec::new(), shift, from, clear, change: None, within: None, pieces }
     }
 

@@ -4,7 +4,7 @@
 //! narrow(1) = 1
 //! root(1) = 1
 //! called(1) = 1
-model M "Single bells in a long run: 0.2 ms, 2 ns and a cusp"
+model M "Single bells away from the steps: of 0.2 ms, of 2 ns, a cusp and one without bounds"
   function bell "Too much for bounds: its top is found from samples"
     input Real t;
     output Real y;
@@ -15,9 +15,9 @@ model M "Single bells in a long run: 0.2 ms, 2 ns and a cusp"
     while a < 1 loop
       a := a + 1;
     end while;
-    y := a/(1 + ((t - 0.7)/1e-4)^2);
+    y := a/(1 + ((t - 0.70113)/1e-4)^2);
   end bell;
-  Real u = exp(-((time - 0.5)/1e-4)^2);
+  Real u = exp(-((time - 0.50123)/1e-4)^2);
   Real x(start = 0, fixed = true) "2e-4 s sqrt(log(2)), in ten thousandths of a second";
   Integer n(start = 0, fixed = true);
   Integer narrow(start = 0, fixed = true);
@@ -28,10 +28,10 @@ equation
   when u > 0.5 then
     n = pre(n) + 1;
   end when;
-  when exp(-((time - 0.3)/1e-9)^2) > 0.5 then
+  when exp(-((time - 0.30117)/1e-9)^2) > 0.5 then
     narrow = pre(narrow) + 1;
   end when;
-  when sqrt(noEvent(abs(time - 0.6))) < 1e-4 then
+  when sqrt(noEvent(abs(time - 0.60091))) < 1e-4 then
     root = pre(root) + 1;
   end when;
   when bell(time) > 0.5 then
