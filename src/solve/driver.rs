@@ -11,6 +11,7 @@ mod tangents;
 use super::algebraic::{self, Algebraic};
 use super::continuity::Continuity;
 use super::events::{Events, Outcome};
+use super::foresight::Foresight;
 use super::ida::{Failure, Ida, Tolerances};
 use super::linear::Lu;
 use super::model::Model;
@@ -160,6 +161,8 @@ pub struct Driver<'a, 'c> {
     t: f64,
     /// The next time at which a relation of time changes.
     next_crossing: f64,
+    /// Other relations of time.
+    foresight: Foresight<'a>,
     roots: Vec<i32>,
     statistics: Statistics,
     diagnostics: Vec<Diagnostic>,
@@ -270,6 +273,7 @@ fn prepare<'a, 'c>(
     let asked = settings.tangents.as_ref().filter(|_| !system.columns.is_empty());
     let carried = asked.map(|asked| Box::new(Carried::new(system, asked, &settings.wanted, restart.nominal())));
     let directions = settings.tangents.as_ref().map_or(0, |asked| asked.starts.len());
+    let roots = RootFunctions::new(system);
     let driver = Driver {
         carried,
         last_step: 0.0,
@@ -295,6 +299,7 @@ fn prepare<'a, 'c>(
         t: start,
         until: settings.stop_time,
         next_crossing: f64::INFINITY,
+        foresight: Foresight::new(system, &roots, settings.stop_time - settings.start_time),
         roots: Vec::new(),
         statistics: Statistics::default(),
         diagnostics: missed,
@@ -307,7 +312,7 @@ fn prepare<'a, 'c>(
         scales,
         modes,
     };
-    let model = Model { system, values, roots: RootFunctions::new(system), playback, trap: None, slopes: None };
+    let model = Model { system, values, roots, playback, trap: None, slopes: None };
     (driver, model, solved)
 }
 

@@ -8,6 +8,7 @@ mod checkpoint;
 mod continuity;
 pub(crate) mod driver;
 mod events;
+mod foresight;
 pub mod ida;
 mod initialize;
 mod inputs;

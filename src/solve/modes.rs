@@ -223,6 +223,11 @@ impl RootFunctions {
         self.functions[function].raw
     }
 
+    /// What is added to the difference behind a function: positive where it is watched from above.
+    pub fn shift(&self, function: usize) -> f64 {
+        self.functions[function].shift
+    }
+
     /// The unshifted differences, to be filled by the system before [`Self::write`] or [`Self::settle`].
     pub fn raw(&mut self) -> &mut [f64] {
         &mut self.raw

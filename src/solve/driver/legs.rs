@@ -50,11 +50,14 @@ impl<'a> Driver<'a, '_> {
         known.min(self.ida().equations().playback.next_jump(t))
     }
 
-    /// Where the integrator must stop next: an event, a bend of an input, the end.
+    /// Where the integrator must stop next: an event, a peak of a function of time, a bend of an input, the end.
     pub(super) fn next_stop(&mut self) -> f64 {
         let t = self.t;
         let kink = self.ida().equations().playback.next_kink(t);
-        self.next_event().min(kink).min(self.until)
+        let known = self.next_event().min(kink).min(self.until);
+        let Driver { ida, foresight, .. } = self;
+        let model = ida.as_mut().expect("made before the first step").equations();
+        foresight.next(&model.roots, &model.values, t, known)
     }
 
     /// Integrates to the next event, or the next bend of an input.
@@ -99,7 +102,7 @@ impl<'a> Driver<'a, '_> {
                     self.roots.clear();
                     return if event <= to || same_time(event, to) {
                         self.event(Cause::Time)
-                    } else if self.crosses_at_the_end() {
+                    } else if self.changes_by_time() | self.crosses_at_the_end() {
                         self.event(Cause::Root)
                     } else {
                         self.pass_kink()
@@ -122,6 +125,12 @@ impl<'a> Driver<'a, '_> {
                 }
             }
         }
+    }
+
+    /// Whether a relation of time has changed, unseen, where the integrator stands; notes which.
+    fn changes_by_time(&mut self) -> bool {
+        let count = self.ida().equations().roots.len();
+        self.foresight.note(self.t, count, &mut self.roots)
     }
 
     /// Whether something crosses where the run ends, but for the error of the solution, which decides by chance on which
