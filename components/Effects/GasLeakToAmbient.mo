@@ -5,5 +5,5 @@ model GasLeakToAmbient "Gas that leaks to the surroundings through a narrow gap"
   parameter SI.AbsolutePressure p_0 = 101325 "Pressure of the surroundings";
 equation
   m_flow = G*(p - p_0);
-  annotation(__bramah(family = "external_leak", id = "E38", coefficients = {"G"}));
+  annotation(__bramah(family = "external_leak", id = "E38", coefficients = {"G"}, surroundings = "p_0"));
 end GasLeakToAmbient;

@@ -5,5 +5,5 @@ model LeakToAmbient "Laminar leakage to the surroundings"
   parameter SI.Pressure p_0 = 1e5 "Pressure of the surroundings";
 equation
   q = G*(p - p_0);
-  annotation(__bramah(family = "external_leak", id = "E38", coefficients = {"G"}, without = "Drain"));
+  annotation(__bramah(family = "external_leak", id = "E38", coefficients = {"G"}, surroundings = "p_0", without = "Drain"));
 end LeakToAmbient;

@@ -128,5 +128,6 @@ def diagnose(
     study: str,
     data: str | None,
     effect: str | None,
+    budget: float | None,
     progress: Callable[[str], object] | None,
 ) -> tuple[str, str, str, str | None, str]: ...

@@ -44,6 +44,7 @@ def gap(
     data: str | os.PathLike[str] | None = None,
     *,
     effect: str | None = None,
+    budget: float | None = None,
     progress: bool | Callable[[str], None] = False,
 ) -> Verdict:
     """Diagnoses the gap between a model and recordings of its machine.
@@ -52,17 +53,19 @@ def gap(
         study: a study file (docs/study.md), or a `Study`.
         data: the folder of the recordings; that of the study where left out.
         effect: fit this effect alone and show it, even where the diagnosis refuses it: "Effects.SensorLag@p".
+        budget: how long the search may take, s; 60 where left out. Effects for which the time does not last are named.
         progress: True prints the stages, or a function that gets each as a text.
 
     Raises:
         Error: study, model or recordings are wrong (E601, E604, E902); the message says where and what to do.
+        ValueError: the budget is not a time above zero.
         KeyboardInterrupt: after Ctrl-C, once the stage that is running has ended.
     """
     if not callable(progress) and not isinstance(progress, bool):
         raise TypeError(f"progress is True, False or a function, not of type {type(progress).__name__}")
     files, path = _files(study)
     show = progress if callable(progress) else (_print if progress else None)
-    return Verdict(*_bramah.diagnose(files, path, _folder(data), effect, show))
+    return Verdict(*_bramah.diagnose(files, path, _folder(data), effect, budget, show))
 
 
 def _print(stage: str) -> None:

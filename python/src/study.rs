@@ -11,6 +11,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::ops::ControlFlow;
 use std::path::Path;
+use std::time::Duration;
 
 /// Files that Python holds, over those of the disk.
 fn world(files: Vec<(String, String)>) -> Overlay<'static> {
@@ -54,16 +55,21 @@ type Found = (String, String, String, Option<String>, String);
 
 /// Diagnoses; `progress` hears of each stage.
 #[pyfunction]
-#[pyo3(signature = (files, study, data, effect, progress))]
+#[pyo3(signature = (files, study, data, effect, budget, progress))]
 pub fn diagnose(
     py: Python<'_>,
     files: Vec<(String, String)>,
     study: String,
     data: Option<String>,
     effect: Option<String>,
+    budget: Option<f64>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Found> {
     let begun = std::time::Instant::now();
+    let budget = budget.map(Duration::try_from_secs_f64).transpose().ok().filter(|b| b.is_none_or(|b| !b.is_zero()));
+    let budget = budget.ok_or_else(|| PyValueError::new_err("the budget must be a time above zero, s"))?;
+    let budget = budget.map(Duration::try_from_secs_f64).transpose().ok().filter(|b| b.is_none_or(|b| !b.is_zero()));
+    let budget = budget.ok_or_else(|| PyValueError::new_err("the budget must be a time above zero, s"))?;
     let mut stopped = None;
     let work = || -> Result<Found, Error> {
         let world = world(files);
@@ -80,7 +86,7 @@ pub fn diagnose(
                 }
             }
         };
-        let options = DiagnoseOptions { data: data.as_deref().map(Path::new), effect: effect.as_deref() };
+        let options = DiagnoseOptions { data: data.as_deref().map(Path::new), budget, effect: effect.as_deref() };
         let (mut diagnosis, sources) = diagnose_as(&world, Path::new(&study), options, &mut show)?;
         diagnosis.took(begun.elapsed().as_secs_f64());
         let json = serde_json::to_string(diagnosis.verdict()).expect("numbers and texts always serialize");

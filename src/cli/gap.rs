@@ -3,16 +3,17 @@
 use clap::Args;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use super::messages::Messages;
 use super::recorder::write_text;
 use super::{Ending, Failure, files};
 use crate::diag::{Checked, Code, Diagnostic};
-use crate::gap::Diagnosis;
 use crate::gap::hypotheses::Hypothesis;
 use crate::gap::plan::plan;
 use crate::gap::select::search::Stage;
 use crate::gap::study::{Unusable, planned, proposed, question};
+use crate::gap::{DiagnoseOptions, Diagnosis};
 use crate::study::Study;
 use crate::world::DiskWorld;
 
@@ -47,6 +48,9 @@ pub(super) struct GapArgs {
     /// What was found as one HTML page, `-` for stdout
     #[arg(long, value_name = "FILE")]
     report: Option<String>,
+    /// How long the search may take: seconds, or a time with a unit. Effects for which the time does not last are named
+    #[arg(long, value_name = "TIME", value_parser = budget, default_value = "60 s", conflicts_with_all = ["list", "plan"])]
+    budget: Option<f64>,
     /// Fit one effect at one place, as `weighed` and `--list` name them, and show it even where the diagnosis refuses it
     #[arg(long, value_name = "EFFECT@PLACE", conflicts_with_all = ["list", "plan"])]
     explain_rejected: Option<String>,
@@ -117,7 +121,9 @@ fn diagnose(args: &GapArgs, study: &Study, messages: &mut Messages) -> Result<En
         stages.say(&stage.to_string());
         ControlFlow::Continue(())
     };
-    let diagnosis = Diagnosis::new(question, held, args.explain_rejected.as_deref(), &mut show);
+    let budget = args.budget.map(Duration::from_secs_f64);
+    let options = DiagnoseOptions { data, budget, effect: args.explain_rejected.as_deref() };
+    let diagnosis = Diagnosis::new(question, held, options, &mut show);
     stages.clear();
     let mut diagnosis = diagnosis.map_err(|diagnostics| Failure { diagnostics })?;
     diagnosis.took(begun.elapsed().as_secs_f64());
@@ -143,7 +149,7 @@ impl Stages {
         let terminal = std::io::IsTerminal::is_terminal(&std::io::stderr());
         let bar = terminal.then(indicatif::ProgressBar::new_spinner);
         if let Some(bar) = &bar {
-            bar.enable_steady_tick(std::time::Duration::from_millis(200));
+            bar.enable_steady_tick(Duration::from_millis(200));
         }
         Stages { bar }
     }
@@ -178,4 +184,11 @@ fn listed(all: &[Hypothesis]) -> String {
     }
     text.push_str(&format!("{} hypotheses\n", all.len()));
     text
+}
+
+/// A time that is not nothing.
+fn budget(text: &str) -> Result<f64, String> {
+    let seconds = crate::experiment::seconds(text)?;
+    let fits = seconds > 0.0 && Duration::try_from_secs_f64(seconds).is_ok();
+    if fits { Ok(seconds) } else { Err("the budget must be a time above zero".into()) }
 }

@@ -2,6 +2,7 @@
 
 use super::fixed;
 use super::hypotheses::{Hypothesis, Place};
+use super::policy::BUDGET;
 use super::report;
 use super::select::models;
 use super::select::search::{Found, Progress, Stage, Trouble, explained, search};
@@ -15,6 +16,7 @@ use crate::world::World;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
+use std::time::Duration;
 
 /// What a diagnosis came to.
 pub struct Diagnosis<'a> {
@@ -29,6 +31,8 @@ pub struct Diagnosis<'a> {
 pub struct DiagnoseOptions<'a> {
     /// The folder of the recordings; that of the study where there is none.
     pub data: Option<&'a Path>,
+    /// How long the search may take; [`BUDGET`] where nothing is said.
+    pub budget: Option<Duration>,
     /// This effect alone is fitted, and taken even where a search would refuse it: `Effects.SensorLag@p`.
     pub effect: Option<&'a str>,
 }
@@ -81,27 +85,29 @@ pub fn diagnose_as<'a>(
         Ok(held) => held,
         Err(diagnostics) => return Err(failed(diagnostics, sources)),
     };
-    match Diagnosis::new(asked, held, options.effect, progress) {
+    match Diagnosis::new(asked, held, options, progress) {
         Ok(diagnosis) => Ok((diagnosis, sources)),
         Err(diagnostics) => Err(failed(diagnostics, sources)),
     }
 }
 
 impl<'a> Diagnosis<'a> {
-    /// Searches for what the model lacks; held recordings only confirm. With `effect`, as in `Effects.SensorLag@p`, this
-    /// effect alone is fitted, and taken even where a search would refuse it.
+    /// Searches for what the model lacks; held recordings only confirm. The folder among the options has been read already.
     ///
     /// # Errors
     /// The nominal model does not compile or cannot follow a recording, there is no such effect, or `progress` stopped it.
     pub fn new(
         question: Question<'a>,
         held: Held,
-        effect: Option<&str>,
+        options: DiagnoseOptions<'_>,
         progress: Progress<'_>,
     ) -> Result<Self, Vec<Diagnostic>> {
         let problem = &question.problem;
-        let found = match effect {
-            None => search(problem, &held.recordings, progress).map_err(said)?,
+        let found = match options.effect {
+            None => {
+                let budget = Some(options.budget.unwrap_or(Duration::from_secs_f64(BUDGET)));
+                search(problem, &held.recordings, budget, progress).map_err(said)?
+            }
             Some(asked) => {
                 let hypothesis = at(&problem.hypotheses, asked)?;
                 let found = explained(problem, &held.recordings, hypothesis, progress).map_err(said)?;

@@ -148,6 +148,8 @@ pub struct Effect {
     pub base: Vec<Quantity>,
     /// A potential that it reads, or its rate, with the two parameters that take the least and the greatest value that occurs.
     pub range: Option<Range>,
+    /// A parameter that is the pressure of the surroundings: nothing where the model counts pressures from there.
+    pub surroundings: Option<String>,
     /// Effects of one group are also tried together, with one set of coefficients.
     pub group: Option<String>,
     /// The law of which it is a form; of these one is at a place.
@@ -409,6 +411,7 @@ fn effect(found: &Found, interface: &Found, read: &Attributes<'_>, number: usize
         shapes: shapes(own, read, number, &relative)?,
         base: texts(own, "base").iter().map(|n| read.quantity(number, n)).collect::<Result<_, _>>()?,
         range: range(own, read, number)?,
+        surroundings: text(own, "surroundings"),
         group: text(own, "group"),
         law: text(own, "law"),
         free_ends: text(own, "ends").as_deref() == Some("free"),

@@ -20,12 +20,12 @@ pub const PIECES: usize = 6;
 pub const BLOCKS: usize = 24;
 /// Fewest recordings that are also left out as a whole, one at a time: with two, one half predicts the other.
 pub const WHOLE_RECORDINGS: usize = 3;
-/// Random flips of the blocks' signs: the standard error of a p-value of 0.01 is then 0.002.
-pub const FLIPS: usize = 2000;
 /// Autocorrelation below which errors count as independent; the sum over larger lags would be noise.
 pub const UNCORRELATED: f64 = 0.05;
 /// Left-out evidence by which the fit at the sensors' noise must beat the fit at the errors as they are, nats.
 pub const OTHER_WEIGHTING: f64 = 3.0;
+/// Tolerances beyond which a parameter is off: as much as one in four hundred parameters that are within theirs.
+pub const BENT: f64 = 3.0;
 /// Part by which a corrected model may leave more of the held recordings than the nominal one.
 pub const OPENS: f64 = 0.02;
 /// Least mean square of a signal that counts, as part of full scale, squared: what is below is rounding.
@@ -40,24 +40,32 @@ pub const EFFECTS: usize = 4;
 
 // The constants below say how far a search looks: with larger counts it takes longer and misses less.
 
-/// Hypotheses with parameters that are fitted after the screen, half of them by each of its criteria.
-pub const FITTED: usize = 14;
-/// And without.
-pub const FITTED_WITHOUT: usize = 2;
-/// Times as many hypotheses as are fitted take a second step before.
-pub const STEPPED: usize = 2;
+/// Time that a search may take, s: what is not fitted then is named. Halved: on slow models fewer hypotheses are weighed.
+pub const BUDGET: f64 = 60.0;
+/// Part of the time that is left which one step may take.
+pub const SHARE: f64 = 0.5;
+/// Hypotheses that are fitted between two looks at the clock.
+pub const ROUND: usize = 8;
+/// Decades up and down over which the size of an effect is looked for, at most: what its class calls usual may be a
+/// default in other units than the model's.
+pub const DECADES: i32 = 12;
+/// Sizes count that leave less than so many times what the model without the effect leaves.
+pub const SCANNED: f64 = 100.0;
+/// Part by which costs differ that are the same: there an effect is gone, or as strong as can be.
+pub const UNCHANGED: f64 = 1e-3;
+/// Sizes from which an effect is fitted.
+pub const SIZES: usize = 2;
+/// A hypothesis goes on where its first fits lower the mean square of a signal by this part: a quarter of what is worth a
+/// name.
+pub const HOPED: f64 = 0.05;
+/// Iterations of a first fit from each start; the best goes on.
+pub const ROUGH: usize = 4;
 /// Of those fitted, so many of the best are fitted again as if only the sensors' noise were left.
 pub const FRONT: usize = 4;
-/// Part of the least gain that is worth a name which a linear model must promise for a step: what bends comes to more.
-pub const HOPED: f64 = 0.25;
-/// Part of it which a step must show, or its linear model promise, for a fit: left-out data may see more of it.
-pub const PROMISED: f64 = 0.5;
-/// Starts from which each of them is fitted.
-pub const STARTS: usize = 2;
+/// Starts from which each hypothesis is fitted.
+pub const STARTS: usize = 3;
 /// Combinations of grid values that are tried as starts, at most.
 pub const GRID: usize = 12;
-/// Dampings of the screen's linear step, in parts of the diagonal: undamped it overshoots where an effect is large.
-pub const DAMPINGS: [f64; 3] = [0.0, 0.3, 3.0];
 /// Times that a model is fitted again with the weights that it left, at most.
 pub const SETTLING: usize = 3;
 /// Iterations of a fit at most.
@@ -72,3 +80,5 @@ pub const SETTLED_PART: f64 = 1e-4;
 pub const SETTLED_SQUARE: f64 = 0.02;
 /// Times that a step which gained is doubled at most: where a sensitivity falls as an effect grows, linear steps are short.
 pub const DOUBLINGS: usize = 4;
+/// Dampings of the step to the parameters without a fold, in parts of the diagonal, until one lands.
+pub const DAMPINGS: [f64; 4] = [0.0, 0.3, 3.0, 30.0];

@@ -1,7 +1,7 @@
 //! Grids of shapes fitted to what the recordings can show: times to the sampling step, thresholds to the values that
 //! occur, forms over a potential to its range, frequencies to the lines that the nominal model has not.
 
-use super::circuit::same_kind;
+use super::circuit::{Circuit, same_kind};
 use super::data::Recording;
 use super::effects::{Coefficient, Shape};
 use super::hypotheses::{Attachment, Hypothesis, Signal, Site};
@@ -20,6 +20,11 @@ const QUANTILES: [f64; 5] = [0.2, 0.4, 0.6, 0.8, 0.95];
 const USUAL: f64 = 0.995;
 /// A corner of friction is at most so wide, in parts of the greatest speed: slow machines would never leave it.
 const CORNER: f64 = 0.02;
+
+/// What is periodic is seen to come again: periods that the recordings cover, at least.
+const REPEATS: f64 = 2.0;
+/// Pressure of the surroundings, Pa.
+const ATMOSPHERE: f64 = 101_325.0;
 
 /// A variable of a port: its potential, or what flows through it.
 type Variable = (usize, bool);
@@ -45,6 +50,8 @@ pub fn fit(problem: &mut Problem<'_>) {
     let periodic = problem.hypotheses.iter().any(|h| h.shapes.iter().any(|s| s.line));
     let lines = if periodic { lines::lines(problem) } else { Vec::new() };
     let mut hypotheses = std::mem::take(&mut problem.hypotheses);
+    let attachments = hypotheses.iter_mut().flat_map(|h| &mut h.attachments);
+    attachments.for_each(|a| take_surroundings(a, &potentials, &times));
     hypotheses.retain_mut(|h| h.attachments.iter_mut().all(ranged));
     problem.hypotheses = hypotheses;
     let recordings = problem.train.len();
@@ -57,7 +64,9 @@ pub fn fit(problem: &mut Problem<'_>) {
             h.passes = Some(most);
         }
         for shape in &mut h.shapes {
-            if shape.line {
+            if let (true, Some(travel)) = (shape.order, turned(&site, &potentials, &problem.circuit)) {
+                shape.grid.retain(|n| n * travel >= REPEATS);
+            } else if shape.line {
                 shape.grid.clone_from(&lines);
             } else if shape.unit == "s" {
                 time(shape, slower.max(1.0), longest);
@@ -114,6 +123,14 @@ fn is_corner(shape: &Shape) -> bool {
     shape.grid.len() == 1 && ["rad/s", "m/s"].iter().any(|u| same_kind(&shape.unit, u))
 }
 
+/// Turns that a shaft makes in the nominal model.
+fn turned(site: &Site, potentials: &Known, circuit: &Circuit) -> Option<f64> {
+    let (Site::Node(p) | Site::Across(p, _)) = site else { return None };
+    let angle = acting(site, potentials).filter(|_| same_kind(&circuit.ports[*p].potential.unit, "rad"))?;
+    let (least, most) = angle.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, m), v| (l.min(*v), m.max(*v)));
+    Some((most - least) / std::f64::consts::TAU).filter(|t| t.is_finite())
+}
+
 /// Greatest speed at a site, of one side against the other where it has two; nothing where it stands still.
 fn fastest(site: &Site, potentials: &Known, times: &[&[f64]]) -> Option<f64> {
     speeds(&acting(site, potentials)?, times).last().copied().filter(|v| *v > 0.0)
@@ -130,8 +147,27 @@ fn acting(site: &Site, potentials: &Known) -> Option<Vec<f64>> {
 }
 
 fn compared(h: &Hypothesis) -> impl Iterator<Item = Variable> {
-    let compared = h.shapes.iter().any(|s| s.threshold || s.level || is_corner(s));
+    let compared = h.shapes.iter().any(|s| s.threshold || s.level || s.order || is_corner(s))
+        || h.attachments.iter().any(|a| surroundings(a).is_some());
     ports(&h.attachments[0].site).into_iter().filter(move |_| compared).map(|p| (p, false))
+}
+
+/// The parameter of an effect that is the pressure of the surroundings.
+fn surroundings(a: &Attachment) -> Option<&String> {
+    a.effect.as_ref()?.surroundings.as_ref()
+}
+
+/// Counts pressures from the surroundings where the model does: no machine at rest has half of them.
+fn take_surroundings(a: &mut Attachment, potentials: &Known, times: &[&[f64]]) {
+    let Some((name, pressure)) = surroundings(a).cloned().zip(acting(&a.site, potentials)) else { return };
+    let begins = times.iter().scan(0, |from, t| {
+        let first = pressure.get(*from).copied();
+        *from += t.len();
+        first
+    });
+    if begins.fold(f64::INFINITY, f64::min) < 0.5 * ATMOSPHERE {
+        a.base.push((name, "0".into()));
+    }
 }
 
 /// The variable whose range an effect takes.

@@ -139,8 +139,6 @@ pub struct Weighed {
     pub gap: Maybe,
     /// t statistic over the blocks.
     pub t: Maybe,
-    /// Chance that the best of all hypotheses does as well by accident.
-    pub chance: Maybe,
     /// Evidence, nats.
     pub evidence: Maybe,
     /// Why it was not taken.

@@ -93,6 +93,10 @@ fn open(v: &Verdict, place: Option<String>) -> String {
     };
     let signals: Vec<String> = v.open.iter().map(one).collect();
     let most = place.map_or(String::new(), |p| format!(" The place that explains most of it is {p}."));
+    if signals.is_empty() {
+        let bent = "The model follows the recordings only with parameters beyond three tolerances: they are wrong, or something";
+        return format!("{bent} is missing that no known effect names.{most}\n");
+    }
     format!("The gap stays open at {}. No known effect can be named for it.{most}\n", signals.join("; "))
 }
 

@@ -166,20 +166,26 @@ impl<'a> Planner<'a> {
     }
 
     /// Takes the conserved quantities whose rates do not hang on how fast their own states move, and takes the residuals
-    /// that give these derivatives out.
+    /// that give these derivatives out. A quantity of a further state that itself hangs on how fast the first one moves
+    /// stays: oil that carries heat is warmed by its compression, and a temperature within its tolerance is a pressure far
+    /// beyond its own.
     fn choose_conserved(&mut self) {
         let lone = |root: &Root| match root {
             Root::Residual(_, _, Unknown::Der(x), true) => Some(*x),
             _ => None,
         };
         let torn: FxHashSet<VarId> = self.roots.iter().filter_map(lone).collect();
+        let states: FxHashMap<Slot, VarId> = self.dae.states.iter().map(|&x| (slot(self.layout.var(x)), x)).collect();
         let mut taken: FxHashSet<VarId> = FxHashSet::default();
         for &c in &self.dae.conserved {
             let der = self.layout.unknown(Unknown::Der(c.state));
             let is_torn = torn.contains(&c.state);
+            let known = self.reached(c.quantity);
+            let others = known.iter().filter_map(|s| states.get(s)).filter(|x| **x != c.state);
             if !(is_torn || self.producer[der] != NOBODY)
-                || self.reaches(c.rate, der)
-                || !self.reaches(c.quantity, self.layout.var(c.state))
+                || self.reached(c.rate).contains(&slot(der))
+                || !known.contains(&slot(self.layout.var(c.state)))
+                || others.into_iter().any(|&x| self.moves_with(x, der))
             {
                 continue;
             }
@@ -192,28 +198,35 @@ impl<'a> Planner<'a> {
         self.roots.retain(|root| lone(root).is_none_or(|x| !taken.contains(&x)));
     }
 
-    /// Whether an expression depends on a slot, through explicit assignments too.
-    fn reaches(&self, e: ExprId, target: usize) -> bool {
-        let mut seen: FxHashSet<u32> = FxHashSet::default();
+    /// Whether the derivative of a state depends on a slot.
+    fn moves_with(&self, state: VarId, target: usize) -> bool {
+        let der = self.layout.unknown(Unknown::Der(state));
+        match self.producer[der] {
+            NOBODY => self.roots.iter().any(|root| match root {
+                Root::Residual(e, _, Unknown::Der(x), _) => *x == state && self.reached(*e).contains(&slot(target)),
+                _ => false,
+            }),
+            producer => self.reached(self.explicit[producer as usize].value).contains(&slot(target)),
+        }
+    }
+
+    /// The slots on which an expression depends, through explicit assignments too.
+    fn reached(&self, e: ExprId) -> FxHashSet<Slot> {
+        let mut seen: FxHashSet<Slot> = FxHashSet::default();
         let mut open = vec![e];
         let mut walk = Walk::default();
         while let Some(e) = open.pop() {
-            let mut found = false;
             walk.each(&self.dae.exprs, &[e], |_, node| {
-                if let Some(slot) = self.layout.leaf(node) {
-                    found |= slot as usize == target;
-                    let producer = self.producer[slot as usize];
-                    if producer != NOBODY && seen.insert(producer) {
-                        open.push(self.explicit[producer as usize].value);
-                    }
+                if let Some(slot) = self.layout.leaf(node)
+                    && seen.insert(slot)
+                    && self.producer[slot as usize] != NOBODY
+                {
+                    open.push(self.explicit[self.producer[slot as usize] as usize].value);
                 }
                 true
             });
-            if found {
-                return true;
-            }
         }
-        false
+        seen
     }
 
     fn find_leaves(&mut self) {

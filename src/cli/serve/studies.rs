@@ -13,8 +13,8 @@ use super::http::{Answer, Ask, Refusal};
 use super::jobs::{File, Job, Jobs, Made};
 use crate::diag::render::full;
 use crate::diag::{Code, Diagnostic, Sources};
-use crate::gap::Diagnosis;
 use crate::gap::study::{Question, Unusable, question};
+use crate::gap::{DiagnoseOptions, Diagnosis};
 use crate::plot::html;
 use crate::results::recording::column_names;
 use crate::results::{Strictness, read_csv};
@@ -262,7 +262,8 @@ pub(super) fn diagnose(folder: &Folder, ask: &Ask, uploads: &Uploads, jobs: &Job
             job.at(stage.to_string(), None);
             if job.stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
-        let mut diagnosis = Diagnosis::new(question, held, None, &mut progress).map_err(|d| full(sources, &d))?;
+        let mut diagnosis =
+            Diagnosis::new(question, held, DiagnoseOptions::default(), &mut progress).map_err(|d| full(sources, &d))?;
         diagnosis.took(job.seconds());
         let report = diagnosis.report();
         let verdict = serde_json::to_string_pretty(diagnosis.verdict()).expect("numbers and texts always serialize");

@@ -2,7 +2,7 @@
 //! depends on what is free.
 
 use super::super::data::Recording;
-use super::super::policy::{DOUBLINGS, PIECES};
+use super::super::policy::{BENT, DOUBLINGS, PIECES};
 use super::super::problem::{Assembled, Chosen};
 use super::exponential;
 use super::map::Weights;
@@ -12,7 +12,8 @@ use crate::expr::VarId;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
-use std::ops::Range;
+use std::ops::{ControlFlow, Range};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Something that may be chosen: a parameter in its tolerance, a coefficient or shape of an effect.
 #[derive(Clone, Debug, PartialEq)]
@@ -221,6 +222,11 @@ impl Candidate {
         self.coordinates.iter().zip(x).map(|(c, x)| c.distance(*x).powi(2)).sum()
     }
 
+    /// Whether a parameter is off beyond what its tolerance leaves.
+    pub fn is_bent(&self, x: &[f64]) -> bool {
+        self.coordinates.iter().zip(x).any(|(c, x)| !c.logarithm && c.distance(*x).abs() > BENT)
+    }
+
     /// Values for one recording: parameters of the others are nothing there.
     fn theta_of(&self, x: &[f64], number: Option<usize>) -> Vec<f64> {
         let mut theta = self.theta(x);
@@ -239,6 +245,7 @@ impl Candidate {
         let mut errors = vec![Vec::with_capacity(recording.len()); self.deviations.len()];
         self.run(x, recording, number, end, false, |errors_of, _| {
             errors.iter_mut().zip(errors_of).for_each(|(all, e)| all.push(*e));
+            ControlFlow::Continue(())
         })?;
         Some(errors)
     }
@@ -292,29 +299,32 @@ impl Candidate {
         self.off = other.off.iter().map(guess).collect();
     }
 
-    /// A step to a point, doubled as long as what is found there is better, within the bounds.
-    pub fn stretched<T>(
+    /// A step to a point of some cost, doubled as long as it costs less, within the bounds. `cost`: of a point, where it is
+    /// less than a bound.
+    pub fn stretched(
         &self,
         from: &[f64],
-        (mut best, mut found): (Vec<f64>, T),
-        look: &impl Fn(&[f64]) -> Option<T>,
-        is_better: impl Fn(&T, &T) -> bool,
-    ) -> (Vec<f64>, T) {
+        (mut best, mut least): (Vec<f64>, f64),
+        cost: impl Fn(&[f64], f64) -> Option<f64>,
+    ) -> Vec<f64> {
         for _ in 0..DOUBLINGS {
             let far = |((c, from), to): ((&Coordinate, &f64), &f64)| (2.0 * to - from).clamp(c.low, c.high);
             let tried: Vec<f64> = self.coordinates.iter().zip(from).zip(&best).map(far).collect();
-            match look(&tried).filter(|t| is_better(t, &found)) {
-                Some(t) => (best, found) = (tried, t),
+            match cost(&tried, least).filter(|c| *c < least) {
+                Some(c) => (best, least) = (tried, c),
                 None => break,
             }
         }
-        (best, found)
+        best
     }
 
     /// When the simulation of a train recording stops before its end, s.
     pub fn stops(&self, x: &[f64], recording: &Recording) -> Option<f64> {
         let mut sample = recording.settled();
-        let ends = self.run(x, recording, None, recording.len(), false, |_, _| sample += 1);
+        let ends = self.run(x, recording, None, recording.len(), false, |_, _| {
+            sample += 1;
+            ControlFlow::Continue(())
+        });
         ends.is_none().then(|| recording.times[sample.min(recording.len() - 1)])
     }
 
@@ -323,7 +333,40 @@ impl Candidate {
         train.par_iter().enumerate().map(|(i, r)| self.errors(x, r, Some(i))).collect()
     }
 
-    /// The same with slopes.
+    /// How the simulated signals of a train recording depend on the coordinates: samples by signals by coordinates. `None`
+    /// where the model does not reach the end.
+    pub fn slopes(&self, x: &[f64], recording: &Recording, number: usize) -> Option<Vec<f32>> {
+        let mut all = Vec::with_capacity(recording.len() * self.deviations.len() * x.len());
+        self.run(x, recording, Some(number), recording.len(), true, |_, slopes| {
+            all.extend(slopes.into_iter().flat_map(|s| s.iter()).map(|v| *v as f32));
+            ControlFlow::Continue(())
+        })?;
+        Some(all)
+    }
+
+    /// Weighed squares and the prior at a point, as far as they stay within a bound: a run ends where they pass it. `None`
+    /// there, and where the model does not reach the end of a recording.
+    pub fn cost_within(&self, x: &[f64], train: &[Recording], weights: &Weights, bound: f64) -> Option<f64> {
+        let weight: Vec<f64> = (0..weights.square.len()).map(|i| weights.weight(i)).collect();
+        let gone = AtomicU64::new(self.prior(x).to_bits());
+        let over = |own: f64| f64::from_bits(gone.load(Ordering::Relaxed)) + own > bound;
+        let one = |(number, recording): (usize, &Recording)| {
+            let mut own = 0.0;
+            self.run(x, recording, Some(number), recording.len(), false, |errors, _| {
+                let squares = errors.iter().zip(&weight).filter(|(e, _)| e.is_finite()).map(|(e, w)| w * e * e);
+                own += squares.sum::<f64>();
+                if over(own) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            })?;
+            let add = |sum: u64| Some((f64::from_bits(sum) + own).to_bits());
+            gone.fetch_update(Ordering::Relaxed, Ordering::Relaxed, add).ok()?;
+            Some(own)
+        };
+        let all: Option<Vec<f64>> = train.par_iter().enumerate().map(one).collect();
+        // summed in order, so that it does not depend on who came first
+        Some(all?.iter().sum::<f64>() + self.prior(x)).filter(|sum| *sum <= bound)
+    }
+
+    /// What it leaves of the train recordings, with slopes.
     pub fn evaluate(&self, x: &[f64], train: &[Recording]) -> Option<Evaluated> {
         let one = |(i, r): (usize, &Recording)| self.evaluate_one(x, r, i);
         let all: Option<Vec<_>> = train.par_iter().enumerate().map(one).collect();
@@ -357,6 +400,7 @@ impl Candidate {
                     into[i].add(slopes.column(i).as_slice(), *e);
                 }
             }
+            ControlFlow::Continue(())
         })?;
         Some((errors, sums, off))
     }
@@ -368,10 +412,11 @@ impl Candidate {
         let mut sums: Vec<Grouped> = self.deviations.iter().map(|_| Grouped::none(common, x.len(), groups)).collect();
         for (number, recording) in train.iter().enumerate() {
             self.run(x, recording, Some(number), recording.len(), true, |errors_of, slopes| {
-                let Some(slopes) = slopes else { return };
+                let Some(slopes) = slopes else { return ControlFlow::Continue(()) };
                 for (i, (sums, e)) in sums.iter_mut().zip(errors_of).enumerate().filter(|(_, (_, e))| e.is_finite()) {
                     sums.add(slopes.column(i).as_slice(), *e, groups);
                 }
+                ControlFlow::Continue(())
             })?;
         }
         Some(groups.iter().enumerate().map(|(k, group)| sums.iter().map(|s| s.of(k, group)).collect()).collect())
@@ -385,7 +430,7 @@ impl Candidate {
         number: Option<usize>,
         end: usize,
         slopes: bool,
-        mut at: impl FnMut(&[f64], Option<&DMatrix<f64>>),
+        mut at: impl FnMut(&[f64], Option<&DMatrix<f64>>) -> ControlFlow<()>,
     ) -> Option<Vec<f64>> {
         let theta = self.theta_of(x, number);
         let model = &self.model;
@@ -414,11 +459,11 @@ impl Candidate {
         run.along(recording, from..end.max(from + 1), |k, local, slopes| {
             // the sample at which the run begins is known
             if k == from {
-                return;
+                return ControlFlow::Continue(());
             }
             let signals = recording.signals.iter().zip(&local.outputs);
             errors.iter_mut().zip(signals).for_each(|(e, (y, simulated))| *e = y[k] - simulated);
-            at(&errors, slopes);
+            at(&errors, slopes)
         })?;
         Some(begun.off)
     }

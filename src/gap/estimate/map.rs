@@ -3,7 +3,7 @@
 //! small and independent, and the data speak about parameters too.
 
 use super::super::data::Recording;
-use super::super::policy::{ITERATIONS, LEAST, SETTLED, SETTLED_PART, SETTLED_SQUARE, TRIALS};
+use super::super::policy::{ITERATIONS, LEAST, ROUGH, SETTLED, SETTLED_PART, SETTLED_SQUARE, TRIALS};
 use super::super::problem::Chosen;
 use super::candidate::{Candidate, Coordinate, Errors, Evaluated, Products};
 use super::correlation;
@@ -102,17 +102,26 @@ impl Fit {
         let weights = first.unwrap_or_else(|| Weights::of(&evaluated.errors, full_scale));
         let mut fit = Fit { candidate, x, evaluated, weights };
         fit.candidate.off.clone_from(&fit.evaluated.off);
-        fit.descend(train);
+        fit.descend(train, ITERATIONS);
         for _ in 1..rounds {
             let mut next = fit.clone();
             next.weights = Weights::of(&fit.evaluated.errors, full_scale);
-            next.descend(train);
+            next.descend(train, ITERATIONS);
             // a weaker weight of the data may lead away from them for good
             if fit.ahead(&next) < 0.0 {
                 break;
             }
             fit = next;
         }
+        Some(fit)
+    }
+
+    /// A few iterations from a point, with given weights. `None` where the model does not reach the end of a recording.
+    pub fn rough(mut candidate: Candidate, x: Vec<f64>, train: &[Recording], weights: &Weights) -> Option<Fit> {
+        let evaluated = candidate.evaluate(&x, train)?;
+        candidate.off.clone_from(&evaluated.off);
+        let mut fit = Fit { candidate, x, evaluated, weights: weights.clone() };
+        fit.descend(train, ROUGH);
         Some(fit)
     }
 
@@ -134,9 +143,9 @@ impl Fit {
     }
 
     /// Levenberg-Marquardt with these weights.
-    fn descend(&mut self, train: &[Recording]) {
+    fn descend(&mut self, train: &[Recording], iterations: usize) {
         let mut damping = DAMPING;
-        for _ in 0..ITERATIONS {
+        for _ in 0..iterations {
             let before = self.cost();
             let squares = self.mean_squares();
             let system = self.system(|_, _| true);
@@ -146,12 +155,9 @@ impl Fit {
                 if x == self.x {
                     break;
                 }
-                let cost = |x: &[f64]| {
-                    let errors = self.candidate.all_errors(x, train)?;
-                    Some(self.weights.cost(&errors) + self.candidate.prior(x))
-                };
-                if let Some(found) = cost(&x).filter(|c| *c < before) {
-                    let (x, _) = self.candidate.stretched(&self.x, (x, found), &cost, |a, b| a < b);
+                let cost = |x: &[f64], bound| self.candidate.cost_within(x, train, &self.weights, bound);
+                if let Some(found) = cost(&x, before).filter(|c| *c < before) {
+                    let x = self.candidate.stretched(&self.x, (x, found), cost);
                     let Some(evaluated) = self.candidate.evaluate(&x, train) else { break };
                     self.candidate.off.clone_from(&evaluated.off);
                     (self.x, self.evaluated) = (x, evaluated);

@@ -7,7 +7,7 @@ use super::super::data::{Inputs, Recording};
 use super::exponential::{self, Exponential};
 use crate::analysis::local::{Local, Plan};
 use nalgebra::{DMatrix, DVector};
-use std::ops::Range;
+use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
 
 /// Halvings of a step at most.
@@ -119,12 +119,13 @@ pub struct Run<'a> {
 
 impl Run<'_> {
     /// Goes through samples of a recording; `at` sees the model at each of them, and how its signals depend on the choices
-    /// (choices by signals). It ends at the last one. `None` where the model has no value on the way.
+    /// (choices by signals), and may end it there. It ends at the last one. `None` where the model has no value on the way, or
+    /// `at` ended it.
     pub fn along(
         &mut self,
         recording: &Recording,
         samples: Range<usize>,
-        mut at: impl FnMut(usize, &Local, Option<&DMatrix<f64>>),
+        mut at: impl FnMut(usize, &Local, Option<&DMatrix<f64>>) -> ControlFlow<()>,
     ) -> Option<()> {
         let mut stepper = Stepper::new(self.sizes.len(), recording);
         let last = samples.end - 1;
@@ -139,7 +140,9 @@ impl Run<'_> {
             if let Some(slopes) = &mut self.slopes {
                 slopes.look(self.local, self.sizes);
             }
-            at(k, self.local, self.slopes.as_ref().map(|s| &s.outputs));
+            if at(k, self.local, self.slopes.as_ref().map(|s| &s.outputs)).is_break() {
+                return None;
+            }
             if k == last {
                 break;
             }
@@ -162,6 +165,7 @@ pub fn from_start(plan: &Arc<Plan>, theta: &[f64], sizes: &[f64], recording: &Re
     let mut run = Run { local: &mut local, theta, sizes, state, slopes: None };
     run.along(recording, 0..recording.len(), |_, local, _| {
         outputs.iter_mut().zip(&local.outputs).for_each(|(all, y)| all.push(*y));
+        ControlFlow::Continue(())
     })?;
     Some(outputs)
 }

@@ -7,6 +7,7 @@ use super::exponential;
 use super::simulation::{Run, Slopes};
 use crate::analysis::local::{Local, Plan};
 use nalgebra::{Cholesky, DMatrix, DVector};
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// How far states that nothing measures may be from the model's start when a recording begins, as part of their size, and
@@ -174,7 +175,7 @@ impl Valued<'_> {
         let mut cost = x.component_div(loose).norm_squared();
         let mut run = Run { local, theta: self.theta, sizes: self.sizes, state, slopes };
         run.along(recording, 0..recording.settled() + 1, |k, local, slopes| {
-            let Some(slopes) = slopes else { return };
+            let Some(slopes) = slopes else { return ControlFlow::Continue(()) };
             for (i, deviation) in self.deviations.iter().enumerate() {
                 let error = (recording.signals[i][k] - local.outputs[i]) / deviation;
                 if !error.is_finite() {
@@ -185,6 +186,7 @@ impl Valued<'_> {
                 row[width] = error;
                 exponential::add_outer(&mut gram, 1.0, &row[..n], &row);
             }
+            ControlFlow::Continue(())
         })?;
         let (state, slopes) = (run.state, run.slopes?.states);
         cost.is_finite().then_some(Beginning { state, slopes, gram, cost })

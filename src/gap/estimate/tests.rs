@@ -81,6 +81,7 @@ fn slopes_go_along() {
     run.along(&recording, 0..recording.len(), |k, _, slopes| {
         let t = recording.times[k];
         off = off.max((slopes.expect("slopes")[(0, 0)] + t / (1.0 + t).powi(2)).abs());
+        std::ops::ControlFlow::Continue(())
     })
     .expect("a trajectory");
     // slopes are those of the linearised steps, good to the curvature over one

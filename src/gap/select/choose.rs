@@ -3,11 +3,13 @@
 
 use super::super::estimate::Fit;
 use super::super::estimate::candidate::Errors;
+use super::super::policy::ALPHA;
 use super::super::problem::{Chosen, Problem};
 use super::compare::{closed, needed};
 use super::confirm::{Asked, Held};
 use super::criteria::{Criteria, Judged, Reason, Rival};
 use super::weighed::{Weighed, ahead, saved};
+use rayon::prelude::*;
 
 /// A hypothesis that was weighed in a step.
 #[derive(Clone, Debug)]
@@ -68,27 +70,21 @@ impl Chooser<'_> {
         self.problem.hypotheses[rival.hypothesis].is_shape()
     }
 
-    /// Once it is sure that something is missing, all that is worth it, what is sure first: they are compared with each other
-    /// then, not with nothing. Beside shapes, what was weighed before among more hypotheses is not sure now.
+    /// Once it is sure that something is missing, all that is worth it, best first: they are compared with each other then,
+    /// not with nothing. Beside shapes, what was weighed before among more hypotheses is not sure now.
     fn contenders(&self, before: &Before<'_>, rivals: &[Rival], judged: &[Judged]) -> Vec<usize> {
         let all = 0..rivals.len();
         let any_shape = rivals.iter().any(|r| self.is_shape(r));
-        let fresh: Vec<usize> = all.clone().filter(|&i| !any_shape || self.is_shape(&rivals[i])).collect();
-        let mut sure: Vec<usize> = fresh.iter().copied().filter(|&i| judged[i].accepted()).collect();
-        if sure.is_empty() {
-            sure = fresh.into_iter().filter(|&i| self.sure_with_held(before, &rivals[i], &judged[i])).collect();
-        }
-        if sure.is_empty() {
-            return sure;
-        }
-        let others: Vec<usize> = all.filter(|i| judged[*i].may() && !sure.contains(i)).collect();
-        [sure, others].concat()
+        let fresh = || all.clone().filter(|&i| !any_shape || self.is_shape(&rivals[i]));
+        let sure = fresh().any(|i| judged[i].accepted())
+            || fresh().any(|i| self.sure_with_held(before, &rivals[i], &judged[i]));
+        if sure { all.filter(|&i| judged[i].may()).collect() } else { Vec::new() }
     }
 
     /// The rival that is taken, with what cannot be told from it.
     pub fn choose(&self, step: usize, before: &Weighed, mut rivals: Vec<Rival>) -> Choice {
         self.sort(before, &mut rivals);
-        let judged = self.criteria.judged(before, &rivals);
+        let judged = self.criteria.judged(before, &rivals, &self.problem.train);
         let needed = needed(self.criteria.count);
         let mut reasons: Vec<Option<Reason>> =
             judged.iter().map(|j| (!j.accepted()).then(|| j.refused(needed))).collect();
@@ -96,17 +92,19 @@ impl Chooser<'_> {
         let held = if judged.iter().any(Judged::may) { self.held.left_by(&before.fit) } else { Vec::new() };
         let asked = Before { model: before, held };
         let contenders = self.contenders(&asked, &rivals, &judged);
-        contenders.iter().for_each(|&i| reasons[i] = None);
+        let any = !contenders.is_empty();
+        // what held recordings refute has beaten nobody
+        let asked_of: Vec<Option<Reason>> =
+            contenders.par_iter().map(|&i| self.unconfirmed(&asked, &rivals[i].model)).collect();
+        contenders.iter().zip(asked_of).for_each(|(&i, refuted)| reasons[i] = refuted);
+        let contenders: Vec<usize> = contenders.into_iter().filter(|&i| reasons[i].is_none()).collect();
         let is_shape = |i: usize| self.is_shape(&rivals[i]);
-        let mut order = self.criteria.order(&contenders, &rivals, &mut reasons);
+        let mut order = self.criteria.order(&contenders, &rivals, &judged, &mut reasons);
         // a shape has a coefficient for every bump: it counts where it surely leaves less than what has a name
         if !order.iter().all(|&i| is_shape(i)) {
             order.retain(|&i| !is_shape(i));
         }
-        let taken = order.iter().copied().find(|&i| {
-            reasons[i] = self.unconfirmed(&asked, &rivals[i].model);
-            reasons[i].is_none()
-        });
+        let taken = order.first().copied();
         for &i in order.iter().filter(|i| Some(**i) != taken) {
             reasons[i].get_or_insert(Reason::Alike);
         }
@@ -116,13 +114,15 @@ impl Chooser<'_> {
         };
         let trials = reasons.into_iter().enumerate().map(trial).collect();
         let Some(first) = taken else {
-            let worth = rivals.into_iter().zip(&judged).filter(|(_, j)| contenders.is_empty() && j.may());
+            let worth = rivals.into_iter().zip(&judged).filter(|(_, j)| !any && j.may());
             return Choice { trials, taken: None, undecided: worth.map(|(r, _)| r).collect() };
         };
         let (best, sensors) = (&rivals[first].model, &self.criteria.sensors);
-        let behind = |i: usize| {
+        let once = (1.0 / ALPHA).ln();
+        let behind = |&i: &usize| {
             let other = &rivals[i].model;
-            (last_cause(&other.fit), ahead(other, best, sensors))
+            let nats = ahead(other, best, sensors);
+            (nats <= once).then(|| (last_cause(&other.fit), nats))
         };
         let Judged { evidence, t, .. } = judged[first];
         let effect = Taken {
@@ -130,7 +130,7 @@ impl Chooser<'_> {
             evidence,
             t,
             closes: 1.0 - best.gap(sensors) / before.gap(sensors).max(f64::MIN_POSITIVE),
-            set: order.iter().filter(|i| **i != first).map(|&i| behind(i)).collect(),
+            set: order.iter().filter(|i| **i != first).filter_map(behind).collect(),
         };
         Choice { trials, taken: Some((best.clone(), effect)), undecided: Vec::new() }
     }

@@ -2,10 +2,11 @@
 
 use super::super::data::Recording;
 use super::super::estimate::candidate::Errors;
-use super::super::estimate::{Candidate, Fit, Weights};
+use super::super::estimate::{Candidate, Fit};
 use super::super::policy::{ACCURACY, ALPHA, DELTA, OPENS};
-use super::compare::{Sensors, evidence, gap, needed, signal_gap};
+use super::compare::{Sensors, gap, needed, signal_gap};
 use super::folds::LeftOut;
+use super::matched::evidence;
 
 /// What held recordings say of a model against the one before, nothing refitted.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,7 +48,7 @@ pub struct Held<'a> {
 impl<'a> Held<'a> {
     /// Those on which the nominal model leaves so much.
     pub fn new(recordings: &'a [Recording], nominal: &Candidate, x: &[f64], sensors: &Sensors) -> Self {
-        Held { recordings, nominal: gap(&LeftOut::of(&all(nominal, x, recordings)), sensors) }
+        Held { recordings, nominal: gap(&LeftOut::of(all(nominal, x, recordings)), sensors) }
     }
 
     /// What a model leaves of them.
@@ -60,12 +61,9 @@ impl<'a> Held<'a> {
         if self.recordings.is_empty() {
             return None;
         }
-        let (a, b) = (before, self.left_by(after));
-        let (tau_a, tau_b) = (Weights::of(a, &sensors.full_scale).tau, Weights::of(&b, &sensors.full_scale).tau);
-        let samples = |i: usize| a.iter().flat_map(|e| &e[i]).filter(|v| !v.is_nan()).count() as f64;
-        let independent: Vec<f64> = (0..sensors.noise.len()).map(|i| samples(i) / tau_a[i].max(tau_b[i])).collect();
-        let (a, b) = (LeftOut::of(a), LeftOut::of(&b));
-        let evidence = evidence(&a, &b, &independent, sensors);
+        let after = self.left_by(after);
+        let evidence = evidence(before, &after, sensors);
+        let (a, b) = (LeftOut::of(before.to_vec()), LeftOut::of(after));
         let falls = |i: usize| {
             let before = signal_gap(&a, i, sensors);
             let worth = (0.5 * DELTA * before).max(0.5 * ACCURACY * sensors.full_scale[i]);

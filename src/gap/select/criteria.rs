@@ -1,10 +1,13 @@
 //! When is a hypothesis taken? When left-out data are sure of it, it is worth a name and it opens nothing; of those, the
 //! simplest among what cannot be told apart. Everything else has its reason.
 
+use super::super::data::Recording;
 use super::super::policy::{ACCURACY, ALPHA, DELTA, NEAR, SURE};
-use super::compare::{Sensors, chances, differences, loss, needed, t_statistic};
+use super::compare::{Sensors, differences, loss, needed, t_statistic};
 use super::confirm::Asked;
-use super::weighed::{Weighed, ahead, left_by, nats, saved};
+use super::matched::{Movable, evidence, refitted};
+use super::weighed::{Weighed, ahead, left_by, saved};
+use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// A hypothesis beside the model of one step.
@@ -25,15 +28,12 @@ pub struct Rival {
 /// Why a hypothesis was not taken; printed as it is. Gaps are parts of full scale, evidence is in nats.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Reason {
-    /// It was not fitted: others come further.
-    #[error("not fitted: others leave less after a linear step")]
+    /// It was not fitted: others promised more, and the time was over.
+    #[error("not weighed: the time was over; `--budget` gives more")]
     Behind,
-    /// It was not fitted: the gap that it leaves after a linear step.
-    #[error("not fitted: a linear step leaves {0:.4} of full scale, which is not worth a name")]
-    TooLittle(f64),
-    /// Left-out data do not show that it is better: chance, evidence, and the evidence needed.
-    #[error("left-out data are not sure: chance {0:.3}, evidence {1:.1} of {2:.1} nats")]
-    NotSure(f64, f64, f64),
+    /// Left-out data do not show that it is better: evidence, and the evidence needed.
+    #[error("left-out data are not sure: evidence {0:.1} of {1:.1} nats")]
+    NotSure(f64, f64),
     /// It closes too little.
     #[error("closes less than is worth a name")]
     NotWorth,
@@ -62,8 +62,6 @@ pub enum Reason {
 pub struct Judged {
     /// t statistic over the blocks.
     pub t: f64,
-    /// Chance that the best of all hypotheses does as well by accident.
-    pub chance: f64,
     /// Evidence of left-out data and prior, nats.
     pub evidence: f64,
     /// Gap that it leaves, in parts of full scale.
@@ -98,7 +96,7 @@ impl Judged {
     /// Why it may not be taken.
     pub fn refused(&self, needed: f64) -> Reason {
         match () {
-            () if !self.sure => Reason::NotSure(self.chance, self.evidence, needed),
+            () if !self.sure => Reason::NotSure(self.evidence, needed),
             () if !self.worth => Reason::NotWorth,
             () if !self.has_size() => Reason::NoSize(self.size),
             () => Reason::Opens(self.gap / self.before),
@@ -123,19 +121,9 @@ impl Criteria {
         (0..self.first.len()).all(|i| self.least(before, i) > left(i)) && !self.is_bent(before)
     }
 
-    /// Whether a model that leaves such mean squares of the train recordings closes this part of what is worth a name.
-    pub fn may_be_worth(&self, before: &Weighed, squares: &[f64], part: f64) -> bool {
-        let gap = |square: f64, i: usize| (square - self.sensors.noise[i].powi(2)).max(0.0).sqrt();
-        let shrinks = |i: usize| {
-            let now = gap(before.fit.mean_square(i), i);
-            now - gap(squares[i], i) >= part * self.least(before, i)
-        };
-        (0..self.first.len()).any(shrinks) || self.is_bent(before)
-    }
-
     /// Whether parameters are so far off that an effect which brings them back is worth a name.
     fn is_bent(&self, before: &Weighed) -> bool {
-        before.fit.prior() > needed(self.count)
+        before.fit.prior() > needed(self.count) || before.fit.candidate.is_bent(&before.fit.x)
     }
 
     /// By how much the gap of a signal must shrink to be worth a name: by a part of what it is and was at first, and by the
@@ -145,31 +133,27 @@ impl Criteria {
         (DELTA * now).max(0.5 * DELTA * self.first[signal]).max(ACCURACY * self.sensors.full_scale[signal])
     }
 
-    /// Whether left-out data are sure of each rival, and whether it is worth a name.
-    pub fn judged(&self, before: &Weighed, rivals: &[Rival]) -> Vec<Judged> {
+    /// Whether left-out data are sure of each rival, and whether it is worth a name. Of what is not worth one the evidence is
+    /// not refined.
+    pub fn judged(&self, before: &Weighed, rivals: &[Rival], train: &[Recording]) -> Vec<Judged> {
         let (schemes, needed) = (before.left.len(), needed(self.count));
-        let mut all: Vec<Judged> = rivals.iter().map(|r| self.worth(before, r)).collect();
-        for scheme in 0..schemes {
-            let d: Vec<Vec<f64>> = rivals
-                .iter()
-                .map(|r| differences(&before.left[scheme], &r.model.left[scheme], &self.sensors))
-                .collect();
-            let chances = chances(&d);
-            for (i, judged) in all.iter_mut().enumerate() {
-                let found = nats(before, &rivals[i].model, scheme, &self.sensors);
-                judged.t = judged.t.max(t_statistic(&d[i]));
-                judged.chance = judged.chance.min(chances[i]);
-                judged.evidence = judged.evidence.max(found + saved(before, &rivals[i].model));
-            }
-        }
-        for (j, rival) in all.iter_mut().zip(rivals) {
-            // blocks do not see what a model costs of the prior
-            let by_blocks = j.chance <= ALPHA / schemes as f64 && j.evidence > 0.0;
-            let by_evidence = j.evidence > needed + (schemes as f64).ln();
-            j.sure = by_blocks || by_evidence;
-            j.plain = by_evidence && !rival.is_parameter;
-        }
-        all
+        let movable = Movable::new(before, train, &self.sensors);
+        let one = |rival: &Rival| {
+            let mut judged = self.worth(before, rival);
+            let model = &rival.model;
+            judged.t = t_statistic(&differences(&before.left[0], &model.left[0], &self.sensors));
+            let with = movable.as_ref().filter(|_| judged.worth && !judged.opens);
+            let refined =
+                with.and_then(|b| Some(refitted(b, &Movable::new(model, train, &self.sensors)?, &self.sensors)));
+            judged.evidence = refined.unwrap_or_else(|| {
+                let by = |k: usize| evidence(&before.left[k].errors, &model.left[k].errors, &self.sensors);
+                (0..schemes).map(by).fold(f64::NEG_INFINITY, f64::max) + saved(before, model)
+            });
+            judged.sure = judged.evidence > needed + (schemes as f64).ln();
+            judged.plain = judged.sure && !rival.is_parameter;
+            judged
+        };
+        rivals.par_iter().map(one).collect()
     }
 
     /// The gap of a signal must shrink, or the parameters return to their data sheet.
@@ -184,7 +168,7 @@ impl Criteria {
         let before = before.gap(&self.sensors).max(f64::MIN_POSITIVE);
         let opens = !self.alike(gap, before);
         let (t, evidence) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
-        Judged { t, chance: 1.0, evidence, gap, sure: false, plain: false, worth, size: rival.size, before, opens }
+        Judged { t, evidence, gap, sure: false, plain: false, worth, size: rival.size, before, opens }
     }
 
     /// Two models that are one for the user.
@@ -216,7 +200,13 @@ impl Criteria {
     /// The set of what cannot be told apart: those that leave hardly more than the best first, of these what leaves parameters
     /// where they are known to be, then the simplest (fewest coefficients, fewest places), then what the data prefer, then what
     /// is usual on machines.
-    pub fn order(&self, accepted: &[usize], rivals: &[Rival], reasons: &mut [Option<Reason>]) -> Vec<usize> {
+    pub fn order(
+        &self,
+        accepted: &[usize],
+        rivals: &[Rival],
+        judged: &[Judged],
+        reasons: &mut [Option<Reason>],
+    ) -> Vec<usize> {
         let Some(&best) = accepted.first() else { return Vec::new() };
         let of = |i: usize| rivals[i].model.gap(&self.sensors);
         let near = |i: usize| self.alike(of(i), of(best));
@@ -238,8 +228,10 @@ impl Criteria {
             let as_simple = set.iter().filter(|&&k| k != i && near(k) && simple(k) == simple(i));
             as_simple.map(|&k| ahead(&rivals[i].model, &rivals[k].model, &self.sensors)).fold(0.0, f64::max) > once
         };
-        let keys: BTreeMap<usize, _> =
-            set.iter().map(|&i| (i, (!near(i), bent(i), simple(i), behind(i), rivals[i].hypothesis))).collect();
+        // however simple: what is not sure itself is not preferred to the best
+        let unsure = |i: usize| i != best && !judged[i].accepted();
+        let key = |&i: &usize| (i, (!near(i), unsure(i), bent(i), simple(i), behind(i), rivals[i].hypothesis));
+        let keys: BTreeMap<usize, _> = set.iter().map(key).collect();
         set.sort_by_key(|i| keys[i]);
         set
     }

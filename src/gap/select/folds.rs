@@ -4,15 +4,22 @@
 use super::super::data::Recording;
 use super::super::estimate::Fit;
 use super::super::estimate::candidate::{Errors, piece};
-use super::super::policy::{BLOCKS, PIECES, WHOLE_RECORDINGS};
+use super::super::policy::{BLOCKS, DAMPINGS, PIECES, WHOLE_RECORDINGS};
+use std::ops::Range;
 
-/// Mean squares of left-out errors.
+/// Part by which a step that lands may leave more of the data that are not left out: of these, what comes after the last
+/// sample of the fold is not looked at.
+const LANDS: f64 = 0.05;
+
+/// Left-out errors, and their mean squares.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeftOut {
     /// Per block and signal the mean square; infinite where the simulation did not get there.
     pub squares: Vec<Vec<f64>>,
     /// Per block and signal the number of samples.
     pub samples: Vec<Vec<f64>>,
+    /// The errors themselves, by recording.
+    pub errors: Vec<Errors>,
 }
 
 impl LeftOut {
@@ -29,15 +36,11 @@ impl LeftOut {
     }
 
     /// Errors of recordings, cut into blocks of about equal length.
-    pub fn of(errors: &[Errors]) -> Self {
-        let length = |e: &Errors| e.first().map_or(0, Vec::len);
-        let all: usize = errors.iter().map(length).sum();
-        let long = (all / BLOCKS).max(1);
-        let mut left = LeftOut { squares: Vec::new(), samples: Vec::new() };
-        for e in errors {
-            let blocks = ((length(e) as f64 / long as f64).round() as usize).max(2);
-            for b in 0..blocks {
-                let range = b * length(e) / blocks..(b + 1) * length(e) / blocks;
+    pub fn of(errors: Vec<Errors>) -> Self {
+        let lengths: Vec<usize> = errors.iter().map(|e| e.first().map_or(0, Vec::len)).collect();
+        let mut left = LeftOut { squares: Vec::new(), samples: Vec::new(), errors: Vec::new() };
+        for (e, blocks) in errors.iter().zip(blocks(&lengths)) {
+            for range in blocks {
                 let one = |signal: &Vec<f64>| {
                     let known = || signal[range.clone()].iter().filter(|v| !v.is_nan());
                     let samples = known().count() as f64;
@@ -48,46 +51,133 @@ impl LeftOut {
                 left.samples.push(samples);
             }
         }
+        left.errors = errors;
         left
     }
 }
 
-/// The ways of leaving out: pieces, so that every operating point stays represented; and recordings where there are
-/// enough of them.
-pub fn schemes(train: &[Recording]) -> usize {
-    1 + usize::from(train.len() >= WHOLE_RECORDINGS)
+/// Blocks of about equal length in each of some recordings, given by their samples.
+pub fn blocks(lengths: &[usize]) -> impl Iterator<Item = impl Iterator<Item = Range<usize>>> {
+    let long = (lengths.iter().sum::<usize>() / BLOCKS).max(1);
+    lengths.iter().map(move |&length| {
+        let blocks = ((length as f64 / long as f64).round() as usize).max(2);
+        (0..blocks).map(move |b| b * length / blocks..(b + 1) * length / blocks)
+    })
 }
 
-/// The fold of a piece of a recording by a scheme: pieces go through the recordings, so that no fold is of one time only.
-fn fold(scheme: usize, recording: usize, piece: usize) -> usize {
-    if scheme == 0 { (piece + recording) % PIECES } else { recording }
+/// A way of leaving out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scheme {
+    /// Pieces, so that every operating point stays represented.
+    Pieces,
+    /// Whole recordings.
+    Recordings,
+}
+
+impl Scheme {
+    /// The fold of a piece of a recording: pieces go through the recordings, so that no fold is of one time only.
+    pub fn fold(self, recording: usize, piece: usize) -> usize {
+        match self {
+            Scheme::Pieces => (piece + recording) % PIECES,
+            Scheme::Recordings => recording,
+        }
+    }
+
+    /// How many folds there are of so many recordings.
+    pub fn folds(self, recordings: usize) -> usize {
+        match self {
+            Scheme::Pieces => PIECES,
+            Scheme::Recordings => recordings,
+        }
+    }
+}
+
+/// The ways of leaving out of so many recordings: as a whole only where there are enough of them.
+pub fn schemes(recordings: usize) -> Vec<Scheme> {
+    let whole = (recordings >= WHOLE_RECORDINGS).then_some(Scheme::Recordings);
+    [Scheme::Pieces].into_iter().chain(whole).collect()
 }
 
 /// What a fit leaves of left-out data, by every scheme.
 pub fn left_out(fit: &Fit, train: &[Recording]) -> Vec<LeftOut> {
-    (0..schemes(train)).map(|scheme| LeftOut::of(&errors(fit, train, scheme))).collect()
+    schemes(train.len()).into_iter().map(|scheme| LeftOut::of(errors(fit, train, scheme))).collect()
 }
 
-fn errors(fit: &Fit, train: &[Recording], scheme: usize) -> Vec<Errors> {
+fn errors(fit: &Fit, train: &[Recording], scheme: Scheme) -> Vec<Errors> {
     let mut all = fit.evaluated.errors.clone();
-    let folds = if scheme == 0 { PIECES } else { train.len() };
-    for k in 0..folds {
-        let system = fit.system(|recording, piece| fold(scheme, recording, piece) != k);
-        let x = system.step(&fit.candidate.coordinates, &fit.x, 0.0);
-        for (number, (own, recording)) in all.iter_mut().zip(train).enumerate() {
-            if scheme == 1 && number != k {
-                continue;
-            }
+    for k in 0..scheme.folds(train.len()) {
+        let fold = Fold { fit, train, scheme, k };
+        let found = fold.found();
+        for (number, own) in all.iter_mut().enumerate() {
             let samples = own.first().map_or(0, Vec::len);
-            let out = |s: usize| fold(scheme, number, piece(s, samples)) == k;
-            let Some(last) = (0..samples).rev().find(|s| out(*s)) else { continue };
-            let found = fit.candidate.errors_to(&x, recording, Some(number), recording.len() - samples + last + 1);
             for (i, signal) in own.iter_mut().enumerate() {
-                for (s, e) in signal.iter_mut().enumerate().filter(|(s, e)| out(*s) && !e.is_nan()) {
-                    *e = found.as_ref().map_or(f64::INFINITY, |f| f[i][s]);
+                for (s, e) in
+                    signal.iter_mut().enumerate().filter(|(s, e)| fold.out(number, *s, samples) && !e.is_nan())
+                {
+                    *e = found.as_ref().map_or(f64::INFINITY, |f| f[number][i][s]);
                 }
             }
         }
     }
     all
+}
+
+/// One fold that is left out of a fit.
+struct Fold<'a> {
+    fit: &'a Fit,
+    train: &'a [Recording],
+    scheme: Scheme,
+    k: usize,
+}
+
+impl Fold<'_> {
+    /// Whether a sample of a recording is left out.
+    fn out(&self, number: usize, sample: usize, samples: usize) -> bool {
+        self.scheme.fold(number, piece(sample, samples)) == self.k
+    }
+
+    /// Errors of all recordings as far as something of them is left out, from the least damped step that lands: on the data
+    /// that are not left out it leaves no more than the fit to all data does. `None` where no simulation gets there.
+    fn found(&self) -> Option<Vec<Errors>> {
+        let system = self.fit.system(|recording, piece| self.scheme.fold(recording, piece) != self.k);
+        let coordinates = &self.fit.candidate.coordinates;
+        let steps = DAMPINGS.into_iter().map(|d| system.step(coordinates, &self.fit.x, d));
+        let before = self.kept(&self.fit.evaluated.errors) + self.fit.candidate.prior(&self.fit.x);
+        let lands = |x: Vec<f64>| {
+            let errors = self.simulated(&x)?;
+            let cost = self.kept(&errors) + self.fit.candidate.prior(&x);
+            (cost <= before.max(f64::MIN_POSITIVE) * (1.0 + LANDS)).then_some(errors)
+        };
+        steps.into_iter().find_map(lands).or_else(|| self.simulated(&self.fit.x))
+    }
+
+    /// Errors of the recordings up to the last sample that is left out; nothing of those of which none is.
+    fn simulated(&self, x: &[f64]) -> Option<Vec<Errors>> {
+        let one = |(number, (own, recording)): (usize, (&Errors, &Recording))| {
+            let samples = own.first().map_or(0, Vec::len);
+            match (0..samples).rev().find(|s| self.out(number, *s, samples)) {
+                Some(last) => {
+                    let end = recording.len() - samples + last + 1;
+                    self.fit.candidate.errors_to(x, recording, Some(number), end)
+                }
+                None => Some(vec![Vec::new(); own.len()]),
+            }
+        };
+        self.fit.evaluated.errors.iter().zip(self.train).enumerate().map(one).collect()
+    }
+
+    /// Weighed squares of what was simulated and is not left out.
+    fn kept(&self, errors: &[Errors]) -> f64 {
+        let mut sum = 0.0;
+        for (number, (e, own)) in errors.iter().zip(&self.fit.evaluated.errors).enumerate() {
+            let samples = own.first().map_or(0, Vec::len);
+            let last = (0..samples).rev().find(|s| self.out(number, *s, samples)).map_or(0, |s| s + 1);
+            for (i, signal) in e.iter().enumerate() {
+                let kept = signal.iter().take(last).enumerate();
+                let kept = kept.filter(|(s, v)| v.is_finite() && !self.out(number, *s, samples));
+                sum += self.fit.weights.weight(i) * kept.map(|(_, v)| v * v).sum::<f64>();
+            }
+        }
+        sum
+    }
 }

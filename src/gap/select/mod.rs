@@ -1,10 +1,12 @@
 //! The judge: hypotheses are compared on data that were left out, simulated from the inputs alone.
 
 pub mod choose;
+mod clock;
 pub mod compare;
 pub mod confirm;
 pub mod criteria;
 pub mod folds;
+pub mod matched;
 pub mod models;
 pub mod rivals;
 pub mod screen;

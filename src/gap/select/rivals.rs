@@ -3,24 +3,45 @@
 use super::super::effects::Coefficient;
 use super::super::estimate::Fit;
 use super::super::hypotheses::Hypothesis;
-use super::super::policy::FRONT;
+use super::super::policy::{DELTA, FRONT, HOPED, ROUND};
 use super::super::problem::Problem;
-use super::compare::Sensors;
+use super::clock::Deadline;
+use super::compare::{needed, total_gap};
 use super::criteria::Rival;
-use super::screen::Screened;
+use super::screen::{Ground, Screened, Start};
 use super::weighed::{Weighed, at_the_noise, from_nominal, no_worse};
 use rayon::prelude::*;
 
-/// Fits from all starts, beside the model before; the front by both weightings.
-pub fn fitted(problem: &Problem<'_>, sensors: &Sensors, before: &Fit, screened: Vec<Screened>) -> Vec<Rival> {
+/// What came of fitting hypotheses.
+pub struct Fitted {
+    /// Those that were fitted.
+    pub rivals: Vec<Rival>,
+    /// Those for which the time did not last.
+    pub passed: Vec<usize>,
+}
+
+/// Fits hypotheses from all their starts, beside the model before, until the time is over; at least the first ones. The
+/// front by both weightings.
+pub fn fitted(ground: &Ground<'_>, order: Vec<Screened>, until: Deadline) -> Fitted {
+    let Ground { problem, sensors, .. } = *ground;
     let one = |(hypothesis, starts): Screened| {
-        let fits = starts.into_iter().filter_map(|s| no_worse(problem, before, s.candidate, s.x));
-        let fit = fits.reduce(Fit::better_of)?;
+        let fit = from_all(ground, needed(problem.hypotheses.len()), starts)?;
         let h = &problem.hypotheses[hypothesis];
         let (places, is_parameter) = (h.attachments.len(), h.family == "parameter");
         Some(Rival { hypothesis, places, size: 0.0, is_parameter, model: Weighed::new(problem, fit) })
     };
-    let mut rivals: Vec<Rival> = screened.into_par_iter().filter_map(one).collect();
+    let mut order = order.into_iter();
+    let mut rivals: Vec<Rival> = Vec::new();
+    loop {
+        let round: Vec<Screened> = order.by_ref().take(ROUND).collect();
+        if round.is_empty() {
+            break;
+        }
+        rivals.par_extend(round.into_par_iter().filter_map(one));
+        if until.is_over() {
+            break;
+        }
+    }
     rivals.sort_by(|a, b| a.model.gap(sensors).total_cmp(&b.model.gap(sensors)));
     let front = FRONT.min(rivals.len());
     rivals[..front].par_iter_mut().for_each(|rival| {
@@ -31,7 +52,29 @@ pub fn fitted(problem: &Problem<'_>, sensors: &Sensors, before: &Fit, screened: 
         }
     });
     rivals.par_iter_mut().for_each(|r| r.size = size(problem, &problem.hypotheses[r.hypothesis], &r.model.fit));
-    rivals
+    Fitted { rivals, passed: order.map(|s| s.0).collect() }
+}
+
+/// A few iterations from every start; where they gain anything, the fit is completed from where the cost is least, and from
+/// where the gap is if that is less by far.
+fn from_all(ground: &Ground<'_>, needed: f64, starts: Vec<Start>) -> Option<Fit> {
+    let Ground { problem, sensors, before } = *ground;
+    let rough = |s: Start| Fit::rough(s.candidate, s.x, &problem.train, &before.weights);
+    let mut all: Vec<Fit> = starts.into_iter().filter_map(rough).collect();
+    let squares = |f: &Fit| (0..sensors.noise.len()).map(|i| f.mean_square(i)).collect::<Vec<f64>>();
+    let gap = |f: &Fit| total_gap(&squares(f), sensors);
+    all.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
+    let least = |a: &Fit, b: &Fit| gap(a).total_cmp(&gap(b));
+    let other =
+        all.iter().skip(1).min_by(|a, b| least(a, b)).filter(|f| gap(f) < (1.0 - DELTA) * gap(&all[0])).cloned();
+    let falls = |f: &Fit| squares(f).iter().zip(squares(before)).any(|(now, then)| *now < (1.0 - HOPED) * then);
+    let gains = |f: &Fit| 0.5 * (before.cost() - f.cost()) > needed;
+    let best = all.into_iter().next()?;
+    if !falls(&best) && !gains(&best) && !other.as_ref().is_some_and(falls) {
+        return Some(best);
+    }
+    let completed = |f: Fit| no_worse(problem, before, f.candidate, f.x);
+    [Some(best), other].into_iter().flatten().filter_map(completed).reduce(Fit::better_of)
 }
 
 /// By how many of its standard deviations the largest free coefficient of a model's last cause differs from nothing; a

@@ -1,29 +1,24 @@
-//! All hypotheses beside a model, each from all its starts: which of them are worth a fit, and from where. What the linear
-//! model promises is looked at first, then a damped step, then a second one; each time fewer go on. What vanishes at its
-//! off value leaves the model as it is there: one run with the slopes of all of them serves them all.
+//! All hypotheses beside a model, each at all its beginnings, with what the linear model there promises: the most promising
+//! are fitted first. What vanishes at its off value leaves the model as it is there: one run with the slopes of all of them
+//! serves them all. What has no linear model at its off value is looked at over the decades where it may be.
 
 use super::super::effects::Coefficient;
 use super::super::estimate::candidate::{Errors, Products};
 use super::super::estimate::map::squares;
 use super::super::estimate::{Candidate, Fit, System};
 use super::super::hypotheses::Hypothesis;
-use super::super::policy::{DAMPINGS, FITTED, FITTED_WITHOUT, HOPED, OTHER_WEIGHTING, PROMISED, STARTS, STEPPED};
+use super::super::policy::{DECADES, OTHER_WEIGHTING, SCANNED, SIZES, STARTS, UNCHANGED};
 use super::super::problem::{Chosen, Problem};
 use super::compare::{Sensors, total_gap};
 use super::models::{self, beginnings, candidate};
 use super::weighed::at_nominal;
 use nalgebra::DVector;
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// Hypotheses in one joint run at most: its costs grow with the states by hypotheses, that of a run of its own does not.
 const TOGETHER: usize = 64;
-/// Hypotheses that are stepped before those that promise less are looked at again.
-const ROUND: usize = 8;
-
-/// Starts that are nearer in all coordinates, in their units, are one.
-const NEAR_BY: f64 = 0.1;
-
 /// A model to which hypotheses are added.
 #[derive(Clone, Copy)]
 pub struct Ground<'a> {
@@ -33,27 +28,6 @@ pub struct Ground<'a> {
     pub sensors: &'a Sensors,
     /// The model.
     pub before: &'a Fit,
-    /// Whether a model that leaves such mean squares of the signals closes a part of what is worth a name.
-    pub may_be_worth: &'a (dyn Fn(&[f64], f64) -> bool + Sync),
-}
-
-/// A start of a model with one hypothesis more.
-pub struct Start {
-    /// The model.
-    pub candidate: Candidate,
-    /// Where it begins.
-    pub x: Vec<f64>,
-    /// What it leaves there.
-    pub leaves: Leaves,
-    /// What its linear model promised to leave.
-    pub promised: Leaves,
-}
-
-impl Start {
-    /// Whether it is not where another one is, of the same hypothesis.
-    fn is_elsewhere(&self, other: &Start) -> bool {
-        self.x.iter().zip(&other.x).any(|(a, b)| (a - b).abs() > NEAR_BY)
-    }
 }
 
 /// What a model leaves of the train recordings.
@@ -67,19 +41,23 @@ pub struct Leaves {
     pub gap: f64,
 }
 
-/// What hypotheses are ranked by; half of those that are fitted are the best of each.
-type Criterion = fn(&Leaves) -> f64;
-const CRITERIA: [Criterion; 2] = [|l| l.cost, |l| l.gap];
+/// A place from which a model with one hypothesis more is fitted.
+pub struct Start {
+    /// The model.
+    pub candidate: Candidate,
+    /// Where it begins.
+    pub x: Vec<f64>,
+    /// What its linear model promises to leave.
+    pub promised: Leaves,
+}
 
-/// A hypothesis with its starts, best first.
+/// A hypothesis with its starts, the most promising first.
 pub type Screened = (usize, Vec<Start>);
 
 /// What came of all hypotheses.
 pub struct Screen {
-    /// Those worth a fit.
-    pub best: Vec<Screened>,
-    /// Those whose linear model promises too little, with the gap that it would leave, in parts of full scale.
-    pub too_little: Vec<(usize, f64)>,
+    /// In the order in which they are to be fitted.
+    pub order: Vec<Screened>,
     /// Per hypothesis that vanishes where it begins: what it would gain at its usual size, nats.
     pub visible: Vec<f64>,
 }
@@ -88,7 +66,6 @@ pub struct Screen {
 struct Begun {
     candidate: Candidate,
     x: Vec<f64>,
-    now: Leaves,
     system: System,
     promised: Leaves,
 }
@@ -98,7 +75,7 @@ type Attached = (usize, Vec<Candidate>);
 /// The same with the linear model there.
 type Beginnings = (usize, Vec<Begun>);
 
-/// The hypotheses that are worth a fit.
+/// Hypotheses in the order in which they are to be fitted.
 pub fn screened(ground: &Ground<'_>, open: &[usize]) -> Screen {
     let mut all = ground.begun(open);
     let visible = all.iter().filter_map(|(i, models)| ground.visible(*i, models)).collect();
@@ -113,19 +90,45 @@ pub fn screened(ground: &Ground<'_>, open: &[usize]) -> Screen {
         }
     }
     all.retain(|(_, models)| !models.is_empty());
-    let promises = |m: &Begun| (ground.may_be_worth)(&m.promised.squares, HOPED);
-    let (all, others): (Vec<_>, Vec<_>) = all.into_iter().partition(|(_, models)| models.iter().any(promises));
-    let gap = |(i, models): &Beginnings| (*i, models.iter().map(|m| m.promised.gap).fold(f64::INFINITY, f64::min));
-    let mut too_little: Vec<(usize, f64)> = others.iter().map(gap).collect();
-    let has_own = |b: &Beginnings| b.1[0].candidate.own > ground.before.candidate.own;
-    let (own, nothing): (Vec<_>, Vec<_>) = all.into_iter().partition(has_own);
-    let mut best = ground.best(&own, FITTED);
-    best.extend(ground.best(&nothing, FITTED_WITHOUT));
-    let shows = |l: &Leaves| (ground.may_be_worth)(&l.squares, PROMISED);
-    let (best, others): (Vec<Screened>, Vec<Screened>) =
-        best.into_iter().partition(|s| s.1.iter().any(|start| shows(&start.leaves) || shows(&start.promised)));
-    too_little.extend(others.iter().map(|s| (s.0, s.1[0].leaves.gap)));
-    Screen { best, too_little, visible }
+    let grows = |(i, models): &&mut Beginnings| vanishes(ground.h(*i), &models[0].candidate, ground.before);
+    all.par_iter_mut().filter(grows).for_each(|(_, models)| {
+        let sized = ground.of_size(&models[0]);
+        models.extend(sized);
+    });
+    Screen { order: ordered(all), visible }
+}
+
+/// The most promising first, by the weighed cost and by the gap in turn: by one of them signals count whose errors are
+/// small and white, by the other those whose errors are large.
+fn ordered(all: Vec<Beginnings>) -> Vec<Screened> {
+    let least =
+        |models: &[Begun], by: fn(&Leaves) -> f64| models.iter().map(|m| by(&m.promised)).fold(f64::INFINITY, f64::min);
+    let rank = |by: fn(&Leaves) -> f64| {
+        let mut order: Vec<usize> = (0..all.len()).collect();
+        order.sort_by(|&a, &b| least(&all[a].1, by).total_cmp(&least(&all[b].1, by)));
+        let mut rank = vec![0; all.len()];
+        order.into_iter().enumerate().for_each(|(r, i)| rank[i] = r);
+        rank
+    };
+    let (by_cost, by_gap) = (rank(|l| l.cost), rank(|l| l.gap));
+    let mut order: Vec<usize> = (0..all.len()).collect();
+    order.sort_by_key(|&i| (by_cost[i].min(by_gap[i]), by_cost[i], i));
+    let mut all: Vec<Option<Beginnings>> = all.into_iter().map(Some).collect();
+    order.into_iter().filter_map(|i| all[i].take()).map(|(i, models)| (i, starts(models))).collect()
+}
+
+/// The most promising of the beginnings of a hypothesis, by both in turn.
+fn starts(mut models: Vec<Begun>) -> Vec<Start> {
+    let mut found: Vec<Start> = Vec::new();
+    let by: [fn(&Leaves) -> f64; 2] = [|l| l.cost, |l| l.gap];
+    while found.len() < STARTS && !models.is_empty() {
+        let by = by[found.len() % by.len()];
+        let best = |a: &usize, b: &usize| by(&models[*a].promised).total_cmp(&by(&models[*b].promised));
+        let Some(k) = (0..models.len()).min_by(best) else { break };
+        let Begun { candidate, x, promised, .. } = models.swap_remove(k);
+        found.push(Start { candidate, x, promised });
+    }
+    found
 }
 
 /// Whether the model with a hypothesis is at its first values the model without it.
@@ -145,13 +148,7 @@ impl Ground<'_> {
         self.h(hypothesis).family == "parameter"
     }
 
-    /// What errors come to; `prior` in squared deviations.
-    fn leaves(&self, errors: &[Errors], prior: f64) -> Leaves {
-        let all = |i: usize| squares(errors, i);
-        self.left((0..self.sensors.noise.len()).map(all).collect(), prior)
-    }
-
-    /// The same from the sum of squares of each signal.
+    /// What sums of squares of each signal come to; `prior` in squared deviations.
     fn left(&self, sums: Vec<f64>, prior: f64) -> Leaves {
         let weights = &self.before.weights;
         let cost = sums.iter().enumerate().map(|(i, s)| weights.weight(i) * s).sum::<f64>() + prior;
@@ -181,8 +178,7 @@ impl Ground<'_> {
         let change = DVector::from_fn(x.len(), |i, _| to[i] - x[i]);
         let falls = |(i, s): (usize, &Products)| squares(errors, i) - s.gain(&change);
         let promised = self.left(sums.iter().enumerate().map(falls).collect(), candidate.prior(&to));
-        let now = self.leaves(errors, candidate.prior(&x));
-        promised.cost.is_finite().then_some(Begun { candidate, x, now, system, promised })
+        promised.cost.is_finite().then_some(Begun { candidate, x, system, promised })
     }
 
     /// What a hypothesis that vanishes where it begins would gain at its usual size, nats.
@@ -295,20 +291,75 @@ impl Ground<'_> {
     }
 
     /// A hypothesis that does not vanish where it begins.
-    fn alone(&self, hypothesis: usize, mut models: Vec<Candidate>) -> Vec<Begun> {
-        let is_whole = self.h(hypothesis).coefficients.iter().all(|c| c.whole().is_some());
-        if is_whole && models.len() > STARTS {
-            models = self.nearest(models);
-        }
-        models.into_iter().filter_map(|m| self.on_its_own(m)).collect()
+    fn alone(&self, hypothesis: usize, models: Vec<Candidate>) -> Vec<Begun> {
+        let of_any_size = |m: &Candidate| self.h(hypothesis).changes_order && !self.sized(m).is_empty();
+        let of_size = |m: Candidate| if of_any_size(&m) { self.scanned(&m, &m.model.theta) } else { vec![m] };
+        models.into_iter().flat_map(of_size).filter_map(|m| self.on_its_own(m)).collect()
     }
 
-    /// Those that come nearest to the recordings as they stand.
-    fn nearest(&self, all: Vec<Candidate>) -> Vec<Candidate> {
-        let cost = |c: &Candidate| Some(self.before.weights.cost(&c.all_errors(&c.present(), &self.problem.train)?));
-        let mut all: Vec<(f64, Candidate)> = all.into_iter().filter_map(|c| Some((cost(&c)?, c))).collect();
-        all.sort_by(|a, b| a.0.total_cmp(&b.0));
-        all.into_iter().take(STARTS).map(|(_, c)| c).collect()
+    /// Where the linear model leads from where a hypothesis vanishes, sizes of its coefficients are looked for: beyond the
+    /// first gain a step may end where the model does not come back from.
+    fn of_size(&self, begun: &Begun) -> Vec<Begun> {
+        let model = &begun.candidate;
+        let to = begun.system.step(&model.coordinates, &begun.x, 0.0);
+        let mut theta = model.model.theta.clone();
+        let sized = self.sized(model);
+        sized.iter().for_each(|&i| theta[model.coordinates[i].parameter] = model.coordinates[i].value(to[i]));
+        if sized.iter().all(|&i| to[i] == 0.0) {
+            return Vec::new();
+        }
+        self.scanned(model, &theta).into_iter().filter_map(|m| self.on_its_own(m)).collect()
+    }
+
+    /// The coordinates of a model's last cause that may be of any size above nothing.
+    fn sized(&self, model: &Candidate) -> Vec<usize> {
+        let free = |i: &usize| {
+            let c = &model.coordinates[*i];
+            !c.logarithm && c.low == 0.0 && c.high.is_infinite()
+        };
+        (self.before.x.len()..model.coordinates.len()).filter(free).collect()
+    }
+
+    /// A model with its last cause of the sizes at which it comes nearest to the recordings as it stands: decades up from
+    /// `usual` until nothing changes any more, and down until the effect is gone.
+    fn scanned(&self, model: &Candidate, usual: &[f64]) -> Vec<Candidate> {
+        let places: Vec<usize> = self.sized(model).iter().map(|&i| model.coordinates[i].parameter).collect();
+        let at = |half_decades: i32| {
+            let mut model = model.clone();
+            places.iter().for_each(|&p| model.model.theta[p] = usual[p] * 10f64.powf(0.5 * f64::from(half_decades)));
+            model
+        };
+        let off = self.before.cost();
+        let cost = |half_decades: i32| {
+            let model = at(half_decades);
+            let found = model.cost_within(&model.present(), &self.problem.train, &self.before.weights, SCANNED * off);
+            found.unwrap_or(f64::INFINITY)
+        };
+        let same = |a: f64, b: f64| (a - b).abs() <= UNCHANGED * b || a.is_infinite() && b.is_infinite();
+        let mut known = BTreeMap::from([(0, cost(0))]);
+        for up in [true, false] {
+            let mut last = known[&0];
+            for k in 1..=DECADES {
+                if !up && same(last, off) {
+                    break;
+                }
+                let next = if up { 2 * k } else { -2 * k };
+                let now = cost(next);
+                known.insert(next, now);
+                if up && same(now, last) && !same(now, off) {
+                    break;
+                }
+                last = now;
+            }
+        }
+        let least = |known: &BTreeMap<i32, f64>| known.iter().min_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |b| *b.0);
+        let best = least(&known);
+        [best - 1, best + 1].into_iter().for_each(|k| {
+            known.insert(k, cost(k));
+        });
+        let mut order: Vec<(i32, f64)> = known.into_iter().filter(|k| k.1.is_finite() && !same(k.1, off)).collect();
+        order.sort_by(|a, b| a.1.total_cmp(&b.1));
+        order.into_iter().take(SIZES).map(|(k, _)| at(k)).collect()
     }
 
     /// A model by a run of its own.
@@ -324,89 +375,4 @@ impl Ground<'_> {
         let sums = evaluated.by_signal(x.len());
         self.begin(candidate, x, &evaluated.errors, &sums)
     }
-
-    /// The best by all criteria.
-    fn best(&self, all: &[Beginnings], wanted: usize) -> Vec<Screened> {
-        let each = wanted.div_ceil(CRITERIA.len());
-        let mut found: Vec<Screened> = Vec::new();
-        for criterion in CRITERIA {
-            let stepped = self.stepped(criterion, all, STEPPED * each);
-            let mut again: Vec<Screened> = stepped.into_par_iter().map(|s| self.again(criterion, s)).collect();
-            sort(&mut again, criterion);
-            for (i, starts) in again.into_iter().take(each) {
-                match found.iter_mut().find(|f| f.0 == i) {
-                    Some((_, known)) => {
-                        // each criterion has its best start; one is enough where they are the same
-                        known.truncate(1);
-                        let other = starts.into_iter().next().filter(|s| s.is_elsewhere(&known[0]));
-                        known.extend(other);
-                    }
-                    None => found.push((i, starts)),
-                }
-            }
-        }
-        found
-    }
-
-    /// The best of one criterion after a step: the most promising are stepped first, until none promises what so many of them
-    /// have come to.
-    fn stepped(&self, criterion: Criterion, all: &[Beginnings], wanted: usize) -> Vec<Screened> {
-        let promised = |m: &Begun| criterion(&m.promised);
-        let best_of = |models: &[Begun]| models.iter().map(promised).fold(f64::INFINITY, f64::min);
-        let mut order: Vec<&Beginnings> = all.iter().collect();
-        order.sort_by(|a, b| best_of(&a.1).total_cmp(&best_of(&b.1)));
-        let mut found: Vec<Screened> = Vec::new();
-        for round in order.chunks(ROUND) {
-            let enough = |last: &Screened| best_of(&round[0].1) >= criterion(&last.1[0].leaves);
-            if found.get(wanted - 1).is_some_and(enough) {
-                break;
-            }
-            let one = |(hypothesis, models): &&Beginnings| {
-                let mut models: Vec<&Begun> = models.iter().collect();
-                models.sort_by(|a, b| promised(a).total_cmp(&promised(b)));
-                let starts = models.iter().take(STARTS).map(|m| self.step(m, criterion));
-                let mut starts: Vec<Start> = starts.collect();
-                starts.sort_by(|a, b| criterion(&a.leaves).total_cmp(&criterion(&b.leaves)));
-                (*hypothesis, starts)
-            };
-            found.par_extend(round.par_iter().map(one));
-            sort(&mut found, criterion);
-            found.truncate(wanted);
-        }
-        found
-    }
-
-    /// A second step from the best start.
-    fn again(&self, criterion: Criterion, (hypothesis, mut starts): Screened) -> Screened {
-        let first = &starts[0];
-        let next = self.at(first.candidate.clone(), first.x.clone()).map(|m| self.step(&m, criterion));
-        if let Some(next) = next.filter(|n| criterion(&n.leaves) < criterion(&first.leaves)) {
-            starts[0] = next;
-        }
-        (hypothesis, starts)
-    }
-
-    /// A model after the least damped linear step that helps, doubled as long as that helps more.
-    fn step(&self, begun: &Begun, criterion: Criterion) -> Start {
-        let Begun { candidate, x: from, now, system, promised } = begun;
-        let leaves = |x: &[f64]| {
-            let errors = candidate.all_errors(x, &self.problem.train)?;
-            Some(self.leaves(&errors, candidate.prior(x)))
-        };
-        let is_better = |a: &Leaves, b: &Leaves| criterion(a) < criterion(b);
-        let (mut x, mut best) = (from.clone(), now.clone());
-        for damping in DAMPINGS {
-            let tried = system.step(&candidate.coordinates, from, damping);
-            if let Some(found) = leaves(&tried).filter(|l| is_better(l, &best)) {
-                (x, best) = candidate.stretched(from, (tried, found), &leaves, is_better);
-                break;
-            }
-        }
-        Start { candidate: candidate.clone(), x, leaves: best, promised: promised.clone() }
-    }
-}
-
-/// Best first.
-fn sort(all: &mut [Screened], criterion: Criterion) {
-    all.sort_by(|a, b| criterion(&a.1[0].leaves).total_cmp(&criterion(&b.1[0].leaves)));
 }

@@ -7,15 +7,17 @@ use super::super::hypotheses::Hypothesis;
 use super::super::policy::{EFFECTS, SEEN};
 use super::super::problem::{Chosen, Problem, Tolerance};
 use super::choose::{Chooser, Taken, Trial};
+use super::clock::Deadline;
 use super::confirm::Held;
 use super::criteria::{Criteria, Judged, Reason, Rival};
 use super::models;
 use super::rivals::fitted;
-use super::screen::{Ground, Screened, screened};
+use super::screen::{Ground, screened};
 use super::weighed::{Weighed, ahead, left_by, settled, weighed};
 use crate::diag::Diagnostic;
 use std::fmt;
 use std::ops::ControlFlow;
+use std::time::Duration;
 
 /// A stage of the diagnosis, for progress bars.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -102,15 +104,24 @@ struct Search<'a> {
     undecided: Vec<Rival>,
     /// Shapes were worth a fit beside the last model.
     shape_says_more: bool,
+    /// When the time is over.
+    ends: Deadline,
 }
 
-/// Searches; held recordings only confirm.
+/// Searches, for so long; held recordings only confirm.
 ///
 /// # Errors
 /// [`Trouble`].
-pub fn search(problem: &Problem<'_>, held: &[Recording], progress: Progress<'_>) -> Result<Found, Trouble> {
+pub fn search(
+    problem: &Problem<'_>,
+    held: &[Recording],
+    budget: Option<Duration>,
+    progress: Progress<'_>,
+) -> Result<Found, Trouble> {
+    let ends = Deadline::after(budget);
     let mut watch = Watch { progress, stopped: false };
     let (mut search, base) = begun(problem, held, &mut watch)?;
+    search.ends = ends;
     let (mut last, mut taken) = (base.clone(), Vec::new());
     let mut shape = None;
     for step in 1..=EFFECTS + 1 {
@@ -160,8 +171,8 @@ pub fn explained(
     let (search, base) = begun(problem, held, &mut watch)?;
     watch.begin(Stage::Fit(1)).ok_or(Trouble::Stopped)?;
     let sensors = &search.chooser.criteria.sensors;
-    let ground = Ground { problem, sensors, before: &base.fit, may_be_worth: &|_, _| true };
-    let rivals = fitted(problem, sensors, &base.fit, screened(&ground, &[hypothesis]).best);
+    let ground = Ground { problem, sensors, before: &base.fit };
+    let rivals = fitted(&ground, screened(&ground, &[hypothesis]).order, Deadline::default()).rivals;
     let Some(last) = rivals.first().map(|r| r.model.clone()) else { return Ok(None) };
     let closes = 1.0 - last.gap(sensors) / base.gap(sensors).max(f64::MIN_POSITIVE);
     let trials = search.chooser.choose(1, &base, rivals).trials;
@@ -196,6 +207,7 @@ fn begun<'a>(
         passed: Vec::new(),
         undecided: Vec::new(),
         shape_says_more: false,
+        ends: Deadline::default(),
     };
     Ok((search, base))
 }
@@ -236,14 +248,8 @@ impl Search<'_> {
         watch: &mut Watch<'_>,
     ) -> Option<(Weighed, Taken)> {
         watch.begin(Stage::Screen(step))?;
-        let screened = self.screened(step, before, open);
-        watch.begin(Stage::Fit(step))?;
-        let rivals = self.fitted(&before.fit, screened);
+        let rivals = self.rivals(step, before, open, Some(watch));
         self.choose(step, before, rivals)
-    }
-
-    fn fitted(&self, before: &Fit, screened: Vec<Screened>) -> Vec<Rival> {
-        fitted(self.problem, &self.chooser.criteria.sensors, before, screened)
     }
 
     fn shapes(&self) -> Vec<usize> {
@@ -253,13 +259,12 @@ impl Search<'_> {
     /// A shape beside a model to which no effect could be added; or an effect after all, if with a shape it is sure that
     /// something is missing.
     fn shape(&mut self, step: usize, last: &Weighed) -> Option<(Weighed, Taken)> {
-        let screened = self.screened(step, last, &self.shapes());
-        self.shape_says_more = !screened.is_empty();
-        if screened.is_empty() {
+        let mut rivals = self.rivals(step, last, &self.shapes(), None);
+        self.shape_says_more = !rivals.is_empty();
+        if rivals.is_empty() {
             self.trials.append(&mut self.passed);
             return None;
         }
-        let mut rivals = self.fitted(&last.fit, screened);
         // they are weighed once: now
         let again = |t: &Trial| t.step == step && self.undecided.iter().any(|r| r.hypothesis == t.chosen.hypothesis);
         self.trials.retain(|t| !again(t));
@@ -295,28 +300,27 @@ impl Search<'_> {
         (0..self.problem.hypotheses.len()).filter(open).collect()
     }
 
-    /// The starts of the hypotheses that are worth a fit.
-    fn screened(&mut self, step: usize, before: &Weighed, open: &[usize]) -> Vec<Screened> {
+    /// The rivals of a step, each fitted.
+    fn rivals(&mut self, step: usize, before: &Weighed, open: &[usize], watch: Option<&mut Watch<'_>>) -> Vec<Rival> {
         if self.visible.is_some() && self.chooser.criteria.nothing_is_worth_it(before) {
             return Vec::new();
         }
-        let may_be_worth = |squares: &[f64], part: f64| self.chooser.criteria.may_be_worth(before, squares, part);
         let (problem, sensors) = (self.problem, &self.chooser.criteria.sensors);
-        let ground = Ground { problem, sensors, before: &before.fit, may_be_worth: &may_be_worth };
+        let ground = Ground { problem, sensors, before: &before.fit };
+        let until = self.ends.of_step();
         let screen = screened(&ground, open);
         let seen = |visible: &[f64]| visible.iter().filter(|v| **v > SEEN).count() as f64 / visible.len().max(1) as f64;
         self.visible.get_or_insert(seen(&screen.visible));
-        let reason = |i: usize| match screen.too_little.iter().find(|s| s.0 == i) {
-            _ if screen.best.iter().any(|s| s.0 == i) => None,
-            Some((_, gap)) => Some(Reason::TooLittle(*gap)),
-            None => Some(Reason::Behind),
+        if watch.is_some_and(|w| w.begin(Stage::Fit(step)).is_none()) {
+            return Vec::new();
+        }
+        let found = fitted(&ground, screen.order, until);
+        let trial = |hypothesis: usize| {
+            let chosen = Chosen { hypothesis, values: Vec::new() };
+            Trial { step, chosen, found: None, reason: Some(Reason::Behind) }
         };
-        let trial = |&i: &usize| {
-            let chosen = Chosen { hypothesis: i, values: Vec::new() };
-            Some(Trial { step, chosen, found: None, reason: Some(reason(i)?) })
-        };
-        self.passed = open.iter().filter_map(trial).collect();
-        screen.best
+        self.passed = found.passed.into_iter().map(trial).collect();
+        found.rivals
     }
 
     /// The model with the widths of everything that was taken free, where that is better.

@@ -52,7 +52,7 @@ impl Conclusion<'_> {
             () if !recording.is_empty() => "recording_error",
             () if !named.is_empty() => "effects",
             () if found.shape.is_some() => "outside_library",
-            () if !open.is_empty() => "gap_open",
+            () if !open.is_empty() || last.candidate.is_bent(&last.x) => "gap_open",
             () if found.visible < VISIBLE => "undecidable",
             () => "nothing_found",
         };
@@ -200,7 +200,6 @@ impl Conclusion<'_> {
             places: spots(h),
             gap: trial.found.map(|f| f.gap),
             t: trial.found.map(|f| f.t),
-            chance: trial.found.map(|f| f.chance),
             evidence: trial.found.map(|f| f.evidence),
             refused: trial.reason.as_ref().map(ToString::to_string),
         }
