@@ -183,7 +183,7 @@ fn judged(mut world: MemoryWorld, study: &str, train: String, held: String, aske
     let held = question.held(None, &mut sources).unwrap().recordings;
     let problem = &question.problem;
     let found = match asked {
-        None => search(problem, &held, &mut |_| ControlFlow::Continue(())),
+        None => search(problem, &held, None, &mut |_| ControlFlow::Continue(())),
         Some(class) => {
             let hypothesis = problem.hypotheses.iter().position(|h| h.effect == class).unwrap();
             explained(problem, &held, hypothesis, &mut |_| ControlFlow::Continue(())).map(Option::unwrap)
@@ -472,7 +472,7 @@ fn the_corrected_model_stands_alone_and_so_does_the_page() {
     let problem = &question.problem;
     let others = question.held(None, &mut sources).unwrap();
     let held = &others.recordings;
-    let found = search(problem, held, &mut |_| ControlFlow::Continue(())).ok().unwrap();
+    let found = search(problem, held, None, &mut |_| ControlFlow::Continue(())).ok().unwrap();
     let verdict = conclude(problem, &found, held, 0.0);
 
     let text = corrected(problem, &found.last.fit).value.unwrap();

@@ -233,7 +233,7 @@ fn diagnosed(case: &Case) -> bool {
     let Some(study) = Study::read(&world, Path::new("study.toml"), &mut sources).value else { return false };
     let Ok(question) = question(&world, &study, None, &mut sources) else { return false };
     let Ok(held) = question.held(None, &mut sources) else { return false };
-    let Ok(found) = search(&question.problem, &held.recordings, &mut |_| ControlFlow::Continue(())) else {
+    let Ok(found) = search(&question.problem, &held.recordings, None, &mut |_| ControlFlow::Continue(())) else {
         return false;
     };
     let verdict = conclude(&question.problem, &found, &held.recordings, 0.0);

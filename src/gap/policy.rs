@@ -45,7 +45,7 @@ pub const BUDGET: f64 = 60.0;
 /// Part of the time that is left which one step may take.
 pub const SHARE: f64 = 0.5;
 /// Hypotheses that are fitted between two looks at the clock.
-pub const ROUND: usize = 8;
+pub const ROUND: usize = 4;
 /// Decades up and down over which the size of an effect is looked for, at most: what its class calls usual may be a
 /// default in other units than the model's.
 pub const DECADES: i32 = 12;

@@ -1,7 +1,7 @@
 //! The verdict in words, one screen of them.
 
 use super::policy::SEEN;
-use super::verdict::{Drift, Effect, Estimate, Located, Maybe, OpenGap, SignalGap, Verdict};
+use super::verdict::{Drift, Effect, Estimate, Located, Maybe, OpenGap, RecordingError, SignalGap, Verdict};
 use std::fmt::Write;
 
 /// What the diagnosis found, for people: findings, the gap as a table, what is left.
@@ -12,12 +12,13 @@ pub fn words(v: &Verdict) -> String {
 /// Recording errors and effects, or what is said where there are none.
 pub(super) fn findings(v: &Verdict) -> String {
     let mut text = String::new();
-    for r in &v.recording {
-        let what = match r.error {
-            "sign" => "has the wrong sign".to_string(),
-            _ => format!("is {} times what it should be", number(r.value)),
+    for in_file in v.recording.chunk_by(|a, b| a.file == b.file) {
+        let what = |r: &RecordingError| match r.error {
+            "sign" => format!("`{}` has the wrong sign", r.signal),
+            _ => format!("`{}` is {} times what it should be", r.signal, number(r.value)),
         };
-        let _ = writeln!(text, "The recording `{}` is wrong: `{}` {what}.", r.file, r.signal);
+        let all: Vec<String> = in_file.iter().map(what).collect();
+        let _ = writeln!(text, "The recording `{}` is wrong: {}.", in_file[0].file, all.join(", or "));
     }
     for (i, e) in v.effects.iter().enumerate() {
         text.push_str(&effect(i, e, v.effects.len()));

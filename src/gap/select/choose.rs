@@ -70,15 +70,12 @@ impl Chooser<'_> {
         self.problem.hypotheses[rival.hypothesis].is_shape()
     }
 
-    /// Once it is sure that something is missing, all that is worth it, best first: they are compared with each other then,
-    /// not with nothing. Beside shapes, what was weighed before among more hypotheses is not sure now.
-    fn contenders(&self, before: &Before<'_>, rivals: &[Rival], judged: &[Judged]) -> Vec<usize> {
-        let all = 0..rivals.len();
+    /// Whether one of some rivals shows that something is missing: then all of them are compared with each other, not with
+    /// nothing. Beside shapes, what was weighed before among more hypotheses is not sure now.
+    fn is_sure(&self, before: &Before<'_>, some: &[usize], rivals: &[Rival], judged: &[Judged]) -> bool {
         let any_shape = rivals.iter().any(|r| self.is_shape(r));
-        let fresh = || all.clone().filter(|&i| !any_shape || self.is_shape(&rivals[i]));
-        let sure = fresh().any(|i| judged[i].accepted())
-            || fresh().any(|i| self.sure_with_held(before, &rivals[i], &judged[i]));
-        if sure { all.filter(|&i| judged[i].may()).collect() } else { Vec::new() }
+        let fresh = || some.iter().copied().filter(|&i| !any_shape || self.is_shape(&rivals[i]));
+        fresh().any(|i| judged[i].accepted()) || fresh().any(|i| self.sure_with_held(before, &rivals[i], &judged[i]))
     }
 
     /// The rival that is taken, with what cannot be told from it.
@@ -91,13 +88,19 @@ impl Chooser<'_> {
         // they are asked about what may be taken only
         let held = if judged.iter().any(Judged::may) { self.held.left_by(&before.fit) } else { Vec::new() };
         let asked = Before { model: before, held };
-        let contenders = self.contenders(&asked, &rivals, &judged);
-        let any = !contenders.is_empty();
-        // what held recordings refute has beaten nobody
-        let asked_of: Vec<Option<Reason>> =
-            contenders.par_iter().map(|&i| self.unconfirmed(&asked, &rivals[i].model)).collect();
-        contenders.iter().zip(asked_of).for_each(|(&i, refuted)| reasons[i] = refuted);
-        let contenders: Vec<usize> = contenders.into_iter().filter(|&i| reasons[i].is_none()).collect();
+        // what held recordings refute shows nothing, and has beaten nobody
+        let may: Vec<usize> = (0..rivals.len()).filter(|&i| judged[i].may()).collect();
+        let refuted: Vec<Option<Reason>> =
+            may.par_iter().map(|&i| self.unconfirmed(&asked, &rivals[i].model)).collect();
+        let confirmed: Vec<usize> =
+            may.iter().zip(&refuted).filter(|(_, refuted)| refuted.is_none()).map(|(i, _)| *i).collect();
+        let any = self.is_sure(&asked, &confirmed, &rivals, &judged);
+        for (&i, refuted) in may.iter().zip(refuted) {
+            if any || judged[i].accepted() {
+                reasons[i] = refuted;
+            }
+        }
+        let contenders = if any { confirmed } else { Vec::new() };
         let is_shape = |i: usize| self.is_shape(&rivals[i]);
         let mut order = self.criteria.order(&contenders, &rivals, &judged, &mut reasons);
         // a shape has a coefficient for every bump: it counts where it surely leaves less than what has a name

@@ -269,7 +269,11 @@ mod tests {
         fn coloured(&mut self, n: usize, kept: f64) -> Vec<f64> {
             let mut x = self.normal();
             let own = (1.0 - kept * kept).sqrt();
-            (0..n).map(|_| std::mem::replace(&mut x, kept * x + own * self.normal())).collect()
+            let mut next = || {
+                x = kept * x + own * self.normal();
+                x
+            };
+            (0..n).map(|_| next()).collect()
         }
     }
 

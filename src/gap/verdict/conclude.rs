@@ -111,15 +111,20 @@ impl Conclusion<'_> {
         }
     }
 
-    /// The mistakes of the recordings: one of a column is in every file.
+    /// The mistakes of the recordings, one of a column is in every file; with those that the data cannot tell from it.
     fn recording(&self) -> Vec<RecordingError> {
-        let mistakes = self.found.taken.iter().map(|t| self.hypothesis(t)).filter(|h| h.is_recording_error());
+        let named = self.found.taken.iter().filter(|t| self.hypothesis(t).is_recording_error());
+        let with = |t: &Taken| {
+            let others = t.set.iter().map(|(c, _)| self.of(c)).filter(|h| h.is_recording_error());
+            std::iter::once(self.hypothesis(t)).chain(others).collect::<Vec<_>>()
+        };
+        let mistakes: Vec<&Hypothesis> = named.flat_map(with).collect();
         let of_file = |h: &Hypothesis, file: &String| {
             let value = mistakes::factor(h);
             let error = if value < 0.0 { "sign" } else { "factor" };
             RecordingError { file: file.clone(), signal: h.attachments[0].place.place.clone(), error, value }
         };
-        mistakes.flat_map(|h| self.problem.files.iter().map(move |f| of_file(h, f))).collect()
+        self.problem.files.iter().flat_map(|f| mistakes.iter().map(move |h| of_file(h, f))).collect()
     }
 
     /// Effects, with what each closes of the gap within tolerances.
