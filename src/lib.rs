@@ -176,7 +176,7 @@ pub use analysis::identify::{Asked as IdentifyOptions, Identified, Method as Ide
 #[cfg(feature = "analysis")]
 pub use analysis::sensitivity::Sensitivity;
 #[cfg(feature = "gap")]
-pub use gap::{DiagnoseOptions, Diagnosis, Stage, Verdict, diagnose, diagnose_as};
+pub use gap::{Budget, DiagnoseOptions, Diagnosis, Stage, Verdict, diagnose, diagnose_as};
 
 /// Linear models, as [`Simulation::linearize`] gives them.
 #[cfg(feature = "analysis")]

@@ -5,8 +5,9 @@
 use crate::errors::raised;
 use crate::threads::pooled;
 use bramah::internals::diag::render::full;
+use bramah::internals::gap::policy::BUDGET;
 use bramah::world::{DiskWorld, MemoryWorld, Overlay};
-use bramah::{DiagnoseOptions, Error, IdentifyMethod, IdentifyOptions, Stage, diagnose_as};
+use bramah::{Budget, DiagnoseOptions, Error, IdentifyMethod, IdentifyOptions, Stage, diagnose_as};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::ops::ControlFlow;
@@ -66,10 +67,10 @@ pub fn diagnose(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Found> {
     let begun = std::time::Instant::now();
-    let budget = budget.map(Duration::try_from_secs_f64).transpose().ok().filter(|b| b.is_none_or(|b| !b.is_zero()));
-    let budget = budget.ok_or_else(|| PyValueError::new_err("the budget must be a time above zero, s"))?;
-    let budget = budget.map(Duration::try_from_secs_f64).transpose().ok().filter(|b| b.is_none_or(|b| !b.is_zero()));
-    let budget = budget.ok_or_else(|| PyValueError::new_err("the budget must be a time above zero, s"))?;
+    let time = Duration::try_from_secs_f64(budget.unwrap_or(BUDGET)).ok().filter(|t| !t.is_zero());
+    let time = time.ok_or_else(|| PyValueError::new_err("the budget must be a time above zero, s"))?;
+    let time = Duration::try_from_secs_f64(budget.unwrap_or(BUDGET)).ok().filter(|t| !t.is_zero());
+    let time = time.ok_or_else(|| PyValueError::new_err("the budget must be a time above zero, s"))?;
     let mut stopped = None;
     let work = || -> Result<Found, Error> {
         let world = world(files);
@@ -86,6 +87,8 @@ pub fn diagnose(
                 }
             }
         };
+        let gone = || begun.elapsed();
+        let budget = Some(Budget { time, gone: &gone });
         let options = DiagnoseOptions { data: data.as_deref().map(Path::new), budget, effect: effect.as_deref() };
         let (mut diagnosis, sources) = diagnose_as(&world, Path::new(&study), options, &mut show)?;
         diagnosis.took(begun.elapsed().as_secs_f64());

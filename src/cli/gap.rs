@@ -13,7 +13,7 @@ use crate::gap::hypotheses::Hypothesis;
 use crate::gap::plan::plan;
 use crate::gap::select::search::Stage;
 use crate::gap::study::{Unusable, planned, proposed, question};
-use crate::gap::{DiagnoseOptions, Diagnosis};
+use crate::gap::{Budget, DiagnoseOptions, Diagnosis};
 use crate::study::Study;
 use crate::world::DiskWorld;
 
@@ -121,7 +121,8 @@ fn diagnose(args: &GapArgs, study: &Study, messages: &mut Messages) -> Result<En
         stages.say(&stage.to_string());
         ControlFlow::Continue(())
     };
-    let budget = args.budget.map(Duration::from_secs_f64);
+    let gone = || begun.elapsed();
+    let budget = args.budget.map(|seconds| Budget { time: Duration::from_secs_f64(seconds), gone: &gone });
     let options = DiagnoseOptions { data, budget, effect: args.explain_rejected.as_deref() };
     let diagnosis = Diagnosis::new(question, held, options, &mut show);
     stages.clear();

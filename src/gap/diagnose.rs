@@ -2,8 +2,8 @@
 
 use super::fixed;
 use super::hypotheses::{Hypothesis, Place};
-use super::policy::BUDGET;
 use super::report;
+use super::select::clock::Budget;
 use super::select::models;
 use super::select::search::{Found, Progress, Stage, Trouble, explained, search};
 use super::study::{Held, Question, Unusable, question};
@@ -16,7 +16,6 @@ use crate::world::World;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
-use std::time::Duration;
 
 /// What a diagnosis came to.
 pub struct Diagnosis<'a> {
@@ -31,8 +30,8 @@ pub struct Diagnosis<'a> {
 pub struct DiagnoseOptions<'a> {
     /// The folder of the recordings; that of the study where there is none.
     pub data: Option<&'a Path>,
-    /// How long the search may take; [`BUDGET`] where nothing is said.
-    pub budget: Option<Duration>,
+    /// How long the search may take, by the caller's clock; until all is weighed where nothing is said.
+    pub budget: Option<Budget<'a>>,
     /// This effect alone is fitted, and taken even where a search would refuse it: `Effects.SensorLag@p`.
     pub effect: Option<&'a str>,
 }
@@ -104,10 +103,7 @@ impl<'a> Diagnosis<'a> {
     ) -> Result<Self, Vec<Diagnostic>> {
         let problem = &question.problem;
         let found = match options.effect {
-            None => {
-                let budget = Some(options.budget.unwrap_or(Duration::from_secs_f64(BUDGET)));
-                search(problem, &held.recordings, budget, progress).map_err(said)?
-            }
+            None => search(problem, &held.recordings, options.budget, progress).map_err(said)?,
             Some(asked) => {
                 let hypothesis = at(&problem.hypotheses, asked)?;
                 let found = explained(problem, &held.recordings, hypothesis, progress).map_err(said)?;

@@ -32,5 +32,6 @@ pub mod whiteness;
 pub mod words;
 
 pub use diagnose::{DiagnoseOptions, Diagnosis, diagnose, diagnose_as};
+pub use select::clock::Budget;
 pub use select::search::Stage;
 pub use verdict::Verdict;

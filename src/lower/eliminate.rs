@@ -117,6 +117,8 @@ struct Planner<'a> {
     /// Per slot, the column whose value or derivative it holds.
     seed: FxHashMap<Slot, u32>,
     torn: Vec<(usize, Slot)>,
+    /// Slots that are computed within loops over the derivatives of states.
+    within_loops: FxHashSet<usize>,
     /// States that follow from a quantity and whose derivatives no explicit assignment gives.
     followers_torn: Vec<VarId>,
     integrals: Vec<(Conserved, usize, usize)>,
@@ -138,6 +140,7 @@ impl<'a> Planner<'a> {
             columns: Vec::new(),
             seed: FxHashMap::default(),
             torn: Vec::new(),
+            within_loops: FxHashSet::default(),
             followers_torn: Vec::new(),
             integrals: Vec::new(),
         }
@@ -148,7 +151,13 @@ impl<'a> Planner<'a> {
             match block {
                 Block::Assign(assign) => self.add_explicit(*assign),
                 Block::Loop(l) => {
-                    l.inner.iter().for_each(|&assign| self.add_explicit(assign));
+                    let moves = l.tearing.iter().any(|unknown| matches!(unknown, Unknown::Der(_)));
+                    for &assign in &l.inner {
+                        if moves {
+                            self.within_loops.insert(self.layout.unknown(assign.unknown));
+                        }
+                        self.add_explicit(assign);
+                    }
                     let (residuals, lone) = (l.residuals.iter().zip(&l.tearing), l.tearing.len() == 1);
                     let root = |(&(e, equation), &unknown): (&(ExprId, u32), &Unknown)| {
                         Root::Residual(e, equation, unknown, lone)
@@ -166,26 +175,23 @@ impl<'a> Planner<'a> {
     }
 
     /// Takes the conserved quantities whose rates do not hang on how fast their own states move, and takes the residuals
-    /// that give these derivatives out. A quantity of a further state that itself hangs on how fast the first one moves
-    /// stays: oil that carries heat is warmed by its compression, and a temperature within its tolerance is a pressure far
-    /// beyond its own.
+    /// that give these derivatives out. What is found in a loop with the derivative of another state stays: oil that carries
+    /// heat is warmed by its compression, and a temperature within its tolerance is a pressure far beyond its own.
     fn choose_conserved(&mut self) {
         let lone = |root: &Root| match root {
             Root::Residual(_, _, Unknown::Der(x), true) => Some(*x),
             _ => None,
         };
         let torn: FxHashSet<VarId> = self.roots.iter().filter_map(lone).collect();
-        let states: FxHashMap<Slot, VarId> = self.dae.states.iter().map(|&x| (slot(self.layout.var(x)), x)).collect();
         let mut taken: FxHashSet<VarId> = FxHashSet::default();
         for &c in &self.dae.conserved {
             let der = self.layout.unknown(Unknown::Der(c.state));
             let is_torn = torn.contains(&c.state);
             let known = self.reached(c.quantity);
-            let others = known.iter().filter_map(|s| states.get(s)).filter(|x| **x != c.state);
             if !(is_torn || self.producer[der] != NOBODY)
                 || self.reached(c.rate).contains(&slot(der))
                 || !known.contains(&slot(self.layout.var(c.state)))
-                || others.into_iter().any(|&x| self.moves_with(x, der))
+                || self.within_loops.contains(&der)
             {
                 continue;
             }
@@ -196,18 +202,6 @@ impl<'a> Planner<'a> {
             self.roots.extend([Root::Rate(c), Root::Quantity(c)]);
         }
         self.roots.retain(|root| lone(root).is_none_or(|x| !taken.contains(&x)));
-    }
-
-    /// Whether the derivative of a state depends on a slot.
-    fn moves_with(&self, state: VarId, target: usize) -> bool {
-        let der = self.layout.unknown(Unknown::Der(state));
-        match self.producer[der] {
-            NOBODY => self.roots.iter().any(|root| match root {
-                Root::Residual(e, _, Unknown::Der(x), _) => *x == state && self.reached(*e).contains(&slot(target)),
-                _ => false,
-            }),
-            producer => self.reached(self.explicit[producer as usize].value).contains(&slot(target)),
-        }
     }
 
     /// The slots on which an expression depends, through explicit assignments too.

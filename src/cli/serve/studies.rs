@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
@@ -13,8 +14,9 @@ use super::http::{Answer, Ask, Refusal};
 use super::jobs::{File, Job, Jobs, Made};
 use crate::diag::render::full;
 use crate::diag::{Code, Diagnostic, Sources};
+use crate::gap::policy::BUDGET;
 use crate::gap::study::{Question, Unusable, question};
-use crate::gap::{DiagnoseOptions, Diagnosis};
+use crate::gap::{Budget, DiagnoseOptions, Diagnosis};
 use crate::plot::html;
 use crate::results::recording::column_names;
 use crate::results::{Strictness, read_csv};
@@ -262,8 +264,10 @@ pub(super) fn diagnose(folder: &Folder, ask: &Ask, uploads: &Uploads, jobs: &Job
             job.at(stage.to_string(), None);
             if job.stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
-        let mut diagnosis =
-            Diagnosis::new(question, held, DiagnoseOptions::default(), &mut progress).map_err(|d| full(sources, &d))?;
+        let gone = || Duration::from_secs_f64(job.seconds());
+        let budget = Some(Budget { time: Duration::from_secs_f64(BUDGET), gone: &gone });
+        let options = DiagnoseOptions { budget, ..DiagnoseOptions::default() };
+        let mut diagnosis = Diagnosis::new(question, held, options, &mut progress).map_err(|d| full(sources, &d))?;
         diagnosis.took(job.seconds());
         let report = diagnosis.report();
         let verdict = serde_json::to_string_pretty(diagnosis.verdict()).expect("numbers and texts always serialize");

@@ -1,28 +1,45 @@
-//! The time that a search may take.
-
-#![allow(clippy::disallowed_methods, reason = "a budget is time on the machine at hand")]
+//! The time that a search may take. Only the caller has a clock.
 
 use super::super::policy::SHARE;
-use std::time::{Duration, Instant};
+use std::fmt;
+use std::time::Duration;
 
-/// When a search, or a step of it, must come to an end.
+/// The time that a search may take, on the clock of whoever asks for it.
+#[derive(Clone, Copy)]
+pub struct Budget<'a> {
+    /// How long.
+    pub time: Duration,
+    /// How long ago the search began.
+    pub gone: &'a (dyn Fn() -> Duration + Sync),
+}
+
+impl fmt::Debug for Budget<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Budget").field("time", &self.time).finish_non_exhaustive()
+    }
+}
+
+/// When a search, or a step of it, must come to an end; never where there is no budget.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Deadline(Option<Instant>);
+pub struct Deadline<'a>(Option<Budget<'a>>);
 
-impl Deadline {
-    /// So long from now; never where nothing is said.
-    pub fn after(budget: Option<Duration>) -> Self {
-        Deadline(budget.and_then(|b| Instant::now().checked_add(b)))
+impl<'a> Deadline<'a> {
+    /// That of a budget.
+    pub fn of(budget: Option<Budget<'a>>) -> Self {
+        Deadline(budget)
     }
 
     /// That of one step: a part of what is left.
     pub fn of_step(self) -> Self {
-        let now = Instant::now();
-        Deadline(self.0.map(|end| now + end.saturating_duration_since(now).mul_f64(SHARE)))
+        let step = |b: Budget<'a>| {
+            let now = (b.gone)();
+            Budget { time: now + b.time.saturating_sub(now).mul_f64(SHARE), ..b }
+        };
+        Deadline(self.0.map(step))
     }
 
     /// Whether it has come.
     pub fn is_over(self) -> bool {
-        self.0.is_some_and(|end| Instant::now() >= end)
+        self.0.is_some_and(|b| (b.gone)() >= b.time)
     }
 }

@@ -1,7 +1,7 @@
 //! The judge: hypotheses are compared on data that were left out, simulated from the inputs alone.
 
 pub mod choose;
-mod clock;
+pub mod clock;
 pub mod compare;
 pub mod confirm;
 pub mod criteria;

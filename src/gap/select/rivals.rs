@@ -22,10 +22,10 @@ pub struct Fitted {
 
 /// Fits hypotheses from all their starts, beside the model before, until the time is over; at least the first ones. The
 /// front by both weightings.
-pub fn fitted(ground: &Ground<'_>, order: Vec<Screened>, until: Deadline) -> Fitted {
+pub fn fitted(ground: &Ground<'_>, order: Vec<Screened>, until: Deadline<'_>) -> Fitted {
     let Ground { problem, sensors, .. } = *ground;
     let one = |(hypothesis, starts): Screened| {
-        let fit = from_all(ground, needed(problem.hypotheses.len()), starts)?;
+        let fit = from_all(ground, needed(problem.hypotheses.len()), hypothesis, starts)?;
         let h = &problem.hypotheses[hypothesis];
         let (places, is_parameter) = (h.attachments.len(), h.family == "parameter");
         Some(Rival { hypothesis, places, size: 0.0, is_parameter, model: Weighed::new(problem, fit) })
@@ -57,7 +57,9 @@ pub fn fitted(ground: &Ground<'_>, order: Vec<Screened>, until: Deadline) -> Fit
 
 /// A few iterations from every start; where they gain anything, the fit is completed from where the cost is least, and from
 /// where the gap is if that is less by far.
-fn from_all(ground: &Ground<'_>, needed: f64, starts: Vec<Start>) -> Option<Fit> {
+fn from_all(ground: &Ground<'_>, needed: f64, hypothesis: usize, mut starts: Vec<Start>) -> Option<Fit> {
+    let sizes = starts.first().map(|s| ground.of_size(hypothesis, s)).unwrap_or_default();
+    starts.extend(sizes);
     let Ground { problem, sensors, before } = *ground;
     let rough = |s: Start| Fit::rough(s.candidate, s.x, &problem.train, &before.weights);
     let mut all: Vec<Fit> = starts.into_iter().filter_map(rough).collect();

@@ -7,8 +7,9 @@ use super::super::estimate::candidate::{Errors, Products};
 use super::super::estimate::map::squares;
 use super::super::estimate::{Candidate, Fit, System};
 use super::super::hypotheses::Hypothesis;
-use super::super::policy::{DECADES, OTHER_WEIGHTING, SCANNED, SIZES, STARTS, UNCHANGED};
+use super::super::policy::{DECADES, OTHER_WEIGHTING, ROUND, SCANNED, SIZES, STARTS, UNCHANGED};
 use super::super::problem::{Chosen, Problem};
+use super::clock::Deadline;
 use super::compare::{Sensors, total_gap};
 use super::models::{self, beginnings, candidate};
 use super::weighed::at_nominal;
@@ -41,14 +42,14 @@ pub struct Leaves {
     pub gap: f64,
 }
 
-/// A place from which a model with one hypothesis more is fitted.
+/// A place from which a model with one hypothesis more is fitted, and the linear model there.
 pub struct Start {
     /// The model.
     pub candidate: Candidate,
     /// Where it begins.
     pub x: Vec<f64>,
-    /// What its linear model promises to leave.
-    pub promised: Leaves,
+    system: System,
+    promised: Leaves,
 }
 
 /// A hypothesis with its starts, the most promising first.
@@ -58,26 +59,20 @@ pub type Screened = (usize, Vec<Start>);
 pub struct Screen {
     /// In the order in which they are to be fitted.
     pub order: Vec<Screened>,
+    /// Those for which the time did not last.
+    pub passed: Vec<usize>,
     /// Per hypothesis that vanishes where it begins: what it would gain at its usual size, nats.
     pub visible: Vec<f64>,
-}
-
-/// A model where its hypothesis begins, and the linear model there.
-struct Begun {
-    candidate: Candidate,
-    x: Vec<f64>,
-    system: System,
-    promised: Leaves,
 }
 
 /// A hypothesis with the models with it, at each of its beginnings.
 type Attached = (usize, Vec<Candidate>);
 /// The same with the linear model there.
-type Beginnings = (usize, Vec<Begun>);
+type Beginnings = (usize, Vec<Start>);
 
-/// Hypotheses in the order in which they are to be fitted.
-pub fn screened(ground: &Ground<'_>, open: &[usize]) -> Screen {
-    let mut all = ground.begun(open);
+/// Hypotheses in the order in which they are to be fitted, those alone that are looked at until the time is over.
+pub fn screened(ground: &Ground<'_>, open: &[usize], until: Deadline<'_>) -> Screen {
+    let (mut all, passed) = ground.begun(open, until);
     let visible = all.iter().filter_map(|(i, models)| ground.visible(*i, models)).collect();
     if let Some(nominal) = ground.nominal() {
         // those that need a run each are begun once
@@ -90,19 +85,14 @@ pub fn screened(ground: &Ground<'_>, open: &[usize]) -> Screen {
         }
     }
     all.retain(|(_, models)| !models.is_empty());
-    let grows = |(i, models): &&mut Beginnings| vanishes(ground.h(*i), &models[0].candidate, ground.before);
-    all.par_iter_mut().filter(grows).for_each(|(_, models)| {
-        let sized = ground.of_size(&models[0]);
-        models.extend(sized);
-    });
-    Screen { order: ordered(all), visible }
+    Screen { order: ordered(all), passed, visible }
 }
 
 /// The most promising first, by the weighed cost and by the gap in turn: by one of them signals count whose errors are
 /// small and white, by the other those whose errors are large.
 fn ordered(all: Vec<Beginnings>) -> Vec<Screened> {
     let least =
-        |models: &[Begun], by: fn(&Leaves) -> f64| models.iter().map(|m| by(&m.promised)).fold(f64::INFINITY, f64::min);
+        |models: &[Start], by: fn(&Leaves) -> f64| models.iter().map(|m| by(&m.promised)).fold(f64::INFINITY, f64::min);
     let rank = |by: fn(&Leaves) -> f64| {
         let mut order: Vec<usize> = (0..all.len()).collect();
         order.sort_by(|&a, &b| least(&all[a].1, by).total_cmp(&least(&all[b].1, by)));
@@ -118,15 +108,14 @@ fn ordered(all: Vec<Beginnings>) -> Vec<Screened> {
 }
 
 /// The most promising of the beginnings of a hypothesis, by both in turn.
-fn starts(mut models: Vec<Begun>) -> Vec<Start> {
+fn starts(mut models: Vec<Start>) -> Vec<Start> {
     let mut found: Vec<Start> = Vec::new();
     let by: [fn(&Leaves) -> f64; 2] = [|l| l.cost, |l| l.gap];
     while found.len() < STARTS && !models.is_empty() {
         let by = by[found.len() % by.len()];
         let best = |a: &usize, b: &usize| by(&models[*a].promised).total_cmp(&by(&models[*b].promised));
         let Some(k) = (0..models.len()).min_by(best) else { break };
-        let Begun { candidate, x, promised, .. } = models.swap_remove(k);
-        found.push(Start { candidate, x, promised });
+        found.push(models.swap_remove(k));
     }
     found
 }
@@ -170,7 +159,7 @@ impl Ground<'_> {
     }
 
     /// A model where it stands; `None` where the linear model has no sense.
-    fn begin(&self, candidate: Candidate, x: Vec<f64>, errors: &[Errors], sums: &[Products]) -> Option<Begun> {
+    fn begin(&self, candidate: Candidate, x: Vec<f64>, errors: &[Errors], sums: &[Products]) -> Option<Start> {
         let mut sum = Products::none(x.len());
         sums.iter().enumerate().for_each(|(i, s)| sum.add_weighed(s, self.before.weights.weight(i)));
         let system = System::of(sum, &candidate.coordinates, &x);
@@ -178,24 +167,35 @@ impl Ground<'_> {
         let change = DVector::from_fn(x.len(), |i, _| to[i] - x[i]);
         let falls = |(i, s): (usize, &Products)| squares(errors, i) - s.gain(&change);
         let promised = self.left(sums.iter().enumerate().map(falls).collect(), candidate.prior(&to));
-        promised.cost.is_finite().then_some(Begun { candidate, x, system, promised })
+        promised.cost.is_finite().then_some(Start { candidate, x, system, promised })
     }
 
     /// What a hypothesis that vanishes where it begins would gain at its usual size, nats.
-    fn visible(&self, hypothesis: usize, models: &[Begun]) -> Option<f64> {
+    fn visible(&self, hypothesis: usize, models: &[Start]) -> Option<f64> {
         let h = self.h(hypothesis);
-        let gain = |m: &Begun| m.system.visible(self.before.x.len(), h.coefficients.len());
+        let gain = |m: &Start| m.system.visible(self.before.x.len(), h.coefficients.len());
         let vanishing = !self.is_parameter(hypothesis) && vanishes(h, &models.first()?.candidate, self.before);
         vanishing.then(|| models.iter().map(gain).fold(0.0, f64::max))
     }
 
-    /// All of some hypotheses, each at its beginnings.
-    fn begun(&self, open: &[usize]) -> Vec<Beginnings> {
+    /// Hypotheses, each at its beginnings; those that need runs of their own as long as the time lasts, and for which it did
+    /// not.
+    fn begun(&self, open: &[usize], until: Deadline<'_>) -> (Vec<Beginnings>, Vec<usize>) {
         let (vanishing, others) = self.attached_to(open);
         let mut begun = self.together(vanishing);
-        begun.par_extend(others.into_par_iter().map(|(i, models)| (i, self.alone(i, models))));
+        let mut others = others.into_iter();
+        loop {
+            let round: Vec<Attached> = others.by_ref().take(ROUND).collect();
+            if round.is_empty() {
+                break;
+            }
+            begun.par_extend(round.into_par_iter().map(|(i, models)| (i, self.alone(i, models))));
+            if until.is_over() {
+                break;
+            }
+        }
         begun.sort_by_key(|b| b.0);
-        begun
+        (begun, others.map(|(i, _)| i).collect())
     }
 
     /// Hypotheses that vanish where they begin, and others.
@@ -291,15 +291,18 @@ impl Ground<'_> {
     }
 
     /// A hypothesis that does not vanish where it begins.
-    fn alone(&self, hypothesis: usize, models: Vec<Candidate>) -> Vec<Begun> {
+    fn alone(&self, hypothesis: usize, models: Vec<Candidate>) -> Vec<Start> {
         let of_any_size = |m: &Candidate| self.h(hypothesis).changes_order && !self.sized(m).is_empty();
         let of_size = |m: Candidate| if of_any_size(&m) { self.scanned(&m, &m.model.theta) } else { vec![m] };
         models.into_iter().flat_map(of_size).filter_map(|m| self.on_its_own(m)).collect()
     }
 
-    /// Where the linear model leads from where a hypothesis vanishes, sizes of its coefficients are looked for: beyond the
-    /// first gain a step may end where the model does not come back from.
-    fn of_size(&self, begun: &Begun) -> Vec<Begun> {
+    /// Starts at the sizes of a hypothesis that vanishes where it begins, looked for where the linear model leads: beyond the
+    /// first gain a step may end where the model does not come back from. None for others.
+    pub fn of_size(&self, hypothesis: usize, begun: &Start) -> Vec<Start> {
+        if !vanishes(self.h(hypothesis), &begun.candidate, self.before) {
+            return Vec::new();
+        }
         let model = &begun.candidate;
         let to = begun.system.step(&model.coordinates, &begun.x, 0.0);
         let mut theta = model.model.theta.clone();
@@ -363,13 +366,13 @@ impl Ground<'_> {
     }
 
     /// A model by a run of its own.
-    fn on_its_own(&self, candidate: Candidate) -> Option<Begun> {
+    fn on_its_own(&self, candidate: Candidate) -> Option<Start> {
         let x = candidate.present();
         self.at(candidate, x)
     }
 
     /// A model at a point.
-    fn at(&self, mut candidate: Candidate, x: Vec<f64>) -> Option<Begun> {
+    fn at(&self, mut candidate: Candidate, x: Vec<f64>) -> Option<Start> {
         let evaluated = candidate.evaluate(&x, &self.problem.train)?;
         candidate.off.clone_from(&evaluated.off);
         let sums = evaluated.by_signal(x.len());

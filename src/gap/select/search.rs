@@ -7,7 +7,7 @@ use super::super::hypotheses::Hypothesis;
 use super::super::policy::{EFFECTS, SEEN};
 use super::super::problem::{Chosen, Problem, Tolerance};
 use super::choose::{Chooser, Taken, Trial};
-use super::clock::Deadline;
+use super::clock::{Budget, Deadline};
 use super::confirm::Held;
 use super::criteria::{Criteria, Judged, Reason, Rival};
 use super::models;
@@ -17,7 +17,6 @@ use super::weighed::{Weighed, ahead, left_by, settled, weighed};
 use crate::diag::Diagnostic;
 use std::fmt;
 use std::ops::ControlFlow;
-use std::time::Duration;
 
 /// A stage of the diagnosis, for progress bars.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -105,23 +104,22 @@ struct Search<'a> {
     /// Shapes were worth a fit beside the last model.
     shape_says_more: bool,
     /// When the time is over.
-    ends: Deadline,
+    ends: Deadline<'a>,
 }
 
 /// Searches, for so long; held recordings only confirm.
 ///
 /// # Errors
 /// [`Trouble`].
-pub fn search(
-    problem: &Problem<'_>,
-    held: &[Recording],
-    budget: Option<Duration>,
+pub fn search<'a>(
+    problem: &'a Problem<'a>,
+    held: &'a [Recording],
+    budget: Option<Budget<'a>>,
     progress: Progress<'_>,
 ) -> Result<Found, Trouble> {
-    let ends = Deadline::after(budget);
     let mut watch = Watch { progress, stopped: false };
     let (mut search, base) = begun(problem, held, &mut watch)?;
-    search.ends = ends;
+    search.ends = Deadline::of(budget);
     let (mut last, mut taken) = (base.clone(), Vec::new());
     let mut shape = None;
     for step in 1..=EFFECTS + 1 {
@@ -172,7 +170,8 @@ pub fn explained(
     watch.begin(Stage::Fit(1)).ok_or(Trouble::Stopped)?;
     let sensors = &search.chooser.criteria.sensors;
     let ground = Ground { problem, sensors, before: &base.fit };
-    let rivals = fitted(&ground, screened(&ground, &[hypothesis]).order, Deadline::default()).rivals;
+    let rivals =
+        fitted(&ground, screened(&ground, &[hypothesis], Deadline::default()).order, Deadline::default()).rivals;
     let Some(last) = rivals.first().map(|r| r.model.clone()) else { return Ok(None) };
     let closes = 1.0 - last.gap(sensors) / base.gap(sensors).max(f64::MIN_POSITIVE);
     let trials = search.chooser.choose(1, &base, rivals).trials;
@@ -308,7 +307,7 @@ impl Search<'_> {
         let (problem, sensors) = (self.problem, &self.chooser.criteria.sensors);
         let ground = Ground { problem, sensors, before: &before.fit };
         let until = self.ends.of_step();
-        let screen = screened(&ground, open);
+        let screen = screened(&ground, open, until.of_step());
         let seen = |visible: &[f64]| visible.iter().filter(|v| **v > SEEN).count() as f64 / visible.len().max(1) as f64;
         self.visible.get_or_insert(seen(&screen.visible));
         if watch.is_some_and(|w| w.begin(Stage::Fit(step)).is_none()) {
@@ -319,7 +318,7 @@ impl Search<'_> {
             let chosen = Chosen { hypothesis, values: Vec::new() };
             Trial { step, chosen, found: None, reason: Some(Reason::Behind) }
         };
-        self.passed = found.passed.into_iter().map(trial).collect();
+        self.passed = found.passed.into_iter().chain(screen.passed).map(trial).collect();
         found.rivals
     }
 
