@@ -41,7 +41,7 @@ pub fn solve(
     let mut rising = slope.abs();
     let found = if wanted > 0.0 && there > 0.0 {
         rising /= there;
-        let found = rise(|x| sign * quantity(x).ln(), sign * wanted.ln(), start, sign * there.ln(), &mut rising);
+        let found = rise(|x| sign * (quantity(x) / wanted).ln(), 0.0, start, sign * (there / wanted).ln(), &mut rising);
         rising *= wanted;
         found
     } else {
