@@ -57,7 +57,9 @@ equation
   p = port.p;
   V_oil = V_0*(1 + V_min) - V_gas;
   V_oil/air.beta*p_dot - der(V_gas) = inflow;
-  Connections.conserved(stored, air.rho_port*port.q, V_gas);
+  if not oil.thermal then
+    Connections.conserved(stored, air.rho_port*port.q, V_gas);
+  end if;
   annotation(Documentation(info = "<html>
 <p><code>p = R T/(v - b) - a sqrt(T_c/T)/(v (v + b))</code>; balance of energy with Newton's cooling, <code>dT/dt = (T_wall - T)/tau - T/(m c_v) (dp/dT)_v dV/dt</code>. The mass of the gas follows from the precharge. Above some 10 MPa nitrogen takes more volume than an ideal gas: at 30 MPa and 20 degC <code>Z</code> is 1.1 to 1.2.
 When empty, the bladder rests on its valve within <code>w_stop V_0</code>; when full, at <code>V_full V_0</code>, it meets a stop that takes <code>p_max</code> within <code>w_stop V_0</code>. Gases of high precharge are beyond the law before that.</p>

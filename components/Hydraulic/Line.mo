@@ -86,7 +86,9 @@ equation
   end for;
   for i in 1:N loop
     stored[i] = air[i].rho_s*V_p[i]/growth[i];
-    Connections.conserved(stored[i], (if volume_a and i == 1 then air[1].rho_port*port_a.q else air[i].counted*m_left[i]) + (if volume_b and i == N then air[N].rho_port*port_b.q else -air[i].counted*m_right[i]), p[i]);
+    if not oil.thermal then
+      Connections.conserved(stored[i], (if volume_a and i == 1 then air[1].rho_port*port_a.q else air[i].counted*m_left[i]) + (if volume_b and i == N then air[N].rho_port*port_b.q else -air[i].counted*m_right[i]), p[i]);
+    end if;
   end for;
   for i in 1:M loop
     rho_m[i] = air[max(i - 1 + a, 1)].rho/growth[max(i - 1 + a, 1)];

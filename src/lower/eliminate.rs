@@ -117,8 +117,6 @@ struct Planner<'a> {
     /// Per slot, the column whose value or derivative it holds.
     seed: FxHashMap<Slot, u32>,
     torn: Vec<(usize, Slot)>,
-    /// Slots that are computed within loops over the derivatives of states.
-    within_loops: FxHashSet<usize>,
     /// States that follow from a quantity and whose derivatives no explicit assignment gives.
     followers_torn: Vec<VarId>,
     integrals: Vec<(Conserved, usize, usize)>,
@@ -140,7 +138,6 @@ impl<'a> Planner<'a> {
             columns: Vec::new(),
             seed: FxHashMap::default(),
             torn: Vec::new(),
-            within_loops: FxHashSet::default(),
             followers_torn: Vec::new(),
             integrals: Vec::new(),
         }
@@ -151,13 +148,7 @@ impl<'a> Planner<'a> {
             match block {
                 Block::Assign(assign) => self.add_explicit(*assign),
                 Block::Loop(l) => {
-                    let moves = l.tearing.iter().any(|unknown| matches!(unknown, Unknown::Der(_)));
-                    for &assign in &l.inner {
-                        if moves {
-                            self.within_loops.insert(self.layout.unknown(assign.unknown));
-                        }
-                        self.add_explicit(assign);
-                    }
+                    l.inner.iter().for_each(|&assign| self.add_explicit(assign));
                     let (residuals, lone) = (l.residuals.iter().zip(&l.tearing), l.tearing.len() == 1);
                     let root = |(&(e, equation), &unknown): (&(ExprId, u32), &Unknown)| {
                         Root::Residual(e, equation, unknown, lone)
@@ -175,8 +166,7 @@ impl<'a> Planner<'a> {
     }
 
     /// Takes the conserved quantities whose rates do not hang on how fast their own states move, and takes the residuals
-    /// that give these derivatives out. What is found in a loop with the derivative of another state stays: oil that carries
-    /// heat is warmed by its compression, and a temperature within its tolerance is a pressure far beyond its own.
+    /// that give these derivatives out.
     fn choose_conserved(&mut self) {
         let lone = |root: &Root| match root {
             Root::Residual(_, _, Unknown::Der(x), true) => Some(*x),
@@ -191,7 +181,6 @@ impl<'a> Planner<'a> {
             if !(is_torn || self.producer[der] != NOBODY)
                 || self.reached(c.rate).contains(&slot(der))
                 || !known.contains(&slot(self.layout.var(c.state)))
-                || self.within_loops.contains(&der)
             {
                 continue;
             }

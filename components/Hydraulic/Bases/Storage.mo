@@ -24,13 +24,14 @@ equation
     T_oil = oil.T;
     growth = 1;
     inflow = air.port_density*port.q + air.swell;
+    // where it carries heat, a temperature within its tolerance is a pressure far beyond its own: there the pressure is integrated
+    Connections.conserved(stored, air.rho_port*port.q, port.p);
   end if;
   if not useHeatPort then
     Q_flow = 0;
   end if;
   mass = air.rho*V_oil/(if oil.thermal then growth else 1);
   stored = air.rho_s*V_oil/(if oil.thermal then growth else 1);
-  Connections.conserved(stored, air.rho_port*port.q, port.p);
   annotation(Documentation(info = "<html>
 <p>A component adds the volume <code>V_oil</code> and <code>V_oil/beta dp/dt + dV/dt = inflow</code>, V being the room for the oil: the balance of mass <code>d(rho V)/dt = m</code>.</p>
 <p><b>Heat</b>, where oil carries it: <code>m c_p dT/dt = sum of m_in c_p (T_in - T) + Q + gamma T v_0 m dp/dt</code>, the balance of energy with the enthalpy of <code>Oil.Heat</code>, v_0 being the specific volume at T_0; the last term warms oil that is
