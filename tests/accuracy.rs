@@ -36,7 +36,7 @@ const WORK: [(&str, u64, u64, u64); 8] = [
     // a thousand rows, each solved for the voltages of its motor
     ("ServoPump.DeadZone", 1528, 50, 1),
     // the corners of its reference are events
-    ("ServoPump.System", 11691, 349, 5),
+    ("ServoPump.System", 12587, 312, 5),
     ("ClosedCircuit.Case1", 326, 39, 2),
     ("ClosedCircuit.Case2", 371, 67, 4),
     ("Belt", 7420, 281, 79),

@@ -4,7 +4,7 @@
 //! of a hundred thousand within some hundred pascals: the corrector of the integrator, which trusts that the equations of
 //! a step are nearly linear, takes a pressure there that belongs to another mass. So the row is `state - solution`, with
 //! the state that has this quantity: linear however the quantity bends, and in the unit of the state. What is positive is
-//! followed by its logarithm: the mass of a liquid and that of its voids both bend as an exponential does.
+//! followed from afar by its logarithm: the mass of a liquid and that of its voids both bend as an exponential does.
 
 /// Corrections smaller than this part of the way gone, or of the state, end the search ...
 const CONTRACTED: f64 = 1e-3;
@@ -12,6 +12,8 @@ const CONTRACTED: f64 = 1e-3;
 const STRAIGHT: f64 = 2.0;
 const ROUND_OFF: f64 = 1e-13;
 const MOST: u32 = 80;
+/// A quantity that changes by less than this part is followed as it is: the mass of a gas is proportional to its pressure.
+const NEAR_BY: f64 = 0.1;
 /// A step that is not bracketed is at most so many times as long as the one before.
 const GROWTH: f64 = 8.0;
 /// Step of the difference quotient where no slope is known, over the state's size.
@@ -39,7 +41,8 @@ pub fn solve(
     }
     let sign = slope.signum();
     let mut rising = slope.abs();
-    let found = if wanted > 0.0 && there > 0.0 {
+    let far = (wanted / there).ln().abs() > NEAR_BY;
+    let found = if far && wanted > 0.0 && there > 0.0 {
         rising /= there;
         let found = rise(|x| sign * (quantity(x) / wanted).ln(), 0.0, start, sign * (there / wanted).ln(), &mut rising);
         rising *= wanted;
