@@ -69,8 +69,6 @@ pub fn diagnose(
     let begun = std::time::Instant::now();
     let time = Duration::try_from_secs_f64(budget.unwrap_or(BUDGET)).ok().filter(|t| !t.is_zero());
     let time = time.ok_or_else(|| PyValueError::new_err("the budget must be a time above zero, s"))?;
-    let time = Duration::try_from_secs_f64(budget.unwrap_or(BUDGET)).ok().filter(|t| !t.is_zero());
-    let time = time.ok_or_else(|| PyValueError::new_err("the budget must be a time above zero, s"))?;
     let mut stopped = None;
     let work = || -> Result<Found, Error> {
         let world = world(files);

@@ -82,6 +82,31 @@ pub enum Unary {
     Floor,
 }
 
+#[cfg(test)]
+impl Unary {
+    /// All of them.
+    pub const ALL: [Unary; 18] = [
+        Unary::Neg,
+        Unary::Not,
+        Unary::Abs,
+        Unary::Sign,
+        Unary::Sqrt,
+        Unary::Exp,
+        Unary::Log,
+        Unary::Log10,
+        Unary::Sin,
+        Unary::Cos,
+        Unary::Tan,
+        Unary::Asin,
+        Unary::Acos,
+        Unary::Atan,
+        Unary::Sinh,
+        Unary::Cosh,
+        Unary::Tanh,
+        Unary::Floor,
+    ];
+}
+
 /// Functions of two arguments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[allow(missing_docs, reason = "the operators of these names")]

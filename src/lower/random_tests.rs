@@ -30,27 +30,6 @@ fn make() -> impl Strategy<Value = Make> {
     ]
 }
 
-const UNARY: [Unary; 18] = [
-    Unary::Neg,
-    Unary::Not,
-    Unary::Abs,
-    Unary::Sign,
-    Unary::Sqrt,
-    Unary::Exp,
-    Unary::Log,
-    Unary::Log10,
-    Unary::Sin,
-    Unary::Cos,
-    Unary::Tan,
-    Unary::Asin,
-    Unary::Acos,
-    Unary::Atan,
-    Unary::Sinh,
-    Unary::Cosh,
-    Unary::Tanh,
-    Unary::Floor,
-];
-
 const BINARY: [Binary; 10] = [
     Binary::Add,
     Binary::Sub,
@@ -125,7 +104,7 @@ fn any_step(m: &mut Model, step: &Make, known: &[ExprId]) -> ExprId {
             let (left, right) = (e.rel(Rel::Lt, of(a), of(b)), e.rel(Rel::Ne, of(a), Exprs::ONE));
             e.binary(BINARY[op as usize], left, right)
         }
-        Make::Unary(op, a) => e.unary(UNARY[op as usize], of(a)),
+        Make::Unary(op, a) => e.unary(Unary::ALL[op as usize], of(a)),
         Make::Binary(op, a, b) => e.binary(BINARY[op as usize], of(a), of(b)),
         Make::If(rel, a, b, c, d) => {
             let condition = e.rel(RELATIONS[rel as usize], of(a), of(b));

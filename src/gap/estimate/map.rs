@@ -200,7 +200,8 @@ impl Fit {
         squares(&self.evaluated.errors, signal) / self.samples(signal).max(1.0)
     }
 
-    fn mean_squares(&self) -> Vec<f64> {
+    /// The same of all signals.
+    pub fn mean_squares(&self) -> Vec<f64> {
         (0..self.weights.tau.len()).map(|i| self.mean_square(i)).collect()
     }
 

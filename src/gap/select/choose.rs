@@ -2,7 +2,6 @@
 //! held recordings confirm.
 
 use super::super::estimate::Fit;
-use super::super::estimate::candidate::Errors;
 use super::super::policy::ALPHA;
 use super::super::problem::{Chosen, Problem};
 use super::compare::{closed, needed};
@@ -59,12 +58,6 @@ pub struct Chooser<'a> {
     pub criteria: Criteria,
 }
 
-/// The model to which a step adds, and what it leaves of the held recordings.
-struct Before<'a> {
-    model: &'a Weighed,
-    held: Vec<Errors>,
-}
-
 impl Chooser<'_> {
     fn is_shape(&self, rival: &Rival) -> bool {
         self.problem.hypotheses[rival.hypothesis].is_shape()
@@ -72,10 +65,10 @@ impl Chooser<'_> {
 
     /// Whether one of some rivals shows that something is missing: then all of them are compared with each other, not with
     /// nothing. Beside shapes, what was weighed before among more hypotheses is not sure now.
-    fn is_sure(&self, before: &Before<'_>, some: &[usize], rivals: &[Rival], judged: &[Judged]) -> bool {
+    fn is_sure(&self, some: &[(usize, Option<Asked>)], rivals: &[Rival], judged: &[Judged]) -> bool {
         let any_shape = rivals.iter().any(|r| self.is_shape(r));
-        let fresh = || some.iter().copied().filter(|&i| !any_shape || self.is_shape(&rivals[i]));
-        fresh().any(|i| judged[i].accepted()) || fresh().any(|i| self.sure_with_held(before, &rivals[i], &judged[i]))
+        let mut fresh = some.iter().filter(|(i, _)| !any_shape || self.is_shape(&rivals[*i]));
+        fresh.any(|&(i, asked)| judged[i].accepted() || self.sure_with_held(&judged[i], asked))
     }
 
     /// The rival that is taken, with what cannot be told from it.
@@ -87,20 +80,22 @@ impl Chooser<'_> {
             judged.iter().map(|j| (!j.accepted()).then(|| j.refused(needed))).collect();
         // they are asked about what may be taken only
         let held = if judged.iter().any(Judged::may) { self.held.left_by(&before.fit) } else { Vec::new() };
-        let asked = Before { model: before, held };
         // what held recordings refute shows nothing, and has beaten nobody
         let may: Vec<usize> = (0..rivals.len()).filter(|&i| judged[i].may()).collect();
-        let refuted: Vec<Option<Reason>> =
-            may.par_iter().map(|&i| self.unconfirmed(&asked, &rivals[i].model)).collect();
-        let confirmed: Vec<usize> =
-            may.iter().zip(&refuted).filter(|(_, refuted)| refuted.is_none()).map(|(i, _)| *i).collect();
-        let any = self.is_sure(&asked, &confirmed, &rivals, &judged);
-        for (&i, refuted) in may.iter().zip(refuted) {
+        let ask = |&i: &usize| (i, self.held.ask(&held, &rivals[i].model.fit, &self.criteria.sensors));
+        let asked: Vec<(usize, Option<Asked>)> = may.par_iter().map(ask).collect();
+        let refuted = |&(i, asked): &(usize, Option<Asked>)| self.refuted(before, &rivals[i].model, asked);
+        let (refuted, confirmed): (Vec<_>, Vec<_>) =
+            asked.into_iter().map(|a| (a, refuted(&a))).partition(|(_, reason)| reason.is_some());
+        let confirmed: Vec<(usize, Option<Asked>)> = confirmed.into_iter().map(|(a, _)| a).collect();
+        let any = self.is_sure(&confirmed, &rivals, &judged);
+        for ((i, _), reason) in refuted {
             if any || judged[i].accepted() {
-                reasons[i] = refuted;
+                reasons[i] = reason;
             }
         }
-        let contenders = if any { confirmed } else { Vec::new() };
+        let contenders: Vec<usize> = if any { confirmed.into_iter().map(|c| c.0).collect() } else { Vec::new() };
+        contenders.iter().for_each(|&i| reasons[i] = None);
         let is_shape = |i: usize| self.is_shape(&rivals[i]);
         let mut order = self.criteria.order(&contenders, &rivals, &judged, &mut reasons);
         // a shape has a coefficient for every bump: it counts where it surely leaves less than what has a name
@@ -151,21 +146,16 @@ impl Chooser<'_> {
     }
 
     /// Why held recordings do not confirm a model; nothing where they do, or there are none.
-    fn unconfirmed(&self, before: &Before<'_>, model: &Weighed) -> Option<Reason> {
-        let asked = self.held.ask(&before.held, &model.fit, &self.criteria.sensors)?;
-        let confirmed = asked.confirms(saved(before.model, model), self.criteria.count);
-        (!confirmed).then_some(Reason::NotConfirmed(asked))
+    fn refuted(&self, before: &Weighed, model: &Weighed, asked: Option<Asked>) -> Option<Reason> {
+        let confirmed = asked?.confirms(saved(before, model), self.criteria.count);
+        asked.filter(|_| !confirmed).map(Reason::NotConfirmed)
     }
 
     /// Few recordings, few blocks: what is worth it is asked of the held recordings too. They are fresh, and a product of
     /// e-values of independent data is one; the bound on it is one for all hypotheses together.
-    fn sure_with_held(&self, before: &Before<'_>, rival: &Rival, judged: &Judged) -> bool {
-        if !judged.may() || judged.evidence <= 0.0 {
-            return false;
-        }
-        let asked = self.held.ask(&before.held, &rival.model.fit, &self.criteria.sensors);
+    fn sure_with_held(&self, judged: &Judged, asked: Option<Asked>) -> bool {
         let shown = |a: Asked| a.evidence > 0.0 && judged.evidence + a.evidence > needed(self.criteria.count);
-        asked.is_some_and(shown)
+        judged.may() && judged.evidence > 0.0 && asked.is_some_and(shown)
     }
 }
 

@@ -1,6 +1,7 @@
 //! The time that a search may take. Only the caller has a clock.
 
-use super::super::policy::SHARE;
+use super::super::policy::{ROUND, SHARE};
+use rayon::prelude::*;
 use std::fmt;
 use std::time::Duration;
 
@@ -41,5 +42,16 @@ impl<'a> Deadline<'a> {
     /// Whether it has come.
     pub fn is_over(self) -> bool {
         self.0.is_some_and(|b| (b.gone)() >= b.time)
+    }
+
+    /// What comes of some things, a few at a time until the time is over, but of the first ones at least; and the others.
+    pub fn rounds<T: Send, R: Send>(self, all: Vec<T>, one: impl Fn(T) -> R + Sync) -> (Vec<R>, Vec<T>) {
+        let mut rest = all.into_iter();
+        let mut found = Vec::new();
+        while rest.len() > 0 && (found.is_empty() || !self.is_over()) {
+            let round: Vec<T> = rest.by_ref().take(ROUND).collect();
+            found.par_extend(round.into_par_iter().map(&one));
+        }
+        (found, rest.collect())
     }
 }

@@ -8,8 +8,8 @@
 //! data sheet by the weight of coloured errors, not by truth, would count as an effect.
 
 use super::super::data::Recording;
-use super::super::estimate::candidate::{Errors, Products, piece};
-use super::super::estimate::{Fit, System};
+use super::super::estimate::candidate::{Errors, piece};
+use super::super::estimate::{Fit, System, Weights};
 use super::super::policy::LEAST;
 use super::compare::Sensors;
 use super::folds::{self, Scheme};
@@ -49,8 +49,10 @@ impl Compared {
         self.likelihood / self.time
     }
 
-    fn weights(&self) -> Vec<f64> {
-        self.square.iter().map(|s| 1.0 / (s * self.time.max(1.0))).collect()
+    /// How much a squared error of each signal counts, in its unit.
+    fn weights(&self, full_scale: &[f64]) -> Weights {
+        let square: Vec<f64> = self.square.iter().zip(full_scale).map(|(s, scale)| s * scale * scale).collect();
+        Weights { tau: vec![self.time.max(1.0); square.len()], square }
     }
 }
 
@@ -183,26 +185,19 @@ impl<'a> Movable<'a> {
 
     /// Where a step leads from the fit when each signal counts so much, and when it counts as in the fit: the difference, for
     /// the data without a fold or, where there is none, for all.
-    fn change(&self, scheme: Scheme, without: Option<usize>, weights: &[f64]) -> DVector<f64> {
+    fn change(&self, scheme: Scheme, without: Option<usize>, weights: &Weights) -> DVector<f64> {
         let Fit { candidate, x, evaluated, weights: own, .. } = &self.model.fit;
-        let step = |weight: &dyn Fn(usize) -> f64| {
-            let mut sum = Products::none(x.len());
-            for (number, pieces) in evaluated.products.iter().enumerate() {
-                for (piece, signals) in pieces.iter().enumerate() {
-                    if Some(scheme.fold(number, piece)) == without {
-                        continue;
-                    }
-                    signals.iter().enumerate().for_each(|(i, p)| sum.add_weighed(p, weight(i)));
-                }
-            }
+        let step = |weights: &Weights| {
+            let kept = |number, piece| Some(scheme.fold(number, piece)) != without;
+            let sum = evaluated.sums(x.len(), weights, kept);
             System::of(sum, &candidate.coordinates, x).step(&candidate.coordinates, x, 0.0)
         };
-        let (new, old) = (step(&|i| weights[i]), step(&|i| own.weight(i)));
+        let (new, old) = (step(weights), step(own));
         DVector::from_fn(x.len(), |i, _| new[i] - old[i])
     }
 
     /// Left-out errors with these weights, and the prior there, nats.
-    fn moved(&self, scheme: Scheme, at: usize, weights: &[f64], full_scale: &[f64]) -> (Vec<Errors>, f64) {
+    fn moved(&self, scheme: Scheme, at: usize, weights: &Weights, full_scale: &[f64]) -> (Vec<Errors>, f64) {
         let Fit { candidate, x, evaluated, .. } = &self.model.fit;
         let recordings = evaluated.errors.len();
         let changes: Vec<DVector<f64>> =
@@ -228,16 +223,11 @@ impl<'a> Movable<'a> {
 /// Evidence of left-out train data and of the prior for the second model, nats: the largest by any scheme.
 pub fn refitted(without: &Movable<'_>, with: &Movable<'_>, sensors: &Sensors) -> f64 {
     let floor = floor(sensors);
-    let weights = |left: &Movable<'_>, right: &Movable<'_>, at: usize| {
-        Pair { without: &left.left[at], with: &right.left[at], floor: &floor }.compared()
-    };
-    let in_full_scales =
-        |w: &[f64]| -> Vec<f64> { w.iter().zip(&sensors.full_scale).map(|(w, scale)| w / (scale * scale)).collect() };
     let one = |(at, scheme): (usize, Scheme)| {
-        let mut compared = weights(without, with, at);
+        let mut compared = Pair { without: &without.left[at], with: &with.left[at], floor: &floor }.compared();
         let mut saved = without.model.fit.prior() - with.model.fit.prior();
         for _ in 0..PASSES {
-            let now = in_full_scales(&compared.weights());
+            let now = compared.weights(&sensors.full_scale);
             let (a, prior_a) = without.moved(scheme, at, &now, &sensors.full_scale);
             let (c, prior_c) = with.moved(scheme, at, &now, &sensors.full_scale);
             compared = Pair { without: &a, with: &c, floor: &floor }.compared();

@@ -3,7 +3,7 @@
 use super::super::effects::Coefficient;
 use super::super::estimate::Fit;
 use super::super::hypotheses::Hypothesis;
-use super::super::policy::{DELTA, FRONT, HOPED, ROUND};
+use super::super::policy::{DELTA, FRONT, HOPED};
 use super::super::problem::Problem;
 use super::clock::Deadline;
 use super::compare::{needed, total_gap};
@@ -30,18 +30,8 @@ pub fn fitted(ground: &Ground<'_>, order: Vec<Screened>, until: Deadline<'_>) ->
         let (places, is_parameter) = (h.attachments.len(), h.family == "parameter");
         Some(Rival { hypothesis, places, size: 0.0, is_parameter, model: Weighed::new(problem, fit) })
     };
-    let mut order = order.into_iter();
-    let mut rivals: Vec<Rival> = Vec::new();
-    loop {
-        let round: Vec<Screened> = order.by_ref().take(ROUND).collect();
-        if round.is_empty() {
-            break;
-        }
-        rivals.par_extend(round.into_par_iter().filter_map(one));
-        if until.is_over() {
-            break;
-        }
-    }
+    let (found, passed) = until.rounds(order, one);
+    let mut rivals: Vec<Rival> = found.into_iter().flatten().collect();
     rivals.sort_by(|a, b| a.model.gap(sensors).total_cmp(&b.model.gap(sensors)));
     let front = FRONT.min(rivals.len());
     rivals[..front].par_iter_mut().for_each(|rival| {
@@ -52,7 +42,7 @@ pub fn fitted(ground: &Ground<'_>, order: Vec<Screened>, until: Deadline<'_>) ->
         }
     });
     rivals.par_iter_mut().for_each(|r| r.size = size(problem, &problem.hypotheses[r.hypothesis], &r.model.fit));
-    Fitted { rivals, passed: order.map(|s| s.0).collect() }
+    Fitted { rivals, passed: passed.into_iter().map(|s| s.0).collect() }
 }
 
 /// A few iterations from every start; where they gain anything, the fit is completed from where the cost is least, and from
@@ -63,13 +53,13 @@ fn from_all(ground: &Ground<'_>, needed: f64, hypothesis: usize, mut starts: Vec
     let Ground { problem, sensors, before } = *ground;
     let rough = |s: Start| Fit::rough(s.candidate, s.x, &problem.train, &before.weights);
     let mut all: Vec<Fit> = starts.into_iter().filter_map(rough).collect();
-    let squares = |f: &Fit| (0..sensors.noise.len()).map(|i| f.mean_square(i)).collect::<Vec<f64>>();
-    let gap = |f: &Fit| total_gap(&squares(f), sensors);
+    let gap = |f: &Fit| total_gap(&f.mean_squares(), sensors);
     all.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
     let least = |a: &Fit, b: &Fit| gap(a).total_cmp(&gap(b));
     let other =
         all.iter().skip(1).min_by(|a, b| least(a, b)).filter(|f| gap(f) < (1.0 - DELTA) * gap(&all[0])).cloned();
-    let falls = |f: &Fit| squares(f).iter().zip(squares(before)).any(|(now, then)| *now < (1.0 - HOPED) * then);
+    let falls =
+        |f: &Fit| f.mean_squares().iter().zip(before.mean_squares()).any(|(now, then)| *now < (1.0 - HOPED) * then);
     let gains = |f: &Fit| 0.5 * (before.cost() - f.cost()) > needed;
     let best = all.into_iter().next()?;
     if !falls(&best) && !gains(&best) && !other.as_ref().is_some_and(falls) {

@@ -7,7 +7,7 @@ use super::super::estimate::candidate::{Errors, Products};
 use super::super::estimate::map::squares;
 use super::super::estimate::{Candidate, Fit, System};
 use super::super::hypotheses::Hypothesis;
-use super::super::policy::{DECADES, OTHER_WEIGHTING, ROUND, SCANNED, SIZES, STARTS, UNCHANGED};
+use super::super::policy::{DECADES, OTHER_WEIGHTING, SCANNED, SIZES, STARTS, UNCHANGED};
 use super::super::problem::{Chosen, Problem};
 use super::clock::Deadline;
 use super::compare::{Sensors, total_gap};
@@ -20,6 +20,7 @@ use std::ops::Range;
 
 /// Hypotheses in one joint run at most: its costs grow with the states by hypotheses, that of a run of its own does not.
 const TOGETHER: usize = 64;
+
 /// A model to which hypotheses are added.
 #[derive(Clone, Copy)]
 pub struct Ground<'a> {
@@ -36,8 +37,6 @@ pub struct Ground<'a> {
 pub struct Leaves {
     /// Weighed squares, prior included: by it signals count whose errors are small and white.
     pub cost: f64,
-    /// Mean square of each signal.
-    pub squares: Vec<f64>,
     /// Noise-free gap over all signals, in parts of full scale: by it those count whose errors are large.
     pub gap: f64,
 }
@@ -143,7 +142,7 @@ impl Ground<'_> {
         let cost = sums.iter().enumerate().map(|(i, s)| weights.weight(i) * s).sum::<f64>() + prior;
         let mean = |(i, s): (usize, &f64)| s.max(0.0) / self.before.samples(i).max(1.0);
         let squares: Vec<f64> = sums.iter().enumerate().map(mean).collect();
-        Leaves { cost, gap: total_gap(&squares, self.sensors), squares }
+        Leaves { cost, gap: total_gap(&squares, self.sensors) }
     }
 
     /// A model at nominal values of its tolerances, where it is bent away from them: what is large bends parameters, and from
@@ -183,19 +182,10 @@ impl Ground<'_> {
     fn begun(&self, open: &[usize], until: Deadline<'_>) -> (Vec<Beginnings>, Vec<usize>) {
         let (vanishing, others) = self.attached_to(open);
         let mut begun = self.together(vanishing);
-        let mut others = others.into_iter();
-        loop {
-            let round: Vec<Attached> = others.by_ref().take(ROUND).collect();
-            if round.is_empty() {
-                break;
-            }
-            begun.par_extend(round.into_par_iter().map(|(i, models)| (i, self.alone(i, models))));
-            if until.is_over() {
-                break;
-            }
-        }
+        let (alone, passed) = until.rounds(others, |(i, models)| (i, self.alone(i, models)));
+        begun.extend(alone);
         begun.sort_by_key(|b| b.0);
-        (begun, others.map(|(i, _)| i).collect())
+        (begun, passed.into_iter().map(|(i, _)| i).collect())
     }
 
     /// Hypotheses that vanish where they begin, and others.

@@ -287,27 +287,7 @@ mod tests {
 
     #[test]
     fn bounds_hold_what_the_functions_give() {
-        let all = [
-            Unary::Neg,
-            Unary::Not,
-            Unary::Abs,
-            Unary::Sign,
-            Unary::Sqrt,
-            Unary::Exp,
-            Unary::Log,
-            Unary::Log10,
-            Unary::Sin,
-            Unary::Cos,
-            Unary::Tan,
-            Unary::Asin,
-            Unary::Acos,
-            Unary::Atan,
-            Unary::Sinh,
-            Unary::Cosh,
-            Unary::Tanh,
-            Unary::Floor,
-        ];
-        for (op, from) in all.iter().flat_map(|op| (-30..30).map(move |k| (*op, 0.11 * f64::from(k)))) {
+        for (op, from) in Unary::ALL.iter().flat_map(|op| (-30..30).map(move |k| (*op, 0.11 * f64::from(k)))) {
             let x = Bounds { value: Span { lo: from, hi: from + 0.3 }, slope: Span::exactly(1.0) };
             let found = Bounds::unary(op, x);
             for k in 0..30 {
