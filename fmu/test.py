@@ -139,8 +139,9 @@ QUICKLY = ["ClosedCircuit.Case1", "Emps.Complete", "ServoPump.System"]
 # the mean square), and by no more than a two-hundredth at a row beside such an instant, where accelerations jump.
 TOLERANCE = 1e-8
 CLOSE, NEAR = 1e-4, 5e-3
-# How much farther in Model Exchange: another integrator finds those instants by its own tolerance.
-EXCHANGED = 2
+# In Model Exchange the other integrator, CVODE of FMPy, needs this one to come as close: ServoPump.System converges to the
+# same trajectory, from 2.7e-4 at 1e-8 to 3.3e-5 at 1e-9 in the force on its piston.
+EXCHANGED_TOLERANCE = 1e-9
 # Whether a count of the encoder falls before or behind a sampling instant is round-off from the first sample on.
 BY_CHANCE = ["ServoPump.Load"]
 # What the integrator of FMPy cannot do in Model Exchange, by what CVODE says then.
@@ -547,7 +548,9 @@ def circuit(work, name, fmi):
     shown = [v.name for v in description.modelVariables if v.name in columns and v.type in ("Real", "Float64") and v.causality in ("output", "local")]
     for kind, offered in (("CoSimulation", description.coSimulation), ("ModelExchange", description.modelExchange)):
         if offered:
-            how = {"output": shown, "output_interval": interval, "relative_tolerance": TOLERANCE, "start_values": held}
+            exchanged = kind == "ModelExchange"
+            tolerance = EXCHANGED_TOLERANCE if exchanged else TOLERANCE
+            how = {"output": shown, "output_interval": interval, "relative_tolerance": tolerance, "start_values": held}
             try:
                 found = fmpy.simulate_fmu(fmu, start_time=start, stop_time=stop, fmi_type=kind, **how)
             except RuntimeError as why:
@@ -557,15 +560,13 @@ def circuit(work, name, fmi):
                 else:
                     print(f"skip  {name}: FMI {fmi}, {kind}: {reason}", flush=True)
                 continue
-            exchanged = kind == "ModelExchange"
             if exchanged and name in BY_CHANCE:
                 print(f"skip  {name}: FMI {fmi}, {kind}: it runs; round-off decides what its encoder counts", flush=True)
                 continue
-            farther = EXCHANGED if exchanged else 1
-            compare(f"{name}: FMI {fmi}, {kind}", columns, found, shown, stop, farther)
+            compare(f"{name}: FMI {fmi}, {kind}", columns, found, shown, stop)
 
 
-def compare(what, columns, found, shown, stop, farther):
+def compare(what, columns, found, shown, stop):
     """Trajectories of FMPy beside those of a run in bramah."""
     worst, moving = (0.0, ""), 0
     # FMPy adds rows at events: of rows at one time the last is meant
@@ -578,7 +579,7 @@ def compare(what, columns, found, shown, stop, farther):
         scale = np.ptp(reference)
         if scale > STILL * max(1.0, np.max(np.abs(reference))):
             error = np.abs(found[one] - reference) / scale
-            worst = max(worst, (float(max(np.sqrt(np.mean(error**2)) / CLOSE, np.max(error) / NEAR)) / farther, one))
+            worst = max(worst, (float(max(np.sqrt(np.mean(error**2)) / CLOSE, np.max(error) / NEAR)), one))
             moving += 1
     check(f"{what}, {moving} signals as in bramah over {stop:g} s", same and moving > 0 and worst[0] < 1, worst if same else "other rows")
 
