@@ -4,8 +4,8 @@
 #
 #   python/test.sh [WHEEL] [-- ARGUMENTS OF PYTEST]
 #
-# WHEEL: use this one instead of building. PYTHON: the interpreter (python3). Without a way to PyPI it prints
-# `skipped: ...` and exits with 0; else with the status of pytest.
+# WHEEL: use this one instead of building an unoptimized one. PYTHON: the interpreter (python3). Without a way to PyPI it
+# prints `skipped: ...` and exits with 0; else with the status of pytest.
 set -eu
 
 here=$(cd "$(dirname "$0")" && pwd)
@@ -23,7 +23,7 @@ fresh_venv pytest
 if [ -z "$wheel" ]; then
     "$bin/pip" install --quiet 'maturin>=1.9,<2'
     # the target folder of the repository: dependencies that it has are not built again
-    CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-$here/../target} "$bin/maturin" build --release \
+    CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-$here/../target} "$bin/maturin" build \
         --manifest-path "$here/Cargo.toml" --interpreter "$bin/python" --out "$work/wheels"
     wheel=$(ls "$work"/wheels/*.whl)
 fi

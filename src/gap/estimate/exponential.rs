@@ -140,8 +140,8 @@ pub struct Exponential {
     high: DMatrix<f64>,
     /// Units of the states in which they drive each other about as strongly as they are driven.
     balance: Vec<f64>,
-    /// Matrix and step that the results belong to; no step yet where it is 0.
-    known: DMatrix<f64>,
+    /// Matrix that the results belong to, and its step; no step yet where it is 0.
+    pub known: DMatrix<f64>,
     length: f64,
     /// exp(h A).
     pub transition: DMatrix<f64>,

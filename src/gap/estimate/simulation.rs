@@ -17,8 +17,8 @@ const DEEPEST: u32 = 6;
 const CORRECTION: f64 = 1e-4;
 /// Part of it below which the next step is twice as long: the correction grows with the cube.
 const LENGTHENED: f64 = 0.1;
-/// What slopes may miss over a step with an older linearisation, as part of the states: it is added to first order, and the
-/// square of it is left.
+/// What the change of the linear model over a step may do to slopes, as part of the states, for it to be added to first order:
+/// the square of it is left. Beyond, a step has the exponential of the mean of both its ends.
 const MISSED: f64 = 0.1;
 
 /// How what a linearisation leaves out grows over a step: its weight beside phi_2, which belongs to growth in proportion.
@@ -49,9 +49,12 @@ pub struct Slopes {
     pub outputs: DMatrix<f64>,
     /// Per choice the parameter that it moves, and by how much; nothing for a choice of the first state.
     moves: Vec<Option<(usize, f64)>>,
-    /// Work space: the next states, what drives them, and d y / d x in the states' sizes, states by signals.
-    next: DMatrix<f64>,
+    /// What drives the states where the model was linearised last, in their sizes.
     driven: DMatrix<f64>,
+    /// Work space: the next states, what drives them at the end of a step, and d y / d x in the states' sizes, states by
+    /// signals.
+    next: DMatrix<f64>,
+    ahead: DMatrix<f64>,
     seen: DMatrix<f64>,
 }
 
@@ -60,13 +63,13 @@ impl Slopes {
     pub fn new(states: DMatrix<f64>, moves: Vec<Option<(usize, f64)>>, signals: usize) -> Self {
         let (n, choices) = states.shape();
         let zeros = || DMatrix::zeros(n, choices);
-        let (next, driven) = (zeros(), zeros());
         Slopes {
             states,
             outputs: DMatrix::zeros(choices, signals),
             moves,
-            next,
-            driven,
+            driven: zeros(),
+            next: zeros(),
+            ahead: zeros(),
             seen: DMatrix::zeros(n, signals),
         }
     }
@@ -86,17 +89,30 @@ impl Slopes {
         }
     }
 
-    /// S over a step whose transition and integral are known; `missed`: what an older linearisation lacks of the transition.
-    fn advance(&mut self, local: &Local, exponential: &Exponential, missed: Option<&DMatrix<f64>>, sizes: &[f64]) {
+    /// Takes over what drives the states where the model was just linearised.
+    fn drive(&mut self, local: &Local, sizes: &[f64]) {
         for (mut column, moved) in self.driven.column_iter_mut().zip(&self.moves) {
             if let Some((parameter, factor)) = moved {
                 let b = local.linear.b.column(*parameter);
                 column.iter_mut().zip(b.iter()).zip(sizes).for_each(|((to, b), size)| *to = b * factor / size);
             }
         }
+    }
+
+    /// S over a step whose transition and integral are known, up to where the model was just linearised; `missed`: what the
+    /// transition lacks to first order.
+    fn advance(&mut self, local: &Local, exponential: &Exponential, missed: Option<&DMatrix<f64>>, sizes: &[f64]) {
+        self.ahead.copy_from(&self.driven);
+        self.drive(local, sizes);
+        // the mean of both ends drives over the step
+        self.ahead += &self.driven;
+        self.ahead *= 0.5;
         exponential::multiply(&mut self.next, &exponential.transition, &self.states, 0.0);
-        exponential::multiply(&mut self.next, &exponential.integral, &self.driven, 1.0);
+        exponential::multiply(&mut self.next, &exponential.integral, &self.ahead, 1.0);
         if let Some(missed) = missed {
+            // what is missed acts on the states of the whole step, of which those of both ends are the mean
+            self.states += &self.next;
+            self.states *= 0.5;
             exponential::multiply(&mut self.next, missed, &self.states, 1.0);
         }
         std::mem::swap(&mut self.states, &mut self.next);
@@ -139,6 +155,7 @@ impl Run<'_> {
             .ok()?;
             if let Some(slopes) = &mut self.slopes {
                 slopes.look(self.local, self.sizes);
+                slopes.drive(self.local, self.sizes);
             }
             if at(k, self.local, self.slopes.as_ref().map(|s| &s.outputs)).is_break() {
                 return None;
@@ -154,6 +171,20 @@ impl Run<'_> {
         }
         Some(())
     }
+}
+
+/// How the scaled matrix where the model was linearised last differs from another one.
+fn differ(out: &mut DMatrix<f64>, run: &Run<'_>, from: &DMatrix<f64>) {
+    let (a, sizes) = (&run.local.linear.a, run.sizes);
+    for (j, mut column) in out.column_iter_mut().enumerate() {
+        let from = from.column(j);
+        (0..sizes.len()).for_each(|i| column[i] = a[(i, j)] * sizes[j] / sizes[i] - from[i]);
+    }
+}
+
+/// Whether what a transition lacks may be added to first order.
+fn is_small(missed: &DMatrix<f64>) -> bool {
+    missed.row_iter().all(|row| row.iter().map(|v| v.abs()).sum::<f64>() <= MISSED)
 }
 
 /// Outputs of a model over a recording, from its own start: signals by samples. `None` where it does not reach the end.
@@ -176,9 +207,12 @@ struct Stepper {
     /// Scaled matrices of the last linearisation: states by states, states by inputs.
     a: DMatrix<f64>,
     b: DMatrix<f64>,
-    /// How the matrix where the model was linearised last differs from `a`, and what a transition lacks of it.
-    change_of_a: DMatrix<f64>,
+    /// How the matrices at both ends of a step differ from that of its exponential, and what a transition lacks of them.
+    change_before: DMatrix<f64>,
+    change_after: DMatrix<f64>,
     missed: DMatrix<f64>,
+    /// That of a step over which the matrix changes much.
+    mean: Exponential,
     /// Per length the step that the linearisation served last; 0 where it did not.
     lengths: [f64; DEEPEST as usize + 1],
     /// Halvings of the last step.
@@ -201,8 +235,10 @@ impl Stepper {
             exponentials: (0..=DEEPEST).map(|_| Exponential::new(n)).collect(),
             a: DMatrix::zeros(n, n),
             b: DMatrix::zeros(n, recording.inputs.len()),
-            change_of_a: DMatrix::zeros(n, n),
+            change_before: DMatrix::zeros(n, n),
+            change_after: DMatrix::zeros(n, n),
             missed: DMatrix::zeros(n, n),
+            mean: Exponential::new(n),
             lengths: [0.0; DEEPEST as usize + 1],
             depth: 0,
             rate: zeros(),
@@ -227,19 +263,21 @@ impl Stepper {
             let (after, length) = (fraction(gone), fraction(part));
             let serves = exponential::as_long(length, self.lengths[self.depth as usize]);
             let mut off = f64::INFINITY;
-            let mut older = serves && (run.slopes.is_none() || self.serves_slopes(run));
+            let older = serves && (run.slopes.is_none() || self.serves_slopes(run));
             if older {
                 self.grow();
                 off = self.step(run, t, after, length, Remainder::Proportional);
             }
             if off > CORRECTION {
-                older = false;
                 if !linear_here {
                     self.inputs.at(after, &mut self.u);
                     run.local.linearize(t + after, &run.state, run.theta, &self.u).ok()?;
                     linear_here = true;
                 }
                 self.linear(run, length);
+                if run.slopes.is_some() {
+                    differ(&mut self.change_before, run, &self.exponentials[self.depth as usize].known);
+                }
                 off = self.step(run, t, after, length, Remainder::Square);
             }
             if off > CORRECTION && self.depth < DEEPEST {
@@ -249,16 +287,18 @@ impl Stepper {
             if off.is_infinite() {
                 return None;
             }
-            if let Some(slopes) = &mut run.slopes {
-                let missed = older.then_some(&self.missed);
-                slopes.advance(run.local, &self.exponentials[self.depth as usize], missed, run.sizes);
-            }
             run.state.copy_from_slice(&self.next);
             gone += part;
-            linear_here = false;
+            linear_here = run.slopes.is_some();
+            if linear_here {
+                run.local.linearize(t + fraction(gone), &run.state, run.theta, &self.u).ok()?;
+                self.take_slopes(run, length);
+            }
             // at the next sample the model is looked at anyway
             if gone < WHOLE {
-                run.local.evaluate(t + fraction(gone), &run.state, run.theta, &self.u).ok()?;
+                if !linear_here {
+                    run.local.evaluate(t + fraction(gone), &run.state, run.theta, &self.u).ok()?;
+                }
                 self.take_rates(run);
             }
             if off < LENGTHENED * CORRECTION && self.depth > 0 && gone.is_multiple_of(2 * part) {
@@ -273,16 +313,35 @@ impl Stepper {
         self.rate.iter_mut().zip(scaled).for_each(|(to, r)| *to = r);
     }
 
-    /// Whether an older linearisation will do for slopes; finds what its transition lacks of the last one.
+    /// Whether an older linearisation will do for slopes.
     fn serves_slopes(&mut self, run: &Run<'_>) -> bool {
-        let (a, sizes) = (&run.local.linear.a, run.sizes);
-        for (j, mut column) in self.change_of_a.column_iter_mut().enumerate() {
-            let old = self.a.column(j);
-            (0..sizes.len()).for_each(|i| column[i] = a[(i, j)] * sizes[j] / sizes[i] - old[i]);
+        let exponential = &self.exponentials[self.depth as usize];
+        differ(&mut self.change_before, run, &exponential.known);
+        exponential::multiply(&mut self.missed, &exponential.integral, &self.change_before, 0.0);
+        is_small(&self.missed)
+    }
+
+    /// Slopes over a step to where the model was just linearised. The matrix goes straight from one end to the other:
+    /// what the transition lacks is integral (A_0 - A) + twice (A_1 - A_0)/h.
+    fn take_slopes(&mut self, run: &mut Run<'_>, length: f64) {
+        let Stepper { exponentials, change_before, change_after, missed, mean, depth, .. } = self;
+        let exponential = &exponentials[*depth as usize];
+        differ(change_after, run, &exponential.known);
+        *change_after -= &*change_before;
+        *change_after /= length;
+        exponential::multiply(missed, &exponential.integral, change_before, 0.0);
+        exponential::multiply(missed, &exponential.twice, change_after, 1.0);
+        let Some(slopes) = &mut run.slopes else { return };
+        if is_small(missed) {
+            slopes.advance(run.local, exponential, Some(missed), run.sizes);
+        } else {
+            // a corner was passed: to first order what is stiff behind it would throw slopes about
+            *change_after *= 0.5 * length;
+            *change_after += &*change_before;
+            *change_after += &exponential.known;
+            mean.compute(change_after, length);
+            slopes.advance(run.local, mean, None, run.sizes);
         }
-        let integral = &self.exponentials[self.depth as usize].integral;
-        exponential::multiply(&mut self.missed, integral, &self.change_of_a, 0.0);
-        (0..sizes.len()).all(|i| self.missed.row(i).iter().map(|v| v.abs()).sum::<f64>() <= MISSED)
     }
 
     /// Takes over the linearisation.

@@ -21,11 +21,11 @@ pub struct Fitted {
 }
 
 /// Fits hypotheses from all their starts, beside the model before, until the time is over; at least the first ones. The
-/// front by both weightings.
+/// front by both weightings while there is time.
 pub fn fitted(ground: &Ground<'_>, order: Vec<Screened>, until: Deadline<'_>) -> Fitted {
     let Ground { problem, sensors, .. } = *ground;
     let one = |(hypothesis, starts): Screened| {
-        let fit = from_all(ground, needed(problem.hypotheses.len()), hypothesis, starts)?;
+        let fit = from_all(ground, needed(problem.hypotheses.len()), hypothesis, starts, until)?;
         let h = &problem.hypotheses[hypothesis];
         let (places, is_parameter) = (h.attachments.len(), h.family == "parameter");
         Some(Rival { hypothesis, places, size: 0.0, is_parameter, model: Weighed::new(problem, fit) })
@@ -36,6 +36,9 @@ pub fn fitted(ground: &Ground<'_>, order: Vec<Screened>, until: Deadline<'_>) ->
     let front = FRONT.min(rivals.len());
     rivals[..front].par_iter_mut().for_each(|rival| {
         for other in [from_nominal, at_the_noise] {
+            if until.is_over() {
+                break;
+            }
             if let Some(better) = other(problem, sensors, &rival.model) {
                 rival.model = better;
             }
@@ -45,9 +48,15 @@ pub fn fitted(ground: &Ground<'_>, order: Vec<Screened>, until: Deadline<'_>) ->
     Fitted { rivals, passed: passed.into_iter().map(|s| s.0).collect() }
 }
 
-/// A few iterations from every start; where they gain anything, the fit is completed from where the cost is least, and from
-/// where the gap is if that is less by far.
-fn from_all(ground: &Ground<'_>, needed: f64, hypothesis: usize, mut starts: Vec<Start>) -> Option<Fit> {
+/// A few iterations from every start; where they gain anything, the fit is completed from where the cost is least, and,
+/// while there is time, from where the gap is if that is less by far.
+fn from_all(
+    ground: &Ground<'_>,
+    needed: f64,
+    hypothesis: usize,
+    mut starts: Vec<Start>,
+    until: Deadline<'_>,
+) -> Option<Fit> {
     let sizes = starts.first().map(|s| ground.of_size(hypothesis, s)).unwrap_or_default();
     starts.extend(sizes);
     let Ground { problem, sensors, before } = *ground;
@@ -66,6 +75,7 @@ fn from_all(ground: &Ground<'_>, needed: f64, hypothesis: usize, mut starts: Vec
         return Some(best);
     }
     let completed = |f: Fit| no_worse(problem, before, f.candidate, f.x);
+    let other = other.filter(|_| !until.is_over());
     [Some(best), other].into_iter().flatten().filter_map(completed).reduce(Fit::better_of)
 }
 

@@ -2,7 +2,7 @@
 //! no name says more.
 
 use super::super::data::Recording;
-use super::super::estimate::Fit;
+use super::super::estimate::{Candidate, Fit};
 use super::super::hypotheses::Hypothesis;
 use super::super::policy::{EFFECTS, SEEN};
 use super::super::problem::{Chosen, Problem, Tolerance};
@@ -118,8 +118,7 @@ pub fn search<'a>(
     progress: Progress<'_>,
 ) -> Result<Found, Trouble> {
     let mut watch = Watch { progress, stopped: false };
-    let (mut search, base) = begun(problem, held, &mut watch)?;
-    search.ends = Deadline::of(budget);
+    let (mut search, base) = begun(problem, held, Deadline::of(budget), &mut watch)?;
     let (mut last, mut taken) = (base.clone(), Vec::new());
     let mut shape = None;
     for step in 1..=EFFECTS + 1 {
@@ -133,7 +132,7 @@ pub fn search<'a>(
             shape = Some(effect);
             break;
         }
-        last = settled(problem, &search.chooser.criteria.sensors, search.widened(chosen));
+        last = settled(problem, &search.chooser.criteria.sensors, search.widened(chosen), search.ends);
         taken.push(effect);
         search.drop_needless(&mut last, &mut taken);
         if search.is_recording_error(&taken) {
@@ -166,7 +165,7 @@ pub fn explained(
     progress: Progress<'_>,
 ) -> Result<Option<Found>, Trouble> {
     let mut watch = Watch { progress, stopped: false };
-    let (search, base) = begun(problem, held, &mut watch)?;
+    let (search, base) = begun(problem, held, Deadline::default(), &mut watch)?;
     watch.begin(Stage::Fit(1)).ok_or(Trouble::Stopped)?;
     let sensors = &search.chooser.criteria.sensors;
     let ground = Ground { problem, sensors, before: &base.fit };
@@ -187,14 +186,17 @@ pub fn explained(
 fn begun<'a>(
     problem: &'a Problem<'a>,
     held: &'a [Recording],
+    ends: Deadline<'a>,
     watch: &mut Watch<'_>,
 ) -> Result<(Search<'a>, Weighed), Trouble> {
     watch.begin(Stage::Tolerances).ok_or(Trouble::Stopped)?;
     let sensors = models::sensors(problem);
     let nominal = models::nominal(problem).map_err(Trouble::Model)?;
     let x = nominal.present();
-    let base = weighed(problem, &sensors, &nominal, &x).ok_or_else(|| stops(problem, &nominal, &x))?;
-    let base = settled(problem, &sensors, base);
+    let until = ends.of_step();
+    let base = weighed(problem, &sensors, (nominal.clone(), x.clone()), until);
+    let base = base.ok_or_else(|| stops(problem, &nominal, &x))?;
+    let base = settled(problem, &sensors, base, until);
     let first = (0..sensors.noise.len()).map(|i| left_by(&base.left[0], i, &sensors)).collect();
     let criteria = Criteria { sensors, first, count: problem.hypotheses.len() };
     let held = Held::new(held, &nominal, &x, &criteria.sensors);
@@ -206,13 +208,19 @@ fn begun<'a>(
         passed: Vec::new(),
         undecided: Vec::new(),
         shape_says_more: false,
-        ends: Deadline::default(),
+        ends,
     };
     Ok((search, base))
 }
 
+/// A hypothesis for which the time did not last.
+fn passed(step: usize, hypothesis: usize) -> Trial {
+    let chosen = Chosen { hypothesis, values: Vec::new() };
+    Trial { step, chosen, found: None, reason: Some(Reason::Behind) }
+}
+
 /// Where the nominal model stops.
-fn stops(problem: &Problem<'_>, nominal: &super::super::estimate::Candidate, x: &[f64]) -> Trouble {
+fn stops(problem: &Problem<'_>, nominal: &Candidate, x: &[f64]) -> Trouble {
     let stop = |(r, file): (&Recording, &String)| Some(Trouble::Stops(file.clone(), nominal.stops(x, r)?));
     let first = problem.train.iter().zip(&problem.files).find_map(stop);
     first.unwrap_or_else(|| Trouble::Stops(String::new(), 0.0))
@@ -304,6 +312,11 @@ impl Search<'_> {
         if self.visible.is_some() && self.chooser.criteria.nothing_is_worth_it(before) {
             return Vec::new();
         }
+        // a step that ends before it begins would only add to what was fitted when there was time
+        if step > 1 && self.ends.is_over() {
+            self.passed = open.iter().map(|&i| passed(step, i)).collect();
+            return Vec::new();
+        }
         let (problem, sensors) = (self.problem, &self.chooser.criteria.sensors);
         let ground = Ground { problem, sensors, before: &before.fit };
         let until = self.ends.of_step();
@@ -314,12 +327,14 @@ impl Search<'_> {
             return Vec::new();
         }
         let found = fitted(&ground, screen.order, until);
-        let trial = |hypothesis: usize| {
-            let chosen = Chosen { hypothesis, values: Vec::new() };
-            Trial { step, chosen, found: None, reason: Some(Reason::Behind) }
-        };
-        self.passed = found.passed.into_iter().chain(screen.passed).map(trial).collect();
+        self.passed = found.passed.into_iter().chain(screen.passed).map(|i| passed(step, i)).collect();
         found.rivals
+    }
+
+    /// A model fitted from where it is.
+    fn weighed(&self, model: Candidate) -> Option<Weighed> {
+        let x = model.present();
+        weighed(self.problem, &self.chooser.criteria.sensors, (model, x), self.ends)
     }
 
     /// The model with the widths of everything that was taken free, where that is better.
@@ -328,7 +343,7 @@ impl Search<'_> {
         let wider = models::candidate(self.problem, &causes, Some(&chosen.fit.tolerances()), causes.len());
         let fitted = wider
             .filter(|c| c.coordinates.len() > chosen.fit.x.len())
-            .and_then(|c| weighed(self.problem, &self.chooser.criteria.sensors, &c, &c.present()));
+            .and_then(|c| self.weighed(c));
         let better = |f: &Weighed| ahead(&chosen, f, &self.chooser.criteria.sensors) > 0.0;
         fitted.filter(better).unwrap_or(chosen)
     }
@@ -340,7 +355,7 @@ impl Search<'_> {
             let mut causes = last.fit.causes();
             causes.remove(i);
             let without = models::candidate(self.problem, &causes, Some(&last.fit.tolerances()), causes.len());
-            let fitted = without.and_then(|c| weighed(self.problem, &self.chooser.criteria.sensors, &c, &c.present()));
+            let fitted = without.and_then(|c| self.weighed(c));
             match fitted.filter(|f| !self.chooser.criteria.worse(last, f)) {
                 Some(fitted) => {
                     *last = fitted;

@@ -3,6 +3,7 @@
 use super::super::estimate::{Candidate, Fit, Weights};
 use super::super::policy::{LEAST, OTHER_WEIGHTING, SETTLING, SURE};
 use super::super::problem::Problem;
+use super::clock::Deadline;
 use super::compare::{Sensors, differences, evidence, gap, signal_gap, t_statistic};
 use super::folds::{LeftOut, left_out};
 
@@ -28,17 +29,27 @@ impl Weighed {
 }
 
 /// Both weightings: errors as they are now (tolerances hold), and as if only the sensors' noise were left (the data hold).
-/// Left-out data and the prior decide.
-pub fn weighed(problem: &Problem<'_>, sensors: &Sensors, candidate: &Candidate, x: &[f64]) -> Option<Weighed> {
-    let one = Weighed::new(problem, as_they_are(problem, candidate.clone(), x.to_vec())?);
-    Some(at_the_noise(problem, sensors, &one).unwrap_or(one))
+/// Left-out data and the prior decide. Once the time is over the first one stands.
+pub fn weighed(
+    problem: &Problem<'_>,
+    sensors: &Sensors,
+    (candidate, x): (Candidate, Vec<f64>),
+    until: Deadline<'_>,
+) -> Option<Weighed> {
+    let one = Weighed::new(problem, as_they_are(problem, candidate, x)?);
+    let other = if until.is_over() { None } else { at_the_noise(problem, sensors, &one) };
+    Some(other.unwrap_or(one))
 }
 
-/// A model fitted again with the weights that it left, until left-out data see no difference: what is not at its optimum
-/// would be improved by any effect.
-pub fn settled(problem: &Problem<'_>, sensors: &Sensors, mut model: Weighed) -> Weighed {
+/// A model fitted again with the weights that it left, until left-out data see no difference or the time is over: what is
+/// not at its optimum would be improved by any effect.
+pub fn settled(problem: &Problem<'_>, sensors: &Sensors, mut model: Weighed, until: Deadline<'_>) -> Weighed {
     for _ in 0..SETTLING {
-        let Some(next) = weighed(problem, sensors, &model.fit.candidate, &model.fit.x) else { break };
+        if until.is_over() {
+            break;
+        }
+        let begun = (model.fit.candidate.clone(), model.fit.x.clone());
+        let Some(next) = weighed(problem, sensors, begun, until) else { break };
         if !better(&model, &next, sensors) {
             break;
         }

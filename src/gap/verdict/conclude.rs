@@ -9,6 +9,7 @@ use super::super::mistakes;
 use super::super::policy::VISIBLE;
 use super::super::problem::{Chosen, Problem, Tolerance};
 use super::super::select::choose::{Taken, Trial};
+use super::super::select::clock::Deadline;
 use super::super::select::models;
 use super::super::select::search::Found;
 use super::super::select::weighed::{Weighed, at_nominal, weighed};
@@ -165,7 +166,7 @@ impl Conclusion<'_> {
         let candidate =
             models::candidate(self.problem, &causes, Some(&self.found.base.fit.tolerances()), causes.len())?;
         let x = candidate.present();
-        let Weighed { fit, .. } = weighed(self.problem, &models::sensors(self.problem), &candidate, &x)?;
+        let Weighed { fit, .. } = weighed(self.problem, &models::sensors(self.problem), (candidate, x), Deadline::default())?;
         self.left(&fit.candidate, &fit.x).total(&self.problem.full_scale)
     }
 
