@@ -48,6 +48,44 @@ fn main() {
         println!("ahead of 4 over 2: {}", two.ahead(&three));
         return;
     }
+    if let Some(effect) = std::env::args().nth(3).filter(|_| std::env::args().nth(2).as_deref() == Some("effect")) {
+        use bramah::internals::gap::estimate::{Fit, Weights};
+        use bramah::internals::gap::problem::Chosen;
+        let (name, place) = effect.split_once('@').unwrap();
+        let h = problem.hypotheses.iter().position(|h| h.effect.contains(name) && h.places().iter().any(|p| p.place == place)).unwrap();
+        let values = models::beginnings(&problem.hypotheses[h]).remove(0);
+        println!("{} at {:?} from {values:?}", problem.hypotheses[h].effect, place);
+        let c = models::candidate(problem, &[Chosen { hypothesis: h, values }], None, 0).unwrap();
+        let x = c.present();
+        let full = &problem.full_scale;
+        let e = c.evaluate(&x, &problem.train).unwrap();
+        let t = std::time::Instant::now();
+        let show = |what: &str, f: &Fit| println!("{:7.2} {what} cost {:.3} prior {:.2} ms {:?} x {:?}", t.elapsed().as_secs_f64(), f.cost(), f.prior(),
+            f.mean_squares().iter().zip(&c.deviations).map(|(m, d)| format!("{:.3}", m.sqrt() / d)).collect::<Vec<_>>(),
+            f.x.iter().zip(&x).map(|(a, b)| format!("{:.2}", a - b)).collect::<Vec<_>>());
+        let run = |what: &str, first: Weights| {
+            let mut f = Fit::rough(c.clone(), x.clone(), &problem.train, &first).unwrap();
+            show(&format!("{what} rough"), &f);
+            {
+                let mut y = f.x.clone();
+                y[..problem.tolerances.len()].copy_from_slice(&x[..problem.tolerances.len()]);
+                let e = c.evaluate(&y, &problem.train).unwrap();
+                let g = Fit { candidate: c.clone(), x: y.clone(), weights: Weights::of(&e.errors, full), evaluated: e };
+                show(&format!("{what} reset"), &g);
+                let g = Fit::rough(c.clone(), y, &problem.train, &g.weights).unwrap();
+                show(&format!("{what} reset, rough"), &g);
+                let g = Fit::of(c.clone(), g.x, &problem.train, full, None, 2).unwrap();
+                show(&format!("{what} reset, of"), &g);
+            }
+            for _ in 0..1 {
+                f = Fit::of(c.clone(), f.x.clone(), &problem.train, full, None, 1).unwrap();
+                show(what, &f);
+            }
+        };
+        run("own", Weights::of(&e.errors, full));
+        run("white", Weights::sensors(&problem.noise_floor, full));
+        return;
+    }
     let m = problem.signals.len();
     let n = x.len();
     println!("{:30} rms slope / rms difference / rms(slope - difference), in deviations of the sensor per tolerance", "");

@@ -100,8 +100,7 @@ impl Fit {
     ) -> Option<Fit> {
         let evaluated = candidate.evaluate(&x, train)?;
         let weights = first.unwrap_or_else(|| Weights::of(&evaluated.errors, full_scale));
-        let mut fit = Fit { candidate, x, evaluated, weights };
-        fit.candidate.off.clone_from(&fit.evaluated.off);
+        let mut fit = Fit::at(candidate, x, evaluated, weights);
         fit.descend(train, ITERATIONS);
         for _ in 1..rounds {
             let mut next = fit.clone();
@@ -117,12 +116,26 @@ impl Fit {
     }
 
     /// A few iterations from a point, with given weights. `None` where the model does not reach the end of a recording.
-    pub fn rough(mut candidate: Candidate, x: Vec<f64>, train: &[Recording], weights: &Weights) -> Option<Fit> {
+    pub fn rough(candidate: Candidate, x: Vec<f64>, train: &[Recording], weights: &Weights) -> Option<Fit> {
         let evaluated = candidate.evaluate(&x, train)?;
-        candidate.off.clone_from(&evaluated.off);
-        let mut fit = Fit { candidate, x, evaluated, weights: weights.clone() };
+        let mut fit = Fit::at(candidate, x, evaluated, weights.clone());
         fit.descend(train, ROUGH);
         Some(fit)
+    }
+
+    /// The same with weights as the errors are there.
+    pub fn rough_by_errors(candidate: Candidate, x: Vec<f64>, train: &[Recording], full_scale: &[f64]) -> Option<Fit> {
+        let evaluated = candidate.evaluate(&x, train)?;
+        let weights = Weights::of(&evaluated.errors, full_scale);
+        let mut fit = Fit::at(candidate, x, evaluated, weights);
+        fit.descend(train, ROUGH);
+        Some(fit)
+    }
+
+    /// A model where it was evaluated.
+    fn at(mut candidate: Candidate, x: Vec<f64>, evaluated: Evaluated, weights: Weights) -> Fit {
+        candidate.off.clone_from(&evaluated.off);
+        Fit { candidate, x, evaluated, weights }
     }
 
     /// Nats by which the data that were fitted and the prior prefer another fit to them, each signal with the variance that

@@ -1,15 +1,15 @@
 //! The hypotheses of one step as models that are fitted.
 
 use super::super::effects::Coefficient;
-use super::super::estimate::Fit;
+use super::super::estimate::{Fit, Weights};
 use super::super::hypotheses::Hypothesis;
-use super::super::policy::{DELTA, FRONT, HOPED};
+use super::super::policy::{DELTA, FRONT, HOPED, OTHER_WEIGHTING};
 use super::super::problem::Problem;
 use super::clock::Deadline;
 use super::compare::{needed, total_gap};
 use super::criteria::Rival;
 use super::screen::{Ground, Screened, Start};
-use super::weighed::{Weighed, at_the_noise, from_nominal, no_worse};
+use super::weighed::{Weighed, at_nominal, at_the_noise, from_nominal, no_worse};
 use rayon::prelude::*;
 
 /// What came of fitting hypotheses.
@@ -48,8 +48,8 @@ pub fn fitted(ground: &Ground<'_>, order: Vec<Screened>, until: Deadline<'_>) ->
     Fitted { rivals, passed: passed.into_iter().map(|s| s.0).collect() }
 }
 
-/// A few iterations from every start; where they gain anything, the fit is completed from where the cost is least, and,
-/// while there is time, from where the gap is if that is less by far.
+/// A few iterations from every start; where they gain anything, the best fit is completed, and, while there is time, that
+/// with the least gap if it is less by far.
 fn from_all(
     ground: &Ground<'_>,
     needed: f64,
@@ -60,23 +60,36 @@ fn from_all(
     let sizes = starts.first().map(|s| ground.of_size(hypothesis, s)).unwrap_or_default();
     starts.extend(sizes);
     let Ground { problem, sensors, before } = *ground;
-    let rough = |s: Start| Fit::rough(s.candidate, s.x, &problem.train, &before.weights);
-    let mut all: Vec<Fit> = starts.into_iter().filter_map(rough).collect();
+    let mut all: Vec<Fit> = starts.into_iter().filter_map(|s| rough(ground, s)).collect();
     let gap = |f: &Fit| total_gap(&f.mean_squares(), sensors);
-    all.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
     let least = |a: &Fit, b: &Fit| gap(a).total_cmp(&gap(b));
-    let other =
-        all.iter().skip(1).min_by(|a, b| least(a, b)).filter(|f| gap(f) < (1.0 - DELTA) * gap(&all[0])).cloned();
+    let first = (0..all.len()).reduce(|a, b| if all[a].ahead(&all[b]) > 0.0 { b } else { a })?;
+    let best = all.swap_remove(first);
+    let other = all.into_iter().min_by(least).filter(|f| gap(f) < (1.0 - DELTA) * gap(&best));
     let falls =
         |f: &Fit| f.mean_squares().iter().zip(before.mean_squares()).any(|(now, then)| *now < (1.0 - HOPED) * then);
-    let gains = |f: &Fit| 0.5 * (before.cost() - f.cost()) > needed;
-    let best = all.into_iter().next()?;
-    if !falls(&best) && !gains(&best) && !other.as_ref().is_some_and(falls) {
+    if !falls(&best) && before.ahead(&best) <= needed && !other.as_ref().is_some_and(falls) {
         return Some(best);
     }
     let completed = |f: Fit| no_worse(problem, before, f.candidate, f.x);
     let other = other.filter(|_| !until.is_over());
     [Some(best), other].into_iter().flatten().filter_map(completed).reduce(Fit::better_of)
+}
+
+/// A few iterations from a start, with the weights of the model before. Where that is bent away from the data sheet, they may
+/// count little what the hypothesis explains: then also as if only the sensors' noise were left, which finds the size that the
+/// data ask for, and from there with parameters at the data sheet again.
+fn rough(ground: &Ground<'_>, start: Start) -> Option<Fit> {
+    let Ground { problem, sensors, before } = *ground;
+    let (candidate, x, train) = (start.candidate, start.x, &problem.train);
+    let unbent = (before.prior() > OTHER_WEIGHTING).then(|| {
+        let white = Weights::sensors(&sensors.noise, &problem.full_scale);
+        let sized = Fit::rough(candidate.clone(), at_nominal(problem, &candidate, &x), train, &white)?;
+        let x = at_nominal(problem, &sized.candidate, &sized.x);
+        Fit::rough_by_errors(sized.candidate, x, train, &problem.full_scale)
+    });
+    let bent = Fit::rough(candidate, x, train, &before.weights);
+    bent.into_iter().chain(unbent.flatten()).reduce(Fit::better_of)
 }
 
 /// By how many of its standard deviations the largest free coefficient of a model's last cause differs from nothing; a
