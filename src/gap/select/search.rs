@@ -4,7 +4,7 @@
 use super::super::data::Recording;
 use super::super::estimate::{Candidate, Fit};
 use super::super::hypotheses::Hypothesis;
-use super::super::policy::{EFFECTS, SEEN};
+use super::super::policy::{EFFECTS, SEEN, SETTLING};
 use super::super::problem::{Chosen, Problem, Tolerance};
 use super::choose::{Chooser, Taken, Trial};
 use super::clock::{Budget, Deadline};
@@ -13,7 +13,7 @@ use super::criteria::{Criteria, Judged, Reason, Rival};
 use super::models;
 use super::rivals::fitted;
 use super::screen::{Ground, screened};
-use super::weighed::{Weighed, ahead, left_by, settled, weighed};
+use super::weighed::{Weighed, ahead, as_in, left_by, settled, weighed};
 use crate::diag::Diagnostic;
 use std::fmt;
 use std::ops::ControlFlow;
@@ -118,15 +118,18 @@ pub fn search<'a>(
     progress: Progress<'_>,
 ) -> Result<Found, Trouble> {
     let mut watch = Watch { progress, stopped: false };
-    let (mut search, base) = begun(problem, held, Deadline::of(budget), &mut watch)?;
+    let (mut search, mut base) = begun(problem, held, Deadline::of(budget), &mut watch)?;
     let (mut last, mut taken) = (base.clone(), Vec::new());
     let mut shape = None;
     for step in 1..=EFFECTS + 1 {
-        let found = if step <= EFFECTS { search.step(step, &last, &mut watch) } else { None };
+        let found = if step <= EFFECTS { search.step(step, &mut last, &mut watch) } else { None };
         let found = found.or_else(|| {
             watch.begin(Stage::Shapes)?;
-            search.shape(step, &last)
+            search.shape(step, &mut last)
         });
+        if taken.is_empty() {
+            base.clone_from(&last);
+        }
         let Some((chosen, effect)) = found else { break };
         if search.h(effect.hypothesis).is_shape() {
             shape = Some(effect);
@@ -169,8 +172,8 @@ pub fn explained(
     watch.begin(Stage::Fit(1)).ok_or(Trouble::Stopped)?;
     let sensors = &search.chooser.criteria.sensors;
     let ground = Ground { problem, sensors, before: &base.fit };
-    let rivals =
-        fitted(&ground, screened(&ground, &[hypothesis], Deadline::default()).order, Deadline::default()).rivals;
+    let screen = screened(&ground, &[hypothesis], Deadline::default());
+    let rivals = fitted(&ground, screen.order, Deadline::default()).rivals;
     let Some(last) = rivals.first().map(|r| r.model.clone()) else { return Ok(None) };
     let closes = 1.0 - last.gap(sensors) / base.gap(sensors).max(f64::MIN_POSITIVE);
     let trials = search.chooser.choose(1, &base, rivals).trials;
@@ -231,9 +234,17 @@ impl Search<'_> {
         &self.problem.hypotheses[index]
     }
 
-    /// The rival that is taken.
-    fn choose(&mut self, step: usize, before: &Weighed, rivals: Vec<Rival>) -> Option<(Weighed, Taken)> {
-        let mut choice = self.chooser.choose(step, before, rivals);
+    /// The rival that is taken. If with its parameters the model before comes out better as well, that one was not at its
+    /// optimum: it moves there, and the rivals are compared with it again.
+    fn choose(&mut self, step: usize, before: &mut Weighed, rivals: Vec<Rival>) -> Option<(Weighed, Taken)> {
+        let mut choice = self.chooser.choose(step, before, rivals.clone());
+        for _ in 0..SETTLING {
+            let sensors = &self.chooser.criteria.sensors;
+            let again = choice.taken.as_ref().and_then(|(m, _)| as_in(self.problem, sensors, before, &m.fit));
+            let Some(again) = again else { break };
+            *before = again;
+            choice = self.chooser.choose(step, before, rivals.clone());
+        }
         self.trials.append(&mut choice.trials);
         self.trials.append(&mut self.passed);
         self.undecided = choice.undecided;
@@ -241,7 +252,7 @@ impl Search<'_> {
     }
 
     /// Looks for one more effect.
-    fn step(&mut self, step: usize, before: &Weighed, watch: &mut Watch<'_>) -> Option<(Weighed, Taken)> {
+    fn step(&mut self, step: usize, before: &mut Weighed, watch: &mut Watch<'_>) -> Option<(Weighed, Taken)> {
         let open = self.open(&before.fit);
         self.beside(step, before, &open, watch)
     }
@@ -250,7 +261,7 @@ impl Search<'_> {
     fn beside(
         &mut self,
         step: usize,
-        before: &Weighed,
+        before: &mut Weighed,
         open: &[usize],
         watch: &mut Watch<'_>,
     ) -> Option<(Weighed, Taken)> {
@@ -265,7 +276,7 @@ impl Search<'_> {
 
     /// A shape beside a model to which no effect could be added; or an effect after all, if with a shape it is sure that
     /// something is missing.
-    fn shape(&mut self, step: usize, last: &Weighed) -> Option<(Weighed, Taken)> {
+    fn shape(&mut self, step: usize, last: &mut Weighed) -> Option<(Weighed, Taken)> {
         let mut rivals = self.rivals(step, last, &self.shapes(), None);
         self.shape_says_more = !rivals.is_empty();
         if rivals.is_empty() {
@@ -286,7 +297,7 @@ impl Search<'_> {
             return None;
         }
         self.undecided.clear();
-        let (model, shape) = self.beside(2, base, &self.shapes(), watch)?;
+        let (model, shape) = self.beside(2, &mut base.clone(), &self.shapes(), watch)?;
         self.chooser.criteria.worse(&model, last).then_some(shape)
     }
 
