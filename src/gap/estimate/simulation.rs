@@ -17,8 +17,8 @@ const DEEPEST: u32 = 6;
 const CORRECTION: f64 = 1e-4;
 /// Part of it below which the next step is twice as long: the correction grows with the cube.
 const LENGTHENED: f64 = 0.1;
-/// What the change of the linear model over a step may do to slopes, as part of the states, for it to be added to first order:
-/// the square of it is left. Beyond, a step has the exponential of the mean of both its ends.
+/// What the change of the linear model over a step may do to slopes, as part of the states, for it to be added to second order:
+/// the cube of it is left. Beyond, a step has the exponential of the mean of both its ends.
 const MISSED: f64 = 0.1;
 
 /// How what a linearisation leaves out grows over a step: its weight beside phi_2, which belongs to growth in proportion.
@@ -100,7 +100,7 @@ impl Slopes {
     }
 
     /// S over a step whose transition and integral are known, up to where the model was just linearised; `missed`: what the
-    /// transition lacks to first order.
+    /// transition lacks.
     fn advance(&mut self, local: &Local, exponential: &Exponential, missed: Option<&DMatrix<f64>>, sizes: &[f64]) {
         self.ahead.copy_from(&self.driven);
         self.drive(local, sizes);
@@ -110,10 +110,13 @@ impl Slopes {
         exponential::multiply(&mut self.next, &exponential.transition, &self.states, 0.0);
         exponential::multiply(&mut self.next, &exponential.integral, &self.ahead, 1.0);
         if let Some(missed) = missed {
-            // what is missed acts on the states of the whole step, of which those of both ends are the mean
-            self.states += &self.next;
-            self.states *= 0.5;
-            exponential::multiply(&mut self.next, missed, &self.states, 1.0);
+            // what is missed acts on the states of the whole step, of which those of both ends are the mean: to second order
+            self.ahead.copy_from(&self.states);
+            self.ahead += &self.next;
+            self.ahead *= 0.5;
+            exponential::multiply(&mut self.states, missed, &self.ahead, 0.0);
+            self.ahead.zip_apply(&self.states, |mean, more| *mean += 0.5 * more);
+            exponential::multiply(&mut self.next, missed, &self.ahead, 1.0);
         }
         std::mem::swap(&mut self.states, &mut self.next);
     }
@@ -182,7 +185,7 @@ fn differ(out: &mut DMatrix<f64>, run: &Run<'_>, from: &DMatrix<f64>) {
     }
 }
 
-/// Whether what a transition lacks may be added to first order.
+/// Whether what a transition lacks may be added to second order.
 fn is_small(missed: &DMatrix<f64>) -> bool {
     missed.row_iter().all(|row| row.iter().map(|v| v.abs()).sum::<f64>() <= MISSED)
 }
@@ -335,7 +338,7 @@ impl Stepper {
         if is_small(missed) {
             slopes.advance(run.local, exponential, Some(missed), run.sizes);
         } else {
-            // a corner was passed: to first order what is stiff behind it would throw slopes about
+            // a corner was passed: added, what is stiff behind it would throw slopes about
             *change_after *= 0.5 * length;
             *change_after += &*change_before;
             *change_after += &exponential.known;

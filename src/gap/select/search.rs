@@ -8,6 +8,7 @@ use super::super::policy::{EFFECTS, SEEN, SETTLING};
 use super::super::problem::{Chosen, Problem, Tolerance};
 use super::choose::{Chooser, Taken, Trial};
 use super::clock::{Budget, Deadline};
+use super::compare::needed;
 use super::confirm::Held;
 use super::criteria::{Criteria, Judged, Reason, Rival};
 use super::models;
@@ -234,14 +235,16 @@ impl Search<'_> {
         &self.problem.hypotheses[index]
     }
 
-    /// The rival that is taken. If with its parameters the model before comes out better as well, that one was not at its
-    /// optimum: it moves there, and the rivals are compared with it again.
+    /// The rival that is taken. If from its parameters the model before comes out so well that the rival shows nothing beside
+    /// it, that one was not at its optimum: it moves there, and the rivals are compared with it again.
     fn choose(&mut self, step: usize, before: &mut Weighed, rivals: Vec<Rival>) -> Option<(Weighed, Taken)> {
         let mut choice = self.chooser.choose(step, before, rivals.clone());
         for _ in 0..SETTLING {
             let sensors = &self.chooser.criteria.sensors;
-            let again = choice.taken.as_ref().and_then(|(m, _)| as_in(self.problem, sensors, before, &m.fit));
-            let Some(again) = again else { break };
+            let Some((rival, _)) = &choice.taken else { break };
+            let again = as_in(self.problem, sensors, before, &rival.fit);
+            let shows_nothing = |a: &Weighed| ahead(a, rival, sensors) <= needed(self.chooser.criteria.count);
+            let Some(again) = again.filter(shows_nothing) else { break };
             *before = again;
             choice = self.chooser.choose(step, before, rivals.clone());
         }
@@ -352,9 +355,7 @@ impl Search<'_> {
     fn widened(&self, chosen: Weighed) -> Weighed {
         let causes = chosen.fit.causes();
         let wider = models::candidate(self.problem, &causes, Some(&chosen.fit.tolerances()), causes.len());
-        let fitted = wider
-            .filter(|c| c.coordinates.len() > chosen.fit.x.len())
-            .and_then(|c| self.weighed(c));
+        let fitted = wider.filter(|c| c.coordinates.len() > chosen.fit.x.len()).and_then(|c| self.weighed(c));
         let better = |f: &Weighed| ahead(&chosen, f, &self.chooser.criteria.sensors) > 0.0;
         fitted.filter(better).unwrap_or(chosen)
     }

@@ -29,20 +29,13 @@ impl Weighed {
 }
 
 /// Both weightings: errors as they are now (tolerances hold), and as if only the sensors' noise were left (the data hold).
-/// A few iterations with each show which leads on; left-out data and the prior decide. Once the time is over the first one
-/// stands.
+/// Left-out data and the prior decide. Once the time is over the first one stands.
 pub fn weighed(
     problem: &Problem<'_>,
     sensors: &Sensors,
     (candidate, x): (Candidate, Vec<f64>),
     until: Deadline<'_>,
 ) -> Option<Weighed> {
-    let (train, full_scale) = (&problem.train, &problem.full_scale);
-    let white = Weights::sensors(&sensors.noise, full_scale);
-    let held = Fit::rough_by_errors(candidate.clone(), x.clone(), train, full_scale)?;
-    let free = Fit::rough(candidate, x, train, &white)
-        .and_then(|f| Fit::rough_by_errors(f.candidate, f.x, train, full_scale));
-    let Fit { candidate, x, .. } = free.into_iter().fold(held, Fit::better_of);
     let one = Weighed::new(problem, as_they_are(problem, candidate, x)?);
     let other = if until.is_over() { None } else { at_the_noise(problem, sensors, &one) };
     Some(other.unwrap_or(one))
@@ -65,8 +58,7 @@ pub fn settled(problem: &Problem<'_>, sensors: &Sensors, mut model: Weighed, unt
     model
 }
 
-/// The model before a rival, fitted anew from where parameters are in the rival, where that is better: then it was not at
-/// its optimum, and the rival would get the credit.
+/// The model before a rival, fitted anew from where parameters are in the rival, where that is better.
 pub fn as_in(problem: &Problem<'_>, sensors: &Sensors, before: &Weighed, rival: &Fit) -> Option<Weighed> {
     // the coordinates of the cause that it has beyond the model before stand last
     let x = rival.x[..before.fit.x.len()].to_vec();

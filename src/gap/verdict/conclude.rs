@@ -166,7 +166,8 @@ impl Conclusion<'_> {
         let candidate =
             models::candidate(self.problem, &causes, Some(&self.found.base.fit.tolerances()), causes.len())?;
         let x = candidate.present();
-        let Weighed { fit, .. } = weighed(self.problem, &models::sensors(self.problem), (candidate, x), Deadline::default())?;
+        let Weighed { fit, .. } =
+            weighed(self.problem, &models::sensors(self.problem), (candidate, x), Deadline::default())?;
         self.left(&fit.candidate, &fit.x).total(&self.problem.full_scale)
     }
 
