@@ -1,5 +1,6 @@
 //! How the signals depend on the parameters, along recordings and through corners, beside central differences.
 
+#![allow(clippy::disallowed_methods, reason = "tests look for their files")]
 #![allow(clippy::unwrap_used, reason = "tests")]
 #![allow(clippy::print_stdout, reason = "a test without its data says so")]
 
