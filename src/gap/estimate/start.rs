@@ -73,10 +73,12 @@ impl Valued<'_> {
             let x = DVector::from_column_slice(g);
             Some((self.through(recording, &mut local, &own, &loose, &x, moved)?, x, moved))
         });
-        for x in [shown_start, DVector::zeros(own.len())] {
-            if first.is_none() {
-                first = self.through(recording, &mut local, &own, &loose, &x, &[]).map(|b| (b, x, &[][..]));
-            }
+        if first.is_none() {
+            // a first reading may be false: the model's own start may be nearer
+            let begin =
+                |x: DVector<f64>| self.through(recording, &mut local, &own, &loose, &x, &[]).map(|b| (b, x, &[][..]));
+            let both = [shown_start, DVector::zeros(own.len())].map(begin);
+            first = both.into_iter().flatten().reduce(|a, b| if b.0.cost < a.0.cost { b } else { a });
         }
         let (mut best, mut x, mut known) = first?;
         for _ in 0..ROUNDS {
