@@ -58,8 +58,8 @@ pub const SIZES: usize = 2;
 /// A hypothesis goes on where its first fits lower the mean square of a signal by this part: a quarter of what is worth a
 /// name.
 pub const HOPED: f64 = 0.05;
-/// Iterations of a first fit from each start; the best goes on.
-pub const ROUGH: usize = 4;
+/// Iterations of a first fit from each start; the best goes on for as many.
+pub const ROUGH: usize = 2;
 /// Of those fitted, so many of the best are fitted again as if only the sensors' noise were left.
 pub const FRONT: usize = 4;
 /// Starts from which each hypothesis is fitted.

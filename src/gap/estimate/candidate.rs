@@ -2,7 +2,7 @@
 //! depends on what is free.
 
 use super::super::data::Recording;
-use super::super::policy::{BENT, DOUBLINGS, PIECES};
+use super::super::policy::{BENT, PIECES};
 use super::super::problem::{Assembled, Chosen};
 use super::exponential;
 use super::map::Weights;
@@ -297,25 +297,6 @@ impl Candidate {
         let places: Vec<_> = self.model.plan.state_variables().map(|v| known.get(&name(self, v)).copied()).collect();
         let guess = |off: &Vec<f64>| places.iter().map(|p| p.map_or(0.0, |i| off[i])).collect();
         self.off = other.off.iter().map(guess).collect();
-    }
-
-    /// A step to a point of some cost, doubled as long as it costs less, within the bounds. `cost`: of a point, where it is
-    /// less than a bound.
-    pub fn stretched(
-        &self,
-        from: &[f64],
-        (mut best, mut least): (Vec<f64>, f64),
-        cost: impl Fn(&[f64], f64) -> Option<f64>,
-    ) -> Vec<f64> {
-        for _ in 0..DOUBLINGS {
-            let far = |((c, from), to): ((&Coordinate, &f64), &f64)| (2.0 * to - from).clamp(c.low, c.high);
-            let tried: Vec<f64> = self.coordinates.iter().zip(from).zip(&best).map(far).collect();
-            match cost(&tried, least).filter(|c| *c < least) {
-                Some(c) => (best, least) = (tried, c),
-                None => break,
-            }
-        }
-        best
     }
 
     /// When the simulation of a train recording stops before its end, s.

@@ -3,7 +3,7 @@
 //! small and independent, and the data speak about parameters too.
 
 use super::super::data::Recording;
-use super::super::policy::{ITERATIONS, LEAST, ROUGH, SETTLED, SETTLED_PART, SETTLED_SQUARE, TRIALS};
+use super::super::policy::{DOUBLINGS, ITERATIONS, LEAST, SETTLED, SETTLED_PART, SETTLED_SQUARE, TRIALS};
 use super::super::problem::Chosen;
 use super::candidate::{Candidate, Coordinate, Errors, Evaluated, Products};
 use super::correlation;
@@ -14,6 +14,9 @@ const DAMPING: f64 = 1e-3;
 const EASED: f64 = 5.0;
 const STIFFENED: f64 = 6.0;
 const LEAST_DAMPING: f64 = 1e-4;
+/// Part of the slope at a step's beginning that is left at its end where a longer one is tried: a step that ends at the minimum
+/// of a parabola has none, one that ends halfway has half.
+const STILL_FALLS: f64 = 0.5;
 /// Part of the diagonal that keeps a singular system solvable.
 const RIDGE: f64 = 1e-9;
 
@@ -98,9 +101,7 @@ impl Fit {
         first: Option<Weights>,
         rounds: usize,
     ) -> Option<Fit> {
-        let evaluated = candidate.evaluate(&x, train)?;
-        let weights = first.unwrap_or_else(|| Weights::of(&evaluated.errors, full_scale));
-        let mut fit = Fit::at(candidate, x, evaluated, weights);
+        let mut fit = Fit::begun(candidate, x, train, full_scale, first.as_ref())?;
         fit.descend(train, ITERATIONS);
         for _ in 1..rounds {
             let mut next = fit.clone();
@@ -115,21 +116,18 @@ impl Fit {
         Some(fit)
     }
 
-    /// A few iterations from a point, with given weights. `None` where the model does not reach the end of a recording.
-    pub fn rough(candidate: Candidate, x: Vec<f64>, train: &[Recording], weights: &Weights) -> Option<Fit> {
+    /// A model at a point that is fitted with given weights, or with weights as the errors are there. `None` where the model
+    /// does not reach the end of a recording.
+    pub fn begun(
+        candidate: Candidate,
+        x: Vec<f64>,
+        train: &[Recording],
+        full_scale: &[f64],
+        weights: Option<&Weights>,
+    ) -> Option<Fit> {
         let evaluated = candidate.evaluate(&x, train)?;
-        let mut fit = Fit::at(candidate, x, evaluated, weights.clone());
-        fit.descend(train, ROUGH);
-        Some(fit)
-    }
-
-    /// The same with weights as the errors are there.
-    pub fn rough_by_errors(candidate: Candidate, x: Vec<f64>, train: &[Recording], full_scale: &[f64]) -> Option<Fit> {
-        let evaluated = candidate.evaluate(&x, train)?;
-        let weights = Weights::of(&evaluated.errors, full_scale);
-        let mut fit = Fit::at(candidate, x, evaluated, weights);
-        fit.descend(train, ROUGH);
-        Some(fit)
+        let weights = weights.cloned().unwrap_or_else(|| Weights::of(&evaluated.errors, full_scale));
+        Some(Fit::at(candidate, x, evaluated, weights))
     }
 
     /// A model where it was evaluated.
@@ -155,11 +153,11 @@ impl Fit {
         if self.ahead(&other) > 0.0 { other } else { self }
     }
 
-    /// Levenberg-Marquardt with these weights.
-    fn descend(&mut self, train: &[Recording], iterations: usize) {
+    /// Levenberg-Marquardt with these weights, at most so many iterations.
+    pub fn descend(&mut self, train: &[Recording], iterations: usize) {
         let mut damping = DAMPING;
         for _ in 0..iterations {
-            let before = self.cost();
+            let (before, from) = (self.cost(), self.x.clone());
             let squares = self.mean_squares();
             let system = self.system(|_, _| true);
             let mut taken = false;
@@ -170,10 +168,10 @@ impl Fit {
                 }
                 let cost = |x: &[f64], bound| self.candidate.cost_within(x, train, &self.weights, bound);
                 if let Some(found) = cost(&x, before).filter(|c| *c < before) {
-                    let x = self.candidate.stretched(&self.x, (x, found), cost);
-                    let Some(evaluated) = self.candidate.evaluate(&x, train) else { break };
-                    self.candidate.off.clone_from(&evaluated.off);
-                    (self.x, self.evaluated) = (x, evaluated);
+                    if !self.go(x, train) {
+                        break;
+                    }
+                    self.stretch(&system, &from, found, train);
                     damping /= EASED;
                     taken = true;
                     break;
@@ -185,6 +183,36 @@ impl Fit {
             if !taken || !closes && before - self.cost() < SETTLED.max(SETTLED_PART * before) {
                 break;
             }
+        }
+    }
+
+    /// Moves to a point; says whether the model reaches the end of all recordings there.
+    fn go(&mut self, x: Vec<f64>, train: &[Recording]) -> bool {
+        let Some(evaluated) = self.candidate.evaluate(&x, train) else { return false };
+        self.candidate.off.clone_from(&evaluated.off);
+        (self.x, self.evaluated) = (x, evaluated);
+        true
+    }
+
+    /// Goes further along a step that was taken, to a point of some cost, if the cost still falls there at least half as fast
+    /// as where it began: where a sensitivity falls as an effect grows, linear steps are short.
+    fn stretch(&mut self, system: &System, from: &[f64], cost: f64, train: &[Recording]) {
+        let along = |s: &System| (0..from.len()).map(|i| s.towards[i] * (self.x[i] - from[i])).sum::<f64>();
+        if along(&self.system(|_, _| true)) < STILL_FALLS * along(system) {
+            return;
+        }
+        let coordinates = &self.candidate.coordinates;
+        let (mut best, mut least) = (self.x.clone(), cost);
+        for _ in 0..DOUBLINGS {
+            let far = |((c, from), to): ((&Coordinate, &f64), &f64)| (2.0 * to - from).clamp(c.low, c.high);
+            let tried: Vec<f64> = coordinates.iter().zip(from).zip(&best).map(far).collect();
+            match self.candidate.cost_within(&tried, train, &self.weights, least).filter(|c| *c < least) {
+                Some(c) => (best, least) = (tried, c),
+                None => break,
+            }
+        }
+        if best != self.x {
+            self.go(best, train);
         }
     }
 

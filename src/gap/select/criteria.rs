@@ -52,6 +52,9 @@ pub enum Reason {
     /// Surely worse than the best: the gap that it leaves, and the best one's.
     #[error("surely worse: leaves {0:.4} of full scale, the best {1:.4}")]
     Beaten(f64, f64),
+    /// It leaves as small a gap as the best, but left-out data and the prior prefer that one, by so many nats.
+    #[error("as small a gap, but {0:.1} nats behind the best")]
+    NatsBehind(f64),
     /// In the set of what was taken.
     #[error("indistinguishable from an accepted effect that is simpler or more common")]
     Alike,
@@ -176,13 +179,21 @@ impl Criteria {
         a <= ((1.0 + NEAR) * best).max(best + ACCURACY)
     }
 
-    /// Whether a model is surely worse than the best.
-    pub fn worse(&self, best: &Weighed, other: &Weighed) -> bool {
-        if self.alike(other.gap(&self.sensors), best.gap(&self.sensors)) {
-            return false;
+    /// Nats by which left-out data and the prior prefer the best to another model.
+    pub fn behind(&self, best: &Weighed, other: &Weighed) -> f64 {
+        evidence(&other.left[0].errors, &best.left[0].errors, &self.sensors) + saved(other, best)
+    }
+
+    /// Why a model is surely worse than the best; nothing where it is not.
+    pub fn worse(&self, best: &Weighed, other: &Weighed) -> Option<Reason> {
+        let (gap, least) = (other.gap(&self.sensors), best.gap(&self.sensors));
+        let nats = self.behind(best, other);
+        let beaten = nats > (1.0 / ALPHA).ln();
+        if self.alike(gap, least) {
+            return beaten.then_some(Reason::NatsBehind(nats));
         }
-        let t = t_statistic(&differences(&other.left[0], &best.left[0], &self.sensors));
-        t > SURE || ahead(other, best, &self.sensors) > (1.0 / ALPHA).ln()
+        let t = || t_statistic(&differences(&other.left[0], &best.left[0], &self.sensors));
+        (beaten || t() > SURE).then_some(Reason::Beaten(gap, least))
     }
 
     /// Mean loss over blocks and signals: what orders rivals.
@@ -212,10 +223,9 @@ impl Criteria {
         let near = |i: usize| self.alike(of(i), of(best));
         let mut set = Vec::new();
         for &i in accepted {
-            if i != best && self.worse(&rivals[best].model, &rivals[i].model) {
-                reasons[i] = Some(Reason::Beaten(of(i), of(best)));
-            } else {
-                set.push(i);
+            match self.worse(&rivals[best].model, &rivals[i].model).filter(|_| i != best) {
+                Some(reason) => reasons[i] = Some(reason),
+                None => set.push(i),
             }
         }
         // each coefficient costs as much as a bent parameter may

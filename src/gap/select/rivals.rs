@@ -3,7 +3,7 @@
 use super::super::effects::Coefficient;
 use super::super::estimate::{Fit, Weights};
 use super::super::hypotheses::Hypothesis;
-use super::super::policy::{DELTA, FRONT, HOPED, OTHER_WEIGHTING};
+use super::super::policy::{DELTA, FRONT, HOPED, OTHER_WEIGHTING, ROUGH};
 use super::super::problem::Problem;
 use super::clock::Deadline;
 use super::compare::{needed, total_gap};
@@ -60,7 +60,7 @@ fn from_all(
     let sizes = starts.first().map(|s| ground.of_size(hypothesis, s)).unwrap_or_default();
     starts.extend(sizes);
     let Ground { problem, sensors, before } = *ground;
-    let mut all: Vec<Fit> = starts.into_iter().filter_map(|s| rough(ground, s)).collect();
+    let mut all = rough(ground, &starts);
     let gap = |f: &Fit| total_gap(&f.mean_squares(), sensors);
     let least = |a: &Fit, b: &Fit| gap(a).total_cmp(&gap(b));
     let first = (0..all.len()).reduce(|a, b| if all[a].ahead(&all[b]) > 0.0 { b } else { a })?;
@@ -76,20 +76,38 @@ fn from_all(
     [Some(best), other].into_iter().flatten().filter_map(completed).reduce(Fit::better_of)
 }
 
-/// A few iterations from a start, with the weights of the model before. Where that is bent away from the data sheet, they may
-/// count little what the hypothesis explains: then also as if only the sensors' noise were left, which finds the size that the
-/// data ask for, and from there with parameters at the data sheet again.
-fn rough(ground: &Ground<'_>, start: Start) -> Option<Fit> {
+/// A few iterations from every start, with the weights of the model before; those with the least cost and the least gap go on.
+/// Where that model is bent away from the data sheet, its weights may count little what the hypothesis explains: then also as
+/// if only the sensors' noise were left, which finds the size that the data ask for, and from there with parameters at the data
+/// sheet again.
+fn rough(ground: &Ground<'_>, starts: &[Start]) -> Vec<Fit> {
     let Ground { problem, sensors, before } = *ground;
-    let (candidate, x, train) = (start.candidate, start.x, &problem.train);
-    let unbent = (before.prior() > OTHER_WEIGHTING).then(|| {
-        let white = Weights::sensors(&sensors.noise, &problem.full_scale);
-        let sized = Fit::rough(candidate.clone(), at_nominal(problem, &candidate, &x), train, &white)?;
-        let x = at_nominal(problem, &sized.candidate, &sized.x);
-        Fit::rough_by_errors(sized.candidate, x, train, &problem.full_scale)
-    });
-    let bent = Fit::rough(candidate, x, train, &before.weights);
-    bent.into_iter().chain(unbent.flatten()).reduce(Fit::better_of)
+    let (train, scale) = (&problem.train, &problem.full_scale);
+    let begun = |s: &Start, unbent: bool, weights: &Weights| {
+        let x = if unbent { at_nominal(problem, &s.candidate, &s.x) } else { s.x.clone() };
+        let mut fit = Fit::begun(s.candidate.clone(), x, train, scale, Some(weights))?;
+        fit.descend(train, ROUGH);
+        Some(fit)
+    };
+    let costs = |a: &Fit, b: &Fit| a.cost().total_cmp(&b.cost());
+    let gap = |f: &Fit| total_gap(&f.mean_squares(), sensors);
+    let mut bent: Vec<Fit> = starts.iter().filter_map(|s| begun(s, false, &before.weights)).collect();
+    bent.sort_by(costs);
+    let open = (1..bent.len()).min_by(|&a, &b| gap(&bent[a]).total_cmp(&gap(&bent[b])));
+    let mut found: Vec<Fit> = open.map(|k| bent.swap_remove(k)).into_iter().chain(bent.into_iter().take(1)).collect();
+    found.iter_mut().for_each(|f| f.descend(train, ROUGH));
+    if before.prior() > OTHER_WEIGHTING {
+        let white = Weights::sensors(&sensors.noise, scale);
+        let sized = starts.iter().filter_map(|s| begun(s, true, &white)).min_by(costs);
+        found.extend(sized.and_then(|mut sized| {
+            sized.descend(train, ROUGH);
+            let x = at_nominal(problem, &sized.candidate, &sized.x);
+            let mut fit = Fit::begun(sized.candidate, x, train, scale, None)?;
+            fit.descend(train, 2 * ROUGH);
+            Some(fit)
+        }));
+    }
+    found
 }
 
 /// By how many of its standard deviations the largest free coefficient of a model's last cause differs from nothing; a

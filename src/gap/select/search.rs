@@ -301,7 +301,7 @@ impl Search<'_> {
         }
         self.undecided.clear();
         let (model, shape) = self.beside(2, &mut base.clone(), &self.shapes(), watch)?;
-        self.chooser.criteria.worse(&model, last).then_some(shape)
+        self.chooser.criteria.worse(&model, last).map(|_| shape)
     }
 
     /// Hypotheses with a name that may be tried beside what was taken.
@@ -368,7 +368,7 @@ impl Search<'_> {
             causes.remove(i);
             let without = models::candidate(self.problem, &causes, Some(&last.fit.tolerances()), causes.len());
             let fitted = without.and_then(|c| self.weighed(c));
-            match fitted.filter(|f| !self.chooser.criteria.worse(last, f)) {
+            match fitted.filter(|f| self.chooser.criteria.worse(last, f).is_none()) {
                 Some(fitted) => {
                     *last = fitted;
                     taken.remove(i);
