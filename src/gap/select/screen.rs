@@ -71,20 +71,36 @@ type Beginnings = (usize, Vec<Start>);
 
 /// Hypotheses in the order in which they are to be fitted, those alone that are looked at until the time is over.
 pub fn screened(ground: &Ground<'_>, open: &[usize], until: Deadline<'_>) -> Screen {
-    let (mut all, passed) = ground.begun(open, until);
+    let (vanishing, mut others) = ground.attached_to(open);
+    let nominal = ground.nominal();
+    let moved = nominal.as_ref().map(|fit| (fit, moved(fit, &vanishing)));
+    let mut all = ground.together(vanishing);
     let visible = all.iter().filter_map(|(i, models)| ground.visible(*i, models)).collect();
-    if let Some(nominal) = ground.nominal() {
+    if let Some((before, vanishing)) = moved {
         // those that need a run each are begun once
-        let other = Ground { before: &nominal, ..*ground };
-        let (vanishing, _) = other.attached_to(open);
-        for (i, models) in other.together(vanishing) {
-            if let Some((_, known)) = all.iter_mut().find(|(k, _)| *k == i) {
-                known.extend(models);
-            }
-        }
+        let begun = Ground { before, ..*ground }.together(vanishing);
+        all.iter_mut().zip(begun).for_each(|(known, more)| known.1.extend(more.1));
     }
+    // a scan takes many runs of stiff models: what needs none comes first
+    others.sort_by_key(|(i, models)| ground.is_scanned(*i, &models[0]));
+    let (alone, passed) = until.rounds(others, |(i, models)| (i, ground.alone(i, models)));
+    all.extend(alone);
+    all.sort_by_key(|b| b.0);
     all.retain(|(_, models)| !models.is_empty());
-    Screen { order: ordered(all), passed, visible }
+    Screen { order: ordered(all), passed: passed.into_iter().map(|(i, _)| i).collect(), visible }
+}
+
+/// Models with hypotheses beside a model at other values of its parameters.
+fn moved(before: &Fit, all: &[Attached]) -> Vec<Attached> {
+    let theta = before.candidate.theta(&before.x);
+    let free = before.candidate.model.free.clone();
+    let one = |model: &Candidate| {
+        let mut model = model.clone();
+        model.model.theta[free.clone()].copy_from_slice(&theta[free.clone()]);
+        model.begins_as(&before.candidate);
+        model
+    };
+    all.iter().map(|(i, models)| (*i, models.iter().map(one).collect())).collect()
 }
 
 /// The most promising first, by the weighed cost and by the gap in turn: by one of them signals count whose errors are
@@ -175,17 +191,6 @@ impl Ground<'_> {
         let gain = |m: &Start| m.system.visible(self.before.x.len(), h.coefficients.len());
         let vanishing = !self.is_parameter(hypothesis) && vanishes(h, &models.first()?.candidate, self.before);
         vanishing.then(|| models.iter().map(gain).fold(0.0, f64::max))
-    }
-
-    /// Hypotheses, each at its beginnings; those that need runs of their own as long as the time lasts, and for which it did
-    /// not.
-    fn begun(&self, open: &[usize], until: Deadline<'_>) -> (Vec<Beginnings>, Vec<usize>) {
-        let (vanishing, others) = self.attached_to(open);
-        let mut begun = self.together(vanishing);
-        let (alone, passed) = until.rounds(others, |(i, models)| (i, self.alone(i, models)));
-        begun.extend(alone);
-        begun.sort_by_key(|b| b.0);
-        (begun, passed.into_iter().map(|(i, _)| i).collect())
     }
 
     /// Hypotheses that vanish where they begin, and others.
@@ -282,9 +287,14 @@ impl Ground<'_> {
 
     /// A hypothesis that does not vanish where it begins.
     fn alone(&self, hypothesis: usize, models: Vec<Candidate>) -> Vec<Start> {
-        let of_any_size = |m: &Candidate| self.h(hypothesis).changes_order && !self.sized(m).is_empty();
-        let of_size = |m: Candidate| if of_any_size(&m) { self.scanned(&m, &m.model.theta) } else { vec![m] };
+        let of_size =
+            |m: Candidate| if self.is_scanned(hypothesis, &m) { self.scanned(&m, &m.model.theta) } else { vec![m] };
         models.into_iter().flat_map(of_size).filter_map(|m| self.on_its_own(m)).collect()
+    }
+
+    /// Whether the size of a hypothesis that does not vanish where it begins is looked for.
+    fn is_scanned(&self, hypothesis: usize, model: &Candidate) -> bool {
+        self.h(hypothesis).changes_order && !self.sized(model).is_empty()
     }
 
     /// Starts at the sizes of a hypothesis that vanishes where it begins, looked for where the linear model leads: beyond the
