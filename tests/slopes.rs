@@ -1,10 +1,13 @@
-//! How the signals depend on the parameters, along recordings and through corners, beside central differences.
+//! Simulations of recordings: how the signals depend on the parameters, along recordings and through corners, beside central
+//! differences; and that they do not depend on how often a recording was sampled.
 
 #![allow(clippy::disallowed_methods, reason = "tests look for their files")]
 #![allow(clippy::unwrap_used, reason = "tests")]
 #![allow(clippy::print_stdout, reason = "a test without its data says so")]
 
 use bramah::internals::diag::Sources;
+use bramah::internals::gap::data::Recording;
+use bramah::internals::gap::estimate::simulation::from_start;
 use bramah::internals::gap::problem::Problem;
 use bramah::internals::gap::select::models;
 use bramah::internals::gap::study::question;
@@ -14,8 +17,9 @@ use std::path::Path;
 
 /// Step of a difference, in tolerances.
 const STEP: f64 = 0.01;
-/// Slopes that move no signal by this part of its sensor's deviation over a tolerance are round-off.
-const SEEN: f64 = 0.1;
+/// Slopes that move no signal by so many deviations of its sensor over a tolerance: their differences drown in what the steps of a
+/// simulation leave.
+const SEEN: f64 = 1.0;
 
 /// The largest distance of a slope from its difference, root of the mean square over a recording, as part of the difference.
 fn farthest(problem: &Problem<'_>) -> (f64, String) {
@@ -58,8 +62,8 @@ fn farthest(problem: &Problem<'_>) -> (f64, String) {
 /// themselves scatter by some per cent.
 const BORNE: f64 = 0.3;
 
-/// Slopes of the nominal model of a study are its differences.
-fn are_right(study: &str) {
+/// What a study asks; nothing where it is not there.
+fn with_problem(study: &str, test: impl Fn(&Problem<'_>)) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(study);
     if !path.exists() {
         println!("skipped: no {}", path.display());
@@ -68,8 +72,15 @@ fn are_right(study: &str) {
     let mut sources = Sources::default();
     let study = Study::read(&DiskWorld, &path, &mut sources).value.unwrap();
     let asked = question(&DiskWorld, &study, None, &mut sources).ok().unwrap();
-    let (off, name) = farthest(&asked.problem);
-    assert!(off < BORNE, "{name}: {off:.3}");
+    test(&asked.problem);
+}
+
+/// Slopes of the nominal model of a study are its differences.
+fn are_right(study: &str) {
+    with_problem(study, |problem| {
+        let (off, name) = farthest(problem);
+        assert!(off < BORNE, "{name}: {off:.3}");
+    });
 }
 
 #[test]
@@ -87,4 +98,56 @@ fn of_a_closed_circuit_with_an_induction_motor() {
 #[test]
 fn of_a_cylinder_in_a_limit_cycle() {
     are_right("../shared/gapbench/papers/force/study.toml");
+}
+
+/// Samples of a recording that are left out for each that is kept, and the largest difference between the simulations of what
+/// is kept with and without samples between them, in deviations of the sensors (root of the mean square).
+const COARSER: usize = 10;
+const SAME: f64 = 0.1;
+
+/// The inputs of a recording at times, straight between its samples.
+fn at_times(recording: &Recording, times: Vec<f64>) -> Recording {
+    let between = |samples: &[f64]| {
+        let one = |t: &f64| {
+            let after = recording.times.partition_point(|x| x <= t).clamp(1, recording.len() - 1);
+            let (t_0, t_1) = (recording.times[after - 1], recording.times[after]);
+            samples[after - 1] + (samples[after] - samples[after - 1]) * (t - t_0) / (t_1 - t_0)
+        };
+        times.iter().map(one).collect()
+    };
+    Recording {
+        inputs: recording.inputs.iter().map(|i| between(i)).collect(),
+        linear: vec![true; recording.inputs.len()],
+        signals: recording.signals.iter().map(|_| vec![f64::NAN; times.len()].into()).collect(),
+        times: times.into(),
+    }
+}
+
+/// However far samples are apart, the simulation between them is the same.
+fn does_not_depend_on_sampling(study: &str) {
+    with_problem(study, |problem| {
+        let model = models::nominal(problem).unwrap();
+        let recording = &problem.train[0];
+        let coarse = at_times(recording, recording.times.iter().copied().step_by(COARSER).collect());
+        let split =
+            |w: &[f64]| (0..COARSER).map(|k| w[0] + (w[1] - w[0]) * k as f64 / COARSER as f64).collect::<Vec<_>>();
+        let fine = at_times(&coarse, coarse.times.windows(2).flat_map(split).collect());
+        let run = |r: &Recording| from_start(&model.model.plan, &model.model.theta, &model.model.sizes, r).unwrap();
+        let (coarse, fine) = (run(&coarse), run(&fine));
+        for (i, signal) in problem.signals.iter().enumerate() {
+            let off: Vec<f64> = fine[i].iter().step_by(COARSER).zip(&coarse[i]).map(|(a, b)| (a - b).powi(2)).collect();
+            let rms = (off.iter().sum::<f64>() / off.len() as f64).sqrt() / model.deviations[i];
+            assert!(rms < SAME, "{}: {rms:.3} deviations", signal.name);
+        }
+    });
+}
+
+#[test]
+fn of_coarse_samples_of_a_closed_circuit() {
+    does_not_depend_on_sampling("examples/diagnosis/gap.toml");
+}
+
+#[test]
+fn of_coarse_samples_of_a_cylinder() {
+    does_not_depend_on_sampling("../shared/gapbench/papers/force/study.toml");
 }

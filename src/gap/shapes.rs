@@ -12,14 +12,17 @@ use std::collections::BTreeMap;
 
 /// The sampling step for which the effects' own grids of times are made, s.
 const STEP: f64 = 1e-3;
-/// Times are at most this part of the longest recording.
+/// Times are at most this part of the longest recording, and are looked for, a decade further each, up to this one.
 const LASTING: f64 = 1.0 / 3.0;
+const LOOKED_FOR: f64 = 0.1;
 /// Thresholds are tried where so much of what occurs lies below them.
 const QUANTILES: [f64; 5] = [0.2, 0.4, 0.6, 0.8, 0.95];
 /// Part of the speeds that are no jumps.
 const USUAL: f64 = 0.995;
 /// A corner of friction is at most so wide, in parts of the greatest speed: slow machines would never leave it.
 const CORNER: f64 = 0.02;
+/// Friction that falls with speed falls over these parts of the greatest speed.
+const FALLS: [f64; 3] = [0.01, 0.05, 0.2];
 
 /// What is periodic is seen to come again: periods that the recordings cover, at least.
 const REPEATS: f64 = 2.0;
@@ -69,11 +72,13 @@ pub fn fit(problem: &mut Problem<'_>) {
             } else if shape.line {
                 shape.grid.clone_from(&lines);
             } else if shape.unit == "s" {
-                time(shape, slower.max(1.0), longest);
-            } else if is_corner(shape) {
-                let fastest = fastest(&site, &potentials, &times);
-                let widest = fastest.map_or(f64::INFINITY, |v| CORNER * v);
-                shape.grid.iter_mut().for_each(|x| *x = x.min(widest));
+                time(shape, slower, longest);
+            } else if let (true, Some(fastest)) = (is_speed(shape), fastest(&site, &potentials, &times)) {
+                if shape.grid.len() == 1 {
+                    shape.grid[0] = shape.grid[0].min(CORNER * fastest);
+                } else {
+                    shape.grid = FALLS.iter().map(|part| part * fastest).collect();
+                }
             } else if let Some(occurs) = values(shape, &site, &potentials) {
                 shape.grid = QUANTILES.iter().map(|q| occurs[(q * (occurs.len() - 1) as f64) as usize]).collect();
                 shape.grid.retain(|x| *x > 0.0);
@@ -105,6 +110,9 @@ fn each_its_own(coefficients: &mut Vec<Coefficient>, recordings: usize) {
 fn time(shape: &mut Shape, slower: f64, longest: f64) {
     let most = LASTING * longest;
     shape.grid.iter_mut().for_each(|x| *x = (*x * slower).min(most));
+    let further = |x: &f64| Some(10.0 * x).filter(|x| *x <= LOOKED_FOR * longest);
+    let last = shape.grid.last().copied();
+    shape.grid.extend(std::iter::successors(last.as_ref().and_then(further), further));
     shape.grid.dedup();
     shape.max = Some(shape.max.map_or(most, |m| m.min(most)));
 }
@@ -118,9 +126,9 @@ fn ports(site: &Site) -> Vec<usize> {
     }
 }
 
-/// Whether a shape is the speed over which a friction changes sign.
-fn is_corner(shape: &Shape) -> bool {
-    shape.grid.len() == 1 && ["rad/s", "m/s"].iter().any(|u| same_kind(&shape.unit, u))
+/// Whether a shape is the speed over which a friction changes sign, or falls.
+fn is_speed(shape: &Shape) -> bool {
+    ["rad/s", "m/s"].iter().any(|u| same_kind(&shape.unit, u))
 }
 
 /// Turns that a shaft makes in the nominal model.
@@ -147,7 +155,7 @@ fn acting(site: &Site, potentials: &Known) -> Option<Vec<f64>> {
 }
 
 fn compared(h: &Hypothesis) -> impl Iterator<Item = Variable> {
-    let compared = h.shapes.iter().any(|s| s.threshold || s.level || s.order || is_corner(s))
+    let compared = h.shapes.iter().any(|s| s.threshold || s.level || s.order || is_speed(s))
         || h.attachments.iter().any(|a| surroundings(a).is_some());
     ports(&h.attachments[0].site).into_iter().filter(move |_| compared).map(|p| (p, false))
 }

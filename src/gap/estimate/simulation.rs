@@ -10,8 +10,11 @@ use nalgebra::{DMatrix, DVector};
 use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
 
-/// Halvings of a step at most.
-const DEEPEST: u32 = 6;
+/// Halvings of the distance between two samples: so many at least are allowed, and as many as lead to the shortest step, s, in
+/// which valves and friction change; a coarse recording is simulated like a fine one. No more than the last ones.
+const DEEP: u32 = 6;
+const SHORTEST: f64 = 1e-4;
+const DEEPEST: u32 = 24;
 /// The correction of a linear step that is let pass, in parts of the states' sizes. What is left after it is a tenth and
 /// less: over whole recordings 1e-5 to 1e-4 of full scale, where sensors are good to 1e-3.
 const CORRECTION: f64 = 1e-4;
@@ -218,8 +221,9 @@ struct Stepper {
     mean: Exponential,
     /// Per length the step that the linearisation served last; 0 where it did not.
     lengths: [f64; DEEPEST as usize + 1],
-    /// Halvings of the last step.
+    /// Halvings of the last step, and those that are allowed.
     depth: u32,
+    deepest: u32,
     /// x' in sizes where the step begins, a change over the step, and what the linear model leaves out of x' at its end.
     rate: DVector<f64>,
     change: DVector<f64>,
@@ -235,7 +239,7 @@ impl Stepper {
     fn new(n: usize, recording: &Recording) -> Self {
         let zeros = || DVector::zeros(n);
         Stepper {
-            exponentials: (0..=DEEPEST).map(|_| Exponential::new(n)).collect(),
+            exponentials: vec![Exponential::new(n)],
             a: DMatrix::zeros(n, n),
             b: DMatrix::zeros(n, recording.inputs.len()),
             change_before: DMatrix::zeros(n, n),
@@ -244,6 +248,7 @@ impl Stepper {
             mean: Exponential::new(n),
             lengths: [0.0; DEEPEST as usize + 1],
             depth: 0,
+            deepest: DEEP,
             rate: zeros(),
             change: zeros(),
             remainder: zeros(),
@@ -259,6 +264,8 @@ impl Stepper {
         const WHOLE: u32 = 1 << DEEPEST;
         let mut linear_here = run.slopes.is_some();
         let mut gone = 0;
+        self.deepest = ((h / SHORTEST).log2().ceil() as u32).clamp(DEEP, DEEPEST);
+        self.depth = self.depth.min(self.deepest);
         self.take_rates(run);
         while gone < WHOLE {
             let part = WHOLE >> self.depth;
@@ -283,8 +290,8 @@ impl Stepper {
                 }
                 off = self.step(run, t, after, length, Remainder::Square);
             }
-            if off > CORRECTION && self.depth < DEEPEST {
-                self.depth += 1;
+            if off > CORRECTION && self.depth < self.deepest {
+                self.deepen();
                 continue;
             }
             if off.is_infinite() {
@@ -309,6 +316,14 @@ impl Stepper {
             }
         }
         Some(())
+    }
+
+    /// Halves the step.
+    fn deepen(&mut self) {
+        self.depth += 1;
+        if self.exponentials.len() <= self.depth as usize {
+            self.exponentials.push(Exponential::new(self.next.len()));
+        }
     }
 
     fn take_rates(&mut self, run: &Run<'_>) {
