@@ -159,6 +159,11 @@ struct Writer<'a> {
     replaced: Vec<Link>,
 }
 
+/// The instance of a hypothesis at the i-th of its places.
+pub(super) fn instance(name: &str, i: usize) -> String {
+    format!("{name}_{}", i + 1)
+}
+
 impl<'a> Writer<'a> {
     fn write(mut self, attached: &[Attached<'_>], signals: &[Signal]) -> Augmented {
         let parameters = attached.iter().map(|a| self.parameters(a)).collect();
@@ -207,7 +212,7 @@ impl<'a> Writer<'a> {
 
     /// An instance of an effect, its coefficients and shapes bound to those of the hypothesis.
     fn declaration(a: &Attached<'_>, i: usize, effect: &Effect, base: &[(String, String)]) -> (String, String) {
-        let instance = format!("{}_{}", a.name, i + 1);
+        let instance = instance(&a.name, i);
         let of_all = |name: &str| {
             let own = a.hypothesis.coefficients.iter().filter(|c| c.name == name);
             own.map(|c| format!("{}_{}", a.name, c.label())).collect::<Vec<_>>().join(" + ")

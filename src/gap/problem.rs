@@ -170,7 +170,7 @@ impl Problem<'_> {
     /// As [`Problem::assemble`].
     pub fn assembled(&self, chosen: &[Chosen], sources: &[usize], shaped: usize) -> Result<Assembled, Vec<Diagnostic>> {
         let attached: Vec<Attached<'_>> =
-            chosen.iter().enumerate().map(|(i, c)| self.attached(c, &format!("e{i}"))).collect();
+            chosen.iter().enumerate().map(|(i, c)| self.attached(c, &instance(i))).collect();
         let mut all = attached.clone();
         all.extend(sources.iter().map(|&s| Attached {
             name: format!("s{s}"),
@@ -210,9 +210,24 @@ impl Problem<'_> {
     /// What the nominal model says of further variables over all train recordings, one after the other, from its own
     /// start; `None` where it does not reach the end.
     pub fn observe(&self, variables: &[Signal]) -> Option<Vec<Vec<f64>>> {
-        let augmented = augment::augment(&self.circuit, &[], variables);
+        self.observe_with(&[], None, variables)
+    }
+
+    /// The same of a model with hypotheses, whose parameters within their tolerances are these, SI.
+    pub fn observe_with(
+        &self,
+        chosen: &[Chosen],
+        tolerances: Option<&[f64]>,
+        variables: &[Signal],
+    ) -> Option<Vec<Vec<f64>>> {
+        let attached: Vec<Attached<'_>> =
+            chosen.iter().enumerate().map(|(i, c)| self.attached(c, &instance(i))).collect();
+        let augmented = augment::augment(&self.circuit, &attached, variables);
         let flat = self.flat(&augmented).ok()?;
-        let model = self.lifted(flat, augmented, &[]).ok()?;
+        let mut model = self.lifted(flat, augmented, &[]).ok()?;
+        if let Some(values) = tolerances {
+            model.theta[model.free.clone()].copy_from_slice(values);
+        }
         let mut all = vec![Vec::new(); variables.len()];
         for r in &self.train {
             let run = from_start(&model.plan, &model.theta, &model.sizes, r)?;
@@ -308,6 +323,19 @@ impl Problem<'_> {
         }
         Ok(Assembled { plan, theta, free, sources, attached, own: Vec::new(), sizes, travel, augmented })
     }
+}
+
+/// The name of a chosen hypothesis among the parameters and instances of a model.
+fn instance(number: usize) -> String {
+    format!("e{number}")
+}
+
+/// What flows through the first instance of a chosen hypothesis, SI; nothing where it is a signal or a parameter.
+pub fn through(number: usize, hypothesis: &Hypothesis) -> Option<Signal> {
+    let effect = hypothesis.attachments[0].effect.as_ref()?;
+    let through = effect.interface.through.as_ref()?;
+    let variable = format!("{}.{}", augment::instance(&instance(number), 0), through.name);
+    Some(Signal { name: format!("through_{number}"), variable, scale: 1.0 })
 }
 
 /// The name that a variable of the nominal model has there.

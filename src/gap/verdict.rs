@@ -5,6 +5,7 @@ mod conclude;
 pub use conclude::conclude;
 
 use super::hypotheses::Hypothesis;
+use super::problem::Shown;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -97,8 +98,12 @@ pub struct Effect {
     pub effect: String,
     /// Its family.
     pub family: String,
+    /// What it does, in words.
+    pub description: String,
     /// Where.
     pub places: Vec<Spot>,
+    /// What flows through it at its first place; nothing for signals and parameters.
+    pub flow: Option<Flow>,
     /// Evidence of left-out data and tolerances when it was taken, nats.
     pub evidence: f64,
     /// Statistic over blocks of left-out data: mean gain over its standard error.
@@ -113,6 +118,17 @@ pub struct Effect {
     pub indistinguishable: Vec<Alternative>,
 }
 
+/// Force, torque, flow, current or heat through an effect over the recordings used, in the model with all effects.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Flow {
+    /// Greatest size.
+    pub largest: f64,
+    /// Root of the mean square.
+    pub rms: f64,
+    /// Unit: that of a column of the study of the same dimension, else l/min for a volume flow and SI units for others.
+    pub unit: String,
+}
+
 /// A value with its uncertainty.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Estimate {
@@ -122,6 +138,9 @@ pub struct Estimate {
     pub std: f64,
     /// Unit.
     pub unit: String,
+    /// How the study speaks of it, where that is in another unit.
+    #[serde(skip)]
+    pub shown: Option<Shown>,
 }
 
 /// A hypothesis that was weighed; what left-out data say of it where it was fitted.

@@ -1,7 +1,7 @@
 //! The verdict in words, one screen of them.
 
 use super::policy::SEEN;
-use super::verdict::{Drift, Effect, Estimate, Located, Maybe, OpenGap, RecordingError, SignalGap, Verdict};
+use super::verdict::{Drift, Effect, Estimate, Flow, Located, Maybe, OpenGap, RecordingError, SignalGap, Verdict};
 use std::fmt::Write;
 
 /// What the diagnosis found, for people: findings, the gap as a table, what is left.
@@ -11,7 +11,7 @@ pub fn words(v: &Verdict) -> String {
 
 /// Recording errors and effects, or what is said where there are none.
 pub(super) fn findings(v: &Verdict) -> String {
-    let mut text = String::new();
+    let mut text = headline(v);
     for in_file in v.recording.chunk_by(|a, b| a.file == b.file) {
         let what = |r: &RecordingError| match r.error {
             "sign" => format!("`{}` has the wrong sign", r.signal),
@@ -28,6 +28,35 @@ pub(super) fn findings(v: &Verdict) -> String {
     }
     text.push_str(&found_nothing(v));
     text
+}
+
+/// What is missing, how much it is and what it changes, in a sentence.
+fn headline(v: &Verdict) -> String {
+    if v.effects.is_empty() {
+        return String::new();
+    }
+    let one = |e: &Effect| {
+        let places: Vec<String> = e.places.iter().map(|p| format!("`{}`", p.place)).collect();
+        let at = places.join(" and ");
+        if e.family == "parameter" {
+            return format!("{at} off its data sheet");
+        }
+        let flow = |f: &Flow| format!(", up to {} in the recordings used", quantity(f.largest, &f.unit));
+        format!("{} at {at}{}", lower(&e.description), e.flow.as_ref().map_or_else(String::new, flow))
+    };
+    let all: Vec<String> = v.effects.iter().map(one).collect();
+    let with = if all.len() == 1 { "it" } else { "them" };
+    format!("The model lacks {}.{}\n", all.join("; and "), fall(v, with).unwrap_or_default())
+}
+
+/// The error that falls most, in parts of its signal's range.
+fn fall(v: &Verdict, with: &str) -> Option<String> {
+    let fall = |g: &SignalGap| Some(g.of_range.nominal? - g.of_range.effects?);
+    let all = v.gap.held.signals.iter().filter_map(|(name, g)| Some((name, g, fall(g)?)));
+    let (name, g, by) = all.max_by(|a, b| a.2.total_cmp(&b.2))?;
+    let (from, to) = (significant(g.rms.nominal?), quantity(g.rms.effects?, &g.unit));
+    (by > 0.0)
+        .then(|| format!(" With {with} the error of `{name}` falls from {from} to {to} (RMS on held recordings)."))
 }
 
 /// What is left, and what to do about it.
@@ -181,9 +210,10 @@ fn effect(i: usize, e: &Effect, count: usize) -> String {
 
 /// A value with its deviation and unit; one that was not free has none.
 pub(super) fn estimate(p: &Estimate, sign: &str) -> String {
-    let deviation = if p.std > 0.0 { format!(" {sign} {}", number(p.std)) } else { String::new() };
+    let (factor, unit) = p.shown.as_ref().map_or((1.0, &p.unit), |s| (s.factor, &s.unit));
+    let deviation = if p.std > 0.0 { format!(" {sign} {}", number(factor * p.std)) } else { String::new() };
     let fixed = if p.std > 0.0 { "" } else { " (fixed)" };
-    format!("{}{deviation} {}", number(p.value), p.unit).trim_end().to_string() + fixed
+    format!("{}{deviation} {unit}", number(factor * p.value)).trim_end().to_string() + fixed
 }
 
 /// How far an alternative is from what is named, in words. One that is ahead has more parameters or states, or cuts a

@@ -238,8 +238,8 @@ impl Criteria {
             let as_simple = set.iter().filter(|&&k| k != i && near(k) && simple(k) == simple(i));
             as_simple.map(|&k| ahead(&rivals[i].model, &rivals[k].model, &self.sensors)).fold(0.0, f64::max) > once
         };
-        // however simple: what is not sure itself is not preferred to the best
-        let unsure = |i: usize| i != best && !judged[i].accepted();
+        // nobody is named who is not sure himself, however simple
+        let unsure = |i: usize| !judged[i].accepted();
         let key = |&i: &usize| (i, (!near(i), unsure(i), bent(i), simple(i), behind(i), rivals[i].hypothesis));
         let keys: BTreeMap<usize, _> = set.iter().map(key).collect();
         set.sort_by_key(|i| keys[i]);

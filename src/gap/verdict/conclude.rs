@@ -1,24 +1,28 @@
 //! What a search came to, said as a verdict.
 
+use super::super::circuit::same_kind;
 use super::super::data::Recording;
 use super::super::estimate::Candidate;
 use super::super::estimate::candidate::Errors;
 use super::super::figures::{self, Left};
-use super::super::hypotheses::Hypothesis;
+use super::super::hypotheses::{Hypothesis, Signal, Site};
 use super::super::mistakes;
 use super::super::policy::VISIBLE;
-use super::super::problem::{Chosen, Problem, Tolerance};
+use super::super::problem::{Chosen, Problem, Shown, Tolerance, through};
 use super::super::select::choose::{Taken, Trial};
 use super::super::select::clock::Deadline;
 use super::super::select::models;
 use super::super::select::search::Found;
 use super::super::select::weighed::{Weighed, at_nominal, weighed};
 use super::{
-    Drift, EXCITING, Effect, Estimate, Gaps, Located, Maybe, PARTING, RecordingError, Term, Unexplained, Verdict,
+    Drift, EXCITING, Effect, Estimate, Flow, Gaps, Located, Maybe, PARTING, RecordingError, Term, Unexplained, Verdict,
 };
 use super::{alternative, ratio, spots};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
+
+/// Litres a minute in a cubic metre a second.
+const LITRES_A_MINUTE: f64 = 60_000.0;
 
 /// The verdict; without held recordings the train ones stand in.
 pub fn conclude(problem: &Problem<'_>, found: &Found, held: &[Recording], seconds: f64) -> Verdict {
@@ -133,6 +137,7 @@ impl Conclusion<'_> {
         let total = |l: &Left| l.total(&self.problem.full_scale);
         let (tolerated, full) = (total(tolerated), total(last));
         let taken = &self.found.taken;
+        let flows = self.flows();
         let effect = |(i, t): (usize, &Taken)| {
             let h = self.hypothesis(t);
             if h.is_recording_error() {
@@ -147,7 +152,9 @@ impl Conclusion<'_> {
             Some(Effect {
                 effect: h.effect.clone(),
                 family: h.family.clone(),
+                description: h.attachments[0].effect.as_ref().map_or_else(String::new, |e| e.description.clone()),
                 places: spots(h),
+                flow: flows.get(&i).cloned(),
                 evidence: t.evidence,
                 t: t.t,
                 closes_alone: ratio(alone, tolerated).map(|g| 1.0 - g),
@@ -157,6 +164,35 @@ impl Conclusion<'_> {
             })
         };
         taken.iter().enumerate().collect::<Vec<_>>().into_par_iter().filter_map(effect).collect()
+    }
+
+    /// What flows through each effect that is no signal and no parameter, by its number.
+    fn flows(&self) -> BTreeMap<usize, Flow> {
+        let fit = &self.found.last.fit;
+        let causes = fit.causes();
+        let through = |(i, c): (usize, &Chosen)| Some((i, through(i, self.of(c))?));
+        let (numbers, signals): (Vec<usize>, Vec<Signal>) = causes.iter().enumerate().filter_map(through).unzip();
+        if numbers.is_empty() {
+            return BTreeMap::new();
+        }
+        let found = self.problem.observe_with(&causes, Some(&fit.tolerances()), &signals).unwrap_or_default();
+        let flow = |(i, values): (usize, Vec<f64>)| {
+            let interface = &self.of(&causes[i]).attachments[0].effect.as_ref()?.interface;
+            let shown = self.spoken(&interface.through.as_ref()?.unit);
+            let largest = values.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+            let rms = (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt();
+            let known = largest.is_finite() && largest > 0.0;
+            known.then(|| (i, Flow { largest: shown.value(largest), rms: shown.value(rms), unit: shown.unit.clone() }))
+        };
+        numbers.into_iter().zip(found).filter_map(flow).collect()
+    }
+
+    /// The unit in which the study speaks of a quantity: that of one of its columns, else what engineers use.
+    fn spoken(&self, unit: &str) -> Shown {
+        let own = self.problem.signals.iter().zip(&self.problem.shown);
+        let alike = own.filter(|(s, _)| same_kind(&self.problem.unit(s), unit)).map(|(_, shown)| shown.clone());
+        let usual = same_kind(unit, "m3/s").then(|| Shown { unit: "l/min".into(), factor: LITRES_A_MINUTE });
+        alike.chain(usual).next().unwrap_or(Shown { unit: unit.into(), factor: 1.0 })
     }
 
     /// The held gap of the model with some of the effects, fitted anew.
@@ -175,12 +211,22 @@ impl Conclusion<'_> {
         let fit = &self.found.last.fit;
         let theta = fit.candidate.theta(&fit.x);
         let deviations = fit.deviations();
-        let names =
-            h.coefficients.iter().map(|c| (&c.name, &c.unit)).chain(h.shapes.iter().map(|s| (&s.name, &s.unit)));
-        let estimate = |(&place, (name, unit)): (&usize, (&String, &String))| {
+        // what counts in the unit of a signal is shown in that of its column
+        let sensor = match &h.attachments[0].site {
+            Site::Sensor(name) => self.problem.signals.iter().position(|s| s.name == *name),
+            _ => None,
+        };
+        let column = sensor.map(|k| (self.problem.unit(&self.problem.signals[k]), self.problem.shown[k].clone()));
+        let of_signal = |relative: bool, unit: &str| match &column {
+            Some((si, shown)) if relative && unit.is_empty() => (si.clone(), Some(shown.clone())),
+            _ => (unit.to_string(), None),
+        };
+        let coefficients = h.coefficients.iter().map(|c| (&c.name, of_signal(c.relative, &c.unit)));
+        let names = coefficients.chain(h.shapes.iter().map(|s| (&s.name, of_signal(s.relative, &s.unit))));
+        let estimate = |(&place, (name, (unit, shown))): (&usize, (&String, (String, Option<Shown>)))| {
             let free = fit.candidate.coordinates.iter().position(|c| c.parameter == place);
             let std = free.map_or(0.0, |k| deviations[k] * fit.candidate.coordinates[k].slope(fit.x[k]));
-            (name.clone(), Estimate { value: theta[place], std, unit: unit.clone() })
+            (name.clone(), Estimate { value: theta[place], std, unit, shown })
         };
         fit.candidate.model.attached[i].iter().zip(names).map(estimate).collect()
     }
