@@ -60,6 +60,8 @@ pub const SIZES: usize = 2;
 pub const HOPED: f64 = 0.05;
 /// Iterations of a first fit from each start; the best goes on for as many.
 pub const ROUGH: usize = 2;
+/// Starts of a hypothesis that are tried before it is decided which ones are fitted first: by cost and by gap.
+pub const TRIED: usize = 2;
 /// Of those fitted, so many of the best are fitted again as if only the sensors' noise were left.
 pub const FRONT: usize = 4;
 /// Starts from which each hypothesis is fitted.

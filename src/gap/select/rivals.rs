@@ -3,12 +3,12 @@
 use super::super::effects::Coefficient;
 use super::super::estimate::{Fit, Weights};
 use super::super::hypotheses::Hypothesis;
-use super::super::policy::{DELTA, FRONT, HOPED, OTHER_WEIGHTING, ROUGH};
+use super::super::policy::{DELTA, FRONT, HOPED, OTHER_WEIGHTING, ROUGH, TRIED};
 use super::super::problem::Problem;
 use super::clock::Deadline;
 use super::compare::{needed, total_gap};
 use super::criteria::Rival;
-use super::screen::{Ground, Screened, Start};
+use super::screen::{Ground, Screened, Start, by_turns};
 use super::weighed::{Weighed, at_nominal, at_the_noise, from_nominal, no_worse};
 use rayon::prelude::*;
 
@@ -20,14 +20,31 @@ pub struct Fitted {
     pub passed: Vec<usize>,
 }
 
-/// Fits hypotheses from all their starts, beside the model before, until the time is over; at least the first ones. The
-/// front by both weightings while there is time.
+/// A hypothesis after a few iterations from its most promising starts, with the weights of the model before.
+struct Tried {
+    hypothesis: usize,
+    starts: Vec<Start>,
+    /// From as many of the first starts as have values.
+    fits: Vec<Fit>,
+}
+
+/// Fits hypotheses from all their starts, beside the model before, until the time is over; at least the first ones. They are
+/// tried before, for at most half of the time, and those come first that then leave least: a linear model promises much that
+/// is not kept. The front by both weightings while there is time.
 pub fn fitted(ground: &Ground<'_>, order: Vec<Screened>, until: Deadline<'_>) -> Fitted {
     let Ground { problem, sensors, .. } = *ground;
-    let one = |(hypothesis, starts): Screened| {
-        let fit = from_all(ground, needed(problem.hypotheses.len()), hypothesis, starts, until)?;
+    let (tried, rest) = until.of_step().rounds(order, |screened| tried(ground, screened));
+    let cost = |t: &Tried| t.fits.iter().map(Fit::cost).fold(f64::INFINITY, f64::min);
+    let gap = |t: &Tried| t.fits.iter().map(|f| total_gap(&f.mean_squares(), sensors)).fold(f64::INFINITY, f64::min);
+    let least = by_turns(&tried, cost, gap);
+    let mut tried: Vec<Option<Tried>> = tried.into_iter().map(Some).collect();
+    let mut order: Vec<Tried> = least.into_iter().filter_map(|i| tried[i].take()).collect();
+    order.extend(rest.into_iter().map(|(hypothesis, starts)| Tried { hypothesis, starts, fits: Vec::new() }));
+    let one = |tried: Tried| {
+        let hypothesis = tried.hypothesis;
+        let fit = from_all(ground, needed(problem.hypotheses.len()), tried, until)?;
         let h = &problem.hypotheses[hypothesis];
-        let (places, is_parameter) = (h.attachments.len(), h.family == "parameter");
+    let (places, is_parameter) = (h.attachments.len(), h.family == "parameter");
         Some(Rival { hypothesis, places, size: 0.0, is_parameter, model: Weighed::new(problem, fit) })
     };
     let (found, passed) = until.rounds(order, one);
@@ -45,22 +62,29 @@ pub fn fitted(ground: &Ground<'_>, order: Vec<Screened>, until: Deadline<'_>) ->
         }
     });
     rivals.par_iter_mut().for_each(|r| r.size = size(problem, &problem.hypotheses[r.hypothesis], &r.model.fit));
-    Fitted { rivals, passed: passed.into_iter().map(|s| s.0).collect() }
+    Fitted { rivals, passed: passed.into_iter().map(|t| t.hypothesis).collect() }
+}
+
+/// A few iterations from the most promising starts of a hypothesis.
+fn tried(ground: &Ground<'_>, (hypothesis, starts): Screened) -> Tried {
+    let one = |s: &Start| begun(ground, s, s.x.clone(), &ground.before.weights);
+    let fits = starts.iter().take(TRIED).filter_map(one).collect();
+    Tried { hypothesis, starts, fits }
+}
+
+/// A few iterations from a start.
+fn begun(ground: &Ground<'_>, start: &Start, x: Vec<f64>, weights: &Weights) -> Option<Fit> {
+    let Ground { problem, .. } = *ground;
+    let mut fit = Fit::begun(start.candidate.clone(), x, &problem.train, &problem.full_scale, Some(weights))?;
+    fit.descend(&problem.train, ROUGH);
+    Some(fit)
 }
 
 /// A few iterations from every start; where they gain anything, the best fit is completed, and, while there is time, that
 /// with the least gap if it is less by far.
-fn from_all(
-    ground: &Ground<'_>,
-    needed: f64,
-    hypothesis: usize,
-    mut starts: Vec<Start>,
-    until: Deadline<'_>,
-) -> Option<Fit> {
-    let sizes = starts.first().map(|s| ground.of_size(hypothesis, s)).unwrap_or_default();
-    starts.extend(sizes);
+fn from_all(ground: &Ground<'_>, needed: f64, tried: Tried, until: Deadline<'_>) -> Option<Fit> {
     let Ground { problem, sensors, before } = *ground;
-    let mut all = rough(ground, &starts);
+    let mut all = rough(ground, tried);
     let gap = |f: &Fit| total_gap(&f.mean_squares(), sensors);
     let least = |a: &Fit, b: &Fit| gap(a).total_cmp(&gap(b));
     let first = (0..all.len()).reduce(|a, b| if all[a].ahead(&all[b]) > 0.0 { b } else { a })?;
@@ -77,28 +101,30 @@ fn from_all(
 }
 
 /// A few iterations from every start, with the weights of the model before; those with the least cost and the least gap go on.
-/// Where that model is bent away from the data sheet, its weights may count little what the hypothesis explains: then also as
-/// if only the sensors' noise were left, which finds the size that the data ask for, and from there with parameters at the data
-/// sheet again.
-fn rough(ground: &Ground<'_>, starts: &[Start]) -> Vec<Fit> {
+/// Sizes are looked for over the decades where the linear model has not kept its promise. Where the model before is bent away
+/// from the data sheet, its weights may count little what the hypothesis explains: then also as if only the sensors' noise
+/// were left, which finds the size that the data ask for, and from there with parameters at the data sheet again.
+fn rough(ground: &Ground<'_>, Tried { hypothesis, mut starts, fits: mut bent }: Tried) -> Vec<Fit> {
     let Ground { problem, sensors, before } = *ground;
     let (train, scale) = (&problem.train, &problem.full_scale);
-    let begun = |s: &Start, unbent: bool, weights: &Weights| {
-        let x = if unbent { at_nominal(problem, &s.candidate, &s.x) } else { s.x.clone() };
-        let mut fit = Fit::begun(s.candidate.clone(), x, train, scale, Some(weights))?;
-        fit.descend(train, ROUGH);
-        Some(fit)
-    };
     let costs = |a: &Fit, b: &Fit| a.cost().total_cmp(&b.cost());
     let gap = |f: &Fit| total_gap(&f.mean_squares(), sensors);
-    let mut bent: Vec<Fit> = starts.iter().filter_map(|s| begun(s, false, &before.weights)).collect();
+    let as_before = |s: &Start| begun(ground, s, s.x.clone(), &before.weights);
+    bent.extend(starts.iter().skip(if bent.is_empty() { 0 } else { TRIED }).filter_map(as_before));
+    let promised = starts.iter().map(Start::promises).fold(f64::INFINITY, f64::min);
+    if !bent.iter().any(|f| f.cost() <= (1.0 + DELTA) * promised) {
+        let sizes = starts.first().map(|s| ground.of_size(hypothesis, s)).unwrap_or_default();
+        bent.extend(sizes.iter().filter_map(as_before));
+        starts.extend(sizes);
+    }
     bent.sort_by(costs);
     let open = (1..bent.len()).min_by(|&a, &b| gap(&bent[a]).total_cmp(&gap(&bent[b])));
     let mut found: Vec<Fit> = open.map(|k| bent.swap_remove(k)).into_iter().chain(bent.into_iter().take(1)).collect();
     found.iter_mut().for_each(|f| f.descend(train, ROUGH));
     if before.prior() > OTHER_WEIGHTING {
         let white = Weights::sensors(&sensors.noise, scale);
-        let sized = starts.iter().filter_map(|s| begun(s, true, &white)).min_by(costs);
+        let unbent = |s: &Start| begun(ground, s, at_nominal(problem, &s.candidate, &s.x), &white);
+        let sized = starts.iter().filter_map(unbent).min_by(costs);
         found.extend(sized.and_then(|mut sized| {
             sized.descend(train, ROUGH);
             let x = at_nominal(problem, &sized.candidate, &sized.x);

@@ -51,6 +51,13 @@ pub struct Start {
     promised: Leaves,
 }
 
+impl Start {
+    /// The weighed squares that the linear model promises, prior included.
+    pub fn promises(&self) -> f64 {
+        self.promised.cost
+    }
+}
+
 /// A hypothesis with its starts, the most promising first.
 pub type Screened = (usize, Vec<Start>);
 
@@ -108,18 +115,24 @@ fn moved(before: &Fit, all: &[Attached]) -> Vec<Attached> {
 fn ordered(all: Vec<Beginnings>) -> Vec<Screened> {
     let least =
         |models: &[Start], by: fn(&Leaves) -> f64| models.iter().map(|m| by(&m.promised)).fold(f64::INFINITY, f64::min);
-    let rank = |by: fn(&Leaves) -> f64| {
-        let mut order: Vec<usize> = (0..all.len()).collect();
-        order.sort_by(|&a, &b| least(&all[a].1, by).total_cmp(&least(&all[b].1, by)));
-        let mut rank = vec![0; all.len()];
+    let order = by_turns(&all, |b| least(&b.1, |l| l.cost), |b| least(&b.1, |l| l.gap));
+    let mut all: Vec<Option<Beginnings>> = all.into_iter().map(Some).collect();
+    order.into_iter().filter_map(|i| all[i].take()).map(|(i, models)| (i, starts(models))).collect()
+}
+
+/// The order of things by two measures in turn, the least first.
+pub fn by_turns<T>(all: &[T], one: impl Fn(&T) -> f64, other: impl Fn(&T) -> f64) -> Vec<usize> {
+    let ranks = |values: Vec<f64>| {
+        let mut order: Vec<usize> = (0..values.len()).collect();
+        order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
+        let mut rank = vec![0; values.len()];
         order.into_iter().enumerate().for_each(|(r, i)| rank[i] = r);
         rank
     };
-    let (by_cost, by_gap) = (rank(|l| l.cost), rank(|l| l.gap));
+    let (first, second) = (ranks(all.iter().map(one).collect()), ranks(all.iter().map(other).collect()));
     let mut order: Vec<usize> = (0..all.len()).collect();
-    order.sort_by_key(|&i| (by_cost[i].min(by_gap[i]), by_cost[i], i));
-    let mut all: Vec<Option<Beginnings>> = all.into_iter().map(Some).collect();
-    order.into_iter().filter_map(|i| all[i].take()).map(|(i, models)| (i, starts(models))).collect()
+    order.sort_by_key(|&i| (first[i].min(second[i]), first[i], i));
+    order
 }
 
 /// The most promising of the beginnings of a hypothesis, by both in turn.
