@@ -44,7 +44,7 @@ pub fn fitted(ground: &Ground<'_>, order: Vec<Screened>, until: Deadline<'_>) ->
         let hypothesis = tried.hypothesis;
         let fit = from_all(ground, needed(problem.hypotheses.len()), tried, until)?;
         let h = &problem.hypotheses[hypothesis];
-    let (places, is_parameter) = (h.attachments.len(), h.family == "parameter");
+        let (places, is_parameter) = (h.attachments.len(), h.family == "parameter");
         Some(Rival { hypothesis, places, size: 0.0, is_parameter, model: Weighed::new(problem, fit) })
     };
     let (found, passed) = until.rounds(order, one);
