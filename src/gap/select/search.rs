@@ -197,7 +197,7 @@ fn begun<'a>(
     let sensors = models::sensors(problem);
     let nominal = models::nominal(problem).map_err(Trouble::Model)?;
     let x = nominal.present();
-    let until = ends.of_step().of_step();
+    let until = ends.of_step();
     let base = weighed(problem, &sensors, (nominal.clone(), x.clone()), until);
     let base = base.ok_or_else(|| stops(problem, &nominal, &x))?;
     let base = settled(problem, &sensors, base, until);
