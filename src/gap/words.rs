@@ -30,23 +30,32 @@ pub(super) fn findings(v: &Verdict) -> String {
     text
 }
 
-/// What is missing, how much it is and what it changes, in a sentence.
+/// What is missing, how much it is and what it changes, in a sentence or two.
 fn headline(v: &Verdict) -> String {
     if v.effects.is_empty() {
         return String::new();
     }
-    let one = |e: &Effect| {
-        let places: Vec<String> = e.places.iter().map(|p| format!("`{}`", p.place)).collect();
-        let at = places.join(" and ");
-        if e.family == "parameter" {
-            return format!("{at} off its data sheet");
-        }
-        let flow = |f: &Flow| format!(", up to {} in the recordings used", quantity(f.largest, &f.unit));
-        format!("{} at {at}{}", lower(&e.description), e.flow.as_ref().map_or_else(String::new, flow))
+    let with = if v.effects.len() == 1 { "it" } else { "them" };
+    format!("{}{}\n", lacking(&v.effects), fall(v, with).unwrap_or_default())
+}
+
+/// What the model lacks; which of its parameters are off.
+fn lacking(effects: &[Effect]) -> String {
+    let (off, missing): (Vec<&Effect>, Vec<&Effect>) = effects.iter().partition(|e| e.family == "parameter");
+    let flow = |f: &Flow| format!(", up to {} in the recordings used", quantity(f.largest, &f.unit));
+    let one = |e: &&Effect| {
+        let flow = e.flow.as_ref().map_or_else(String::new, flow);
+        format!("{} at {}{flow}", lower(&e.description), places(e))
     };
-    let all: Vec<String> = v.effects.iter().map(one).collect();
-    let with = if all.len() == 1 { "it" } else { "them" };
-    format!("The model lacks {}.{}\n", all.join("; and "), fall(v, with).unwrap_or_default())
+    let missing: Vec<String> = missing.iter().map(one).collect();
+    let missing = (!missing.is_empty()).then(|| format!("The model lacks {}.", missing.join("; and ")));
+    let off = off.into_iter().map(|e| format!("{} is off its data sheet.", places(e)));
+    missing.into_iter().chain(off).collect::<Vec<_>>().join(" ")
+}
+
+/// The places of an effect.
+fn places(e: &Effect) -> String {
+    e.places.iter().map(|p| format!("`{}`", p.place)).collect::<Vec<_>>().join(" and ")
 }
 
 /// The error that falls most, in parts of its signal's range.
@@ -176,14 +185,13 @@ fn quantity(v: f64, unit: &str) -> String {
 }
 
 fn effect(i: usize, e: &Effect, count: usize) -> String {
-    let places: Vec<String> = e.places.iter().map(|p| format!("`{}`", p.place)).collect();
     let values: Vec<String> = e.parameters.iter().map(|(n, p)| format!("{n} = {}", estimate(p, "+-"))).collect();
     let mut text = format!(
         "{}. {} ({}) at {}: {}. Evidence {:.0} nats, t = {:.1}.\n",
         i + 1,
         e.family.replace('_', " "),
         e.effect,
-        places.join(" and "),
+        places(e),
         values.join(", "),
         e.evidence,
         e.t
@@ -234,4 +242,39 @@ pub(super) fn number(v: f64) -> String {
 
 pub(super) fn percent(v: f64) -> String {
     format!("{:.1} %", 100.0 * v)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::verdict::Spot;
+    use super::*;
+    use std::collections::BTreeMap;
+
+    fn effect(family: &str, description: &str, place: &str, flow: Option<Flow>) -> Effect {
+        Effect {
+            effect: String::new(),
+            family: family.into(),
+            description: description.into(),
+            places: vec![Spot { place: place.into(), node: Vec::new() }],
+            flow,
+            evidence: 0.0,
+            t: 0.0,
+            closes_alone: None,
+            closes_last: None,
+            parameters: BTreeMap::new(),
+            indistinguishable: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn what_is_missing_and_what_is_off() {
+        let flow = Flow { largest: 3.456, rms: 2.0, unit: "l/min".into() };
+        let leak = || effect("external_leak", "Laminar leakage to the low side", "pump.port_a", Some(flow.clone()));
+        let drift = || effect("parameter", "", "motor.R_r", None);
+        let leaks = "The model lacks laminar leakage to the low side at `pump.port_a`, up to 3.46 l/min in the recordings used.";
+        let off = "`motor.R_r` is off its data sheet.";
+        assert_eq!(lacking(&[leak()]), leaks);
+        assert_eq!(lacking(&[drift()]), off);
+        assert_eq!(lacking(&[drift(), leak()]), format!("{leaks} {off}"));
+    }
 }

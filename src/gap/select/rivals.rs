@@ -36,9 +36,7 @@ pub fn fitted(ground: &Ground<'_>, order: Vec<Screened>, until: Deadline<'_>) ->
     let (tried, rest) = until.of_step().rounds(order, |screened| tried(ground, screened));
     let cost = |t: &Tried| t.fits.iter().map(Fit::cost).fold(f64::INFINITY, f64::min);
     let gap = |t: &Tried| t.fits.iter().map(|f| total_gap(&f.mean_squares(), sensors)).fold(f64::INFINITY, f64::min);
-    let least = by_turns(&tried, cost, gap);
-    let mut tried: Vec<Option<Tried>> = tried.into_iter().map(Some).collect();
-    let mut order: Vec<Tried> = least.into_iter().filter_map(|i| tried[i].take()).collect();
+    let mut order = by_turns(tried, cost, gap);
     order.extend(rest.into_iter().map(|(hypothesis, starts)| Tried { hypothesis, starts, fits: Vec::new() }));
     let one = |tried: Tried| {
         let hypothesis = tried.hypothesis;

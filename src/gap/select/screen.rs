@@ -115,13 +115,12 @@ fn moved(before: &Fit, all: &[Attached]) -> Vec<Attached> {
 fn ordered(all: Vec<Beginnings>) -> Vec<Screened> {
     let least =
         |models: &[Start], by: fn(&Leaves) -> f64| models.iter().map(|m| by(&m.promised)).fold(f64::INFINITY, f64::min);
-    let order = by_turns(&all, |b| least(&b.1, |l| l.cost), |b| least(&b.1, |l| l.gap));
-    let mut all: Vec<Option<Beginnings>> = all.into_iter().map(Some).collect();
-    order.into_iter().filter_map(|i| all[i].take()).map(|(i, models)| (i, starts(models))).collect()
+    let order = by_turns(all, |b| least(&b.1, |l| l.cost), |b| least(&b.1, |l| l.gap));
+    order.into_iter().map(|(i, models)| (i, starts(models))).collect()
 }
 
-/// The order of things by two measures in turn, the least first.
-pub fn by_turns<T>(all: &[T], one: impl Fn(&T) -> f64, other: impl Fn(&T) -> f64) -> Vec<usize> {
+/// Things in the order of two measures in turn, the least first.
+pub fn by_turns<T>(all: Vec<T>, one: impl Fn(&T) -> f64, other: impl Fn(&T) -> f64) -> Vec<T> {
     let ranks = |values: Vec<f64>| {
         let mut order: Vec<usize> = (0..values.len()).collect();
         order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
@@ -132,7 +131,8 @@ pub fn by_turns<T>(all: &[T], one: impl Fn(&T) -> f64, other: impl Fn(&T) -> f64
     let (first, second) = (ranks(all.iter().map(one).collect()), ranks(all.iter().map(other).collect()));
     let mut order: Vec<usize> = (0..all.len()).collect();
     order.sort_by_key(|&i| (first[i].min(second[i]), first[i], i));
-    order
+    let mut all: Vec<Option<T>> = all.into_iter().map(Some).collect();
+    order.into_iter().filter_map(|i| all[i].take()).collect()
 }
 
 /// The most promising of the beginnings of a hypothesis, by both in turn.
