@@ -5,7 +5,6 @@
 use crate::errors::raised;
 use crate::threads::pooled;
 use bramah::internals::diag::render::full;
-use bramah::internals::gap::policy::BUDGET;
 use bramah::world::{DiskWorld, MemoryWorld, Overlay};
 use bramah::{Budget, DiagnoseOptions, Error, IdentifyMethod, IdentifyOptions, Stage, diagnose_as};
 use pyo3::exceptions::PyValueError;
@@ -67,8 +66,9 @@ pub fn diagnose(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Found> {
     let begun = std::time::Instant::now();
-    let time = Duration::try_from_secs_f64(budget.unwrap_or(BUDGET)).ok().filter(|t| !t.is_zero());
-    let time = time.ok_or_else(|| PyValueError::new_err("the budget must be a time above zero, s"))?;
+    let positive = |seconds: f64| Duration::try_from_secs_f64(seconds).ok().filter(|t| !t.is_zero());
+    let no_time = || PyValueError::new_err("the budget must be a time above zero, s");
+    let time = budget.map(|seconds| positive(seconds).ok_or_else(no_time)).transpose()?;
     let mut stopped = None;
     let work = || -> Result<Found, Error> {
         let world = world(files);

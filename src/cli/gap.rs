@@ -48,9 +48,10 @@ pub(super) struct GapArgs {
     /// What was found as one HTML page, `-` for stdout
     #[arg(long, value_name = "FILE")]
     report: Option<String>,
-    /// How long the search may take: seconds, or a time with a unit. Effects for which the time does not last are named
-    #[arg(long, value_name = "TIME", value_parser = budget, default_value = "60 s", conflicts_with_all = ["list", "plan"])]
-    budget: Option<f64>,
+    /// How long the search may take: seconds, or a time with a unit [default: 60 s, and on a slow model as long as 300
+    /// simulations of all recordings take]. Effects for which the time does not last are named
+    #[arg(long, value_name = "TIME", value_parser = budget, conflicts_with_all = ["list", "plan"])]
+    budget: Option<Duration>,
     /// Fit one effect at one place, as `weighed` and `--list` name them, and show it even where the diagnosis refuses it
     #[arg(long, value_name = "EFFECT@PLACE", conflicts_with_all = ["list", "plan"])]
     explain_rejected: Option<String>,
@@ -122,8 +123,8 @@ fn diagnose(args: &GapArgs, study: &Study, messages: &mut Messages) -> Result<En
         ControlFlow::Continue(())
     };
     let gone = || begun.elapsed();
-    let budget = args.budget.map(|seconds| Budget { time: Duration::from_secs_f64(seconds), gone: &gone });
-    let options = DiagnoseOptions { data, budget, effect: args.explain_rejected.as_deref() };
+    let budget = Budget { time: args.budget, gone: &gone };
+    let options = DiagnoseOptions { data, budget: Some(budget), effect: args.explain_rejected.as_deref() };
     let diagnosis = Diagnosis::new(question, held, options, &mut show);
     stages.clear();
     let mut diagnosis = diagnosis.map_err(|diagnostics| Failure { diagnostics })?;
@@ -188,8 +189,8 @@ fn listed(all: &[Hypothesis]) -> String {
 }
 
 /// A time that is not nothing.
-fn budget(text: &str) -> Result<f64, String> {
+fn budget(text: &str) -> Result<Duration, String> {
     let seconds = crate::experiment::seconds(text)?;
-    let fits = seconds > 0.0 && Duration::try_from_secs_f64(seconds).is_ok();
-    if fits { Ok(seconds) } else { Err("the budget must be a time above zero".into()) }
+    let time = Duration::try_from_secs_f64(seconds).ok().filter(|t| !t.is_zero());
+    time.ok_or_else(|| "the budget must be a time above zero".into())
 }

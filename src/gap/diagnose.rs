@@ -1,9 +1,9 @@
 //! A diagnosis from its study to what is shown of it: verdict, words, page, corrected model.
 
+use super::clock::Budget;
 use super::fixed;
 use super::hypotheses::{Hypothesis, Place};
 use super::report;
-use super::select::clock::Budget;
 use super::select::models;
 use super::select::search::{Found, Progress, Stage, Trouble, explained, search};
 use super::study::{Held, Question, Unusable, question};

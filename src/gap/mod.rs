@@ -11,6 +11,7 @@
 pub mod augment;
 mod capacity;
 pub mod circuit;
+pub mod clock;
 pub mod data;
 mod diagnose;
 pub mod effects;
@@ -32,6 +33,6 @@ pub mod whiteness;
 pub mod words;
 
 pub use diagnose::{DiagnoseOptions, Diagnosis, diagnose, diagnose_as};
-pub use select::clock::Budget;
+pub use clock::Budget;
 pub use select::search::Stage;
 pub use verdict::Verdict;

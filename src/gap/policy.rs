@@ -42,6 +42,9 @@ pub const EFFECTS: usize = 4;
 
 /// Time that a search may take, s: what is not fitted then is named. Halved: on slow models fewer hypotheses are weighed.
 pub const BUDGET: f64 = 60.0;
+/// On a slow model as long as so many simulations of all recordings take, one after another: the fits of the model within its
+/// tolerances and of some dozens of hypotheses. Halved: as above.
+pub const RUNS: u32 = 300;
 /// Part of the time that is left which one step may take.
 pub const SHARE: f64 = 0.5;
 /// Hypotheses that are fitted between two looks at the clock.

@@ -3,7 +3,9 @@
 
 use super::augment::{self, Attached, Augmented, PLANT};
 use super::circuit::Circuit;
+use super::clock::Deadline;
 use super::data::{Inputs, Recording};
+use super::estimate::Task;
 use super::estimate::simulation::from_start;
 use super::hypotheses::{Hypothesis, Signal, Site};
 use crate::analysis::lift;
@@ -137,6 +139,11 @@ pub struct Chosen {
 }
 
 impl Problem<'_> {
+    /// Its recordings, to fit models to for so long.
+    pub fn task<'b>(&'b self, until: Deadline<'b>) -> Task<'b> {
+        Task { train: &self.train, full_scale: &self.full_scale, until }
+    }
+
     /// The unit of a signal's variable, as written.
     pub fn unit(&self, signal: &Signal) -> String {
         self.circuit.units.get(&signal.variable).cloned().unwrap_or_default()

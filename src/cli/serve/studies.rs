@@ -14,7 +14,6 @@ use super::http::{Answer, Ask, Refusal};
 use super::jobs::{File, Job, Jobs, Made};
 use crate::diag::render::full;
 use crate::diag::{Code, Diagnostic, Sources};
-use crate::gap::policy::BUDGET;
 use crate::gap::study::{Question, Unusable, question};
 use crate::gap::{Budget, DiagnoseOptions, Diagnosis};
 use crate::plot::html;
@@ -265,7 +264,7 @@ pub(super) fn diagnose(folder: &Folder, ask: &Ask, uploads: &Uploads, jobs: &Job
             if job.stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
         let gone = || Duration::from_secs_f64(job.seconds());
-        let budget = Some(Budget { time: Duration::from_secs_f64(BUDGET), gone: &gone });
+        let budget = Some(Budget { time: None, gone: &gone });
         let options = DiagnoseOptions { budget, ..DiagnoseOptions::default() };
         let mut diagnosis = Diagnosis::new(question, held, options, &mut progress).map_err(|d| full(sources, &d))?;
         diagnosis.took(job.seconds());

@@ -258,7 +258,7 @@ impl Candidate {
         let own: Vec<usize> = (0..x.len()).filter(|&i| is_own(&self.coordinates[i])).collect();
         let mut without = x.to_vec();
         own.iter().for_each(|&i| without[i] = self.coordinates[i].of(0.0));
-        let (mut errors, products, _) = self.evaluate_one(&without, recording, 0)?;
+        let (mut errors, products, _) = self.evaluate_one(&without, recording, 0, None)?;
         let samples = errors.first().map_or(0, Vec::len);
         for k in 0..PIECES {
             let others = products.iter().enumerate().filter(|(piece, _)| *piece != k).map(|(_, signals)| signals);
@@ -328,18 +328,11 @@ impl Candidate {
     /// Weighed squares and the prior at a point, as far as they stay within a bound: a run ends where they pass it. `None`
     /// there, and where the model does not reach the end of a recording.
     pub fn cost_within(&self, x: &[f64], train: &[Recording], weights: &Weights, bound: f64) -> Option<f64> {
-        let weight: Vec<f64> = (0..weights.square.len()).map(|i| weights.weight(i)).collect();
-        let gone = AtomicU64::new(self.prior(x).to_bits());
-        let over = |own: f64| f64::from_bits(gone.load(Ordering::Relaxed)) + own > bound;
+        let limit = Limit::new(weights, self.prior(x), bound);
         let one = |(number, recording): (usize, &Recording)| {
             let mut own = 0.0;
-            self.run(x, recording, Some(number), recording.len(), false, |errors, _| {
-                let squares = errors.iter().zip(&weight).filter(|(e, _)| e.is_finite()).map(|(e, w)| w * e * e);
-                own += squares.sum::<f64>();
-                if over(own) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-            })?;
-            let add = |sum: u64| Some((f64::from_bits(sum) + own).to_bits());
-            gone.fetch_update(Ordering::Relaxed, Ordering::Relaxed, add).ok()?;
+            self.run(x, recording, Some(number), recording.len(), false, |errors, _| limit.count(errors, &mut own))?;
+            limit.add(own);
             Some(own)
         };
         let all: Option<Vec<f64>> = train.par_iter().enumerate().map(one).collect();
@@ -349,7 +342,16 @@ impl Candidate {
 
     /// What it leaves of the train recordings, with slopes.
     pub fn evaluate(&self, x: &[f64], train: &[Recording]) -> Option<Evaluated> {
-        let one = |(i, r): (usize, &Recording)| self.evaluate_one(x, r, i);
+        self.evaluated(x, train, None)
+    }
+
+    /// The same, as far as weighed squares and the prior stay within a bound: a run ends where they pass it.
+    pub fn evaluate_within(&self, x: &[f64], train: &[Recording], weights: &Weights, bound: f64) -> Option<Evaluated> {
+        self.evaluated(x, train, Some(&Limit::new(weights, self.prior(x), bound)))
+    }
+
+    fn evaluated(&self, x: &[f64], train: &[Recording], limit: Option<&Limit>) -> Option<Evaluated> {
+        let one = |(i, r): (usize, &Recording)| self.evaluate_one(x, r, i, limit);
         let all: Option<Vec<_>> = train.par_iter().enumerate().map(one).collect();
         let mut found = Evaluated { errors: Vec::new(), products: Vec::new(), off: Vec::new() };
         for (errors, products, off) in all? {
@@ -366,12 +368,13 @@ impl Candidate {
         x: &[f64],
         recording: &Recording,
         number: usize,
+        limit: Option<&Limit>,
     ) -> Option<(Errors, Vec<Vec<Products>>, Vec<f64>)> {
         let (signals, width) = (self.deviations.len(), self.coordinates.len());
         let samples = recording.len() - recording.settled() - 1;
         let mut errors = vec![Vec::with_capacity(samples); signals];
         let mut sums = vec![vec![Products::none(width); signals]; PIECES];
-        let mut sample = 0;
+        let (mut sample, mut cost) = (0, 0.0);
         let off = self.run(x, recording, Some(number), recording.len(), true, |errors_of, slopes| {
             let into = &mut sums[piece(sample, samples)];
             sample += 1;
@@ -381,8 +384,11 @@ impl Candidate {
                     into[i].add(slopes.column(i).as_slice(), *e);
                 }
             }
-            ControlFlow::Continue(())
+            limit.map_or(ControlFlow::Continue(()), |l| l.count(errors_of, &mut cost))
         })?;
+        if let Some(limit) = limit {
+            limit.add(cost);
+        }
         Some((errors, sums, off))
     }
 
@@ -447,5 +453,37 @@ impl Candidate {
             at(&errors, slopes)
         })?;
         Some(begun.off)
+    }
+}
+
+/// Weighed squares that runs may come to together.
+struct Limit {
+    weight: Vec<f64>,
+    bound: f64,
+    /// Those of the prior and of runs that have ended.
+    gone: AtomicU64,
+}
+
+impl Limit {
+    fn new(weights: &Weights, prior: f64, bound: f64) -> Self {
+        let weight = (0..weights.square.len()).map(|i| weights.weight(i)).collect();
+        Limit { weight, bound, gone: AtomicU64::new(prior.to_bits()) }
+    }
+
+    /// Adds the errors of a sample to what a run has come to; whether it may go on.
+    fn count(&self, errors: &[f64], own: &mut f64) -> ControlFlow<()> {
+        let squares = errors.iter().zip(&self.weight).filter(|(e, _)| e.is_finite()).map(|(e, w)| w * e * e);
+        *own += squares.sum::<f64>();
+        let gone = f64::from_bits(self.gone.load(Ordering::Relaxed));
+        if gone + *own > self.bound { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+
+    /// Adds what a run came to.
+    fn add(&self, own: f64) {
+        let add = |sum: u64| (f64::from_bits(sum) + own).to_bits();
+        let mut known = self.gone.load(Ordering::Relaxed);
+        while let Err(now) = self.gone.compare_exchange_weak(known, add(known), Ordering::Relaxed, Ordering::Relaxed) {
+            known = now;
+        }
     }
 }

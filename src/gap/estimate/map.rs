@@ -2,6 +2,7 @@
 //! leaves them. With a large misfit the data are weak and tolerances hold; once what is missing is in, the errors become
 //! small and independent, and the data speak about parameters too.
 
+use super::super::clock::Deadline;
 use super::super::data::Recording;
 use super::super::policy::{DOUBLINGS, ITERATIONS, LEAST, SETTLED, SETTLED_PART, SETTLED_SQUARE, TRIALS};
 use super::super::problem::Chosen;
@@ -76,6 +77,17 @@ pub fn squares(errors: &[Errors], signal: usize) -> f64 {
     errors.iter().flat_map(|e| &e[signal]).filter(|v| v.is_finite()).map(|v| v * v).sum()
 }
 
+/// What models are fitted to, and for how long.
+#[derive(Clone, Copy, Debug)]
+pub struct Task<'a> {
+    /// The recordings.
+    pub train: &'a [Recording],
+    /// Full scale of each signal, SI.
+    pub full_scale: &'a [f64],
+    /// A fit that has no more time stays where it came.
+    pub until: Deadline<'a>,
+}
+
 /// A model at its optimum.
 #[derive(Clone, Debug)]
 pub struct Fit {
@@ -96,17 +108,16 @@ impl Fit {
     pub fn of(
         candidate: Candidate,
         x: Vec<f64>,
-        train: &[Recording],
-        full_scale: &[f64],
+        task: Task<'_>,
         first: Option<Weights>,
         rounds: usize,
     ) -> Option<Fit> {
-        let mut fit = Fit::begun(candidate, x, train, full_scale, first.as_ref())?;
-        fit.descend(train, ITERATIONS);
+        let mut fit = Fit::begun(candidate, x, task, first.as_ref())?;
+        fit.descend(task, ITERATIONS);
         for _ in 1..rounds {
             let mut next = fit.clone();
-            next.weights = Weights::of(&fit.evaluated.errors, full_scale);
-            next.descend(train, ITERATIONS);
+            next.weights = Weights::of(&fit.evaluated.errors, task.full_scale);
+            next.descend(task, ITERATIONS);
             // a weaker weight of the data may lead away from them for good
             if fit.ahead(&next) < 0.0 {
                 break;
@@ -121,12 +132,11 @@ impl Fit {
     pub fn begun(
         candidate: Candidate,
         x: Vec<f64>,
-        train: &[Recording],
-        full_scale: &[f64],
+        task: Task<'_>,
         weights: Option<&Weights>,
     ) -> Option<Fit> {
-        let evaluated = candidate.evaluate(&x, train)?;
-        let weights = weights.cloned().unwrap_or_else(|| Weights::of(&evaluated.errors, full_scale));
+        let evaluated = candidate.evaluate(&x, task.train)?;
+        let weights = weights.cloned().unwrap_or_else(|| Weights::of(&evaluated.errors, task.full_scale));
         Some(Fit::at(candidate, x, evaluated, weights))
     }
 
@@ -153,56 +163,59 @@ impl Fit {
         if self.ahead(&other) > 0.0 { other } else { self }
     }
 
-    /// Levenberg-Marquardt with these weights, at most so many iterations.
-    pub fn descend(&mut self, train: &[Recording], iterations: usize) {
+    /// Levenberg-Marquardt with these weights, at most so many iterations, while there is time.
+    pub fn descend(&mut self, task: Task<'_>, iterations: usize) {
         let mut damping = DAMPING;
         for _ in 0..iterations {
-            let (before, from) = (self.cost(), self.x.clone());
-            let squares = self.mean_squares();
-            let system = self.system(|_, _| true);
-            let mut taken = false;
-            for _ in 0..TRIALS {
-                let x = system.step(&self.candidate.coordinates, &self.x, damping);
-                if x == self.x {
-                    break;
-                }
-                let cost = |x: &[f64], bound| self.candidate.cost_within(x, train, &self.weights, bound);
-                if let Some(found) = cost(&x, before).filter(|c| *c < before) {
-                    if !self.go(x, train) {
-                        break;
-                    }
-                    self.stretch(&system, &from, found, train);
-                    damping /= EASED;
-                    taken = true;
-                    break;
-                }
-                damping = damping.max(LEAST_DAMPING) * STIFFENED;
+            if task.until.is_over() {
+                break;
             }
+            let (before, squares) = (self.cost(), self.mean_squares());
+            let Some(next) = self.gained(task.train, &mut damping) else { break };
+            *self = next;
             let fell = |(now, before): (f64, &f64)| now < (1.0 - SETTLED_SQUARE) * before;
             let closes = self.mean_squares().into_iter().zip(&squares).any(fell);
-            if !taken || !closes && before - self.cost() < SETTLED.max(SETTLED_PART * before) {
+            if !closes && before - self.cost() < SETTLED.max(SETTLED_PART * before) {
                 break;
             }
         }
     }
 
-    /// Moves to a point; says whether the model reaches the end of all recordings there.
-    fn go(&mut self, x: Vec<f64>, train: &[Recording]) -> bool {
-        let Some(evaluated) = self.candidate.evaluate(&x, train) else { return false };
-        self.candidate.off.clone_from(&evaluated.off);
-        (self.x, self.evaluated) = (x, evaluated);
-        true
+    /// Where a step that gains leads, damped as far as it must be; `None` where no step gains.
+    fn gained(&self, train: &[Recording], damping: &mut f64) -> Option<Fit> {
+        let system = self.system(|_, _| true);
+        for _ in 0..TRIALS {
+            let x = system.step(&self.candidate.coordinates, &self.x, *damping);
+            if x == self.x {
+                return None;
+            }
+            if let Some(next) = self.gone(x, train) {
+                *damping /= EASED;
+                return Some(next.stretched(&system, &self.x, train));
+            }
+            *damping = damping.max(LEAST_DAMPING) * STIFFENED;
+        }
+        None
     }
 
-    /// Goes further along a step that was taken, to a point of some cost, if the cost still falls there at least half as fast
-    /// as where it began: where a sensitivity falls as an effect grows, linear steps are short.
-    fn stretch(&mut self, system: &System, from: &[f64], cost: f64, train: &[Recording]) {
+    /// The model at another point; `None` where it costs no less. A run without slopes takes other steps than one with them,
+    /// and their costs differ by the error of the simulation: what is gained is gained with slopes.
+    fn gone(&self, x: Vec<f64>, train: &[Recording]) -> Option<Fit> {
+        let before = self.cost();
+        let evaluated = self.candidate.evaluate_within(&x, train, &self.weights, before)?;
+        let next = Fit::at(self.candidate.clone(), x, evaluated, self.weights.clone());
+        (next.cost() < before).then_some(next)
+    }
+
+    /// Goes further along a step that was taken if the cost still falls there at least half as fast as where it began: where
+    /// a sensitivity falls as an effect grows, linear steps are short.
+    fn stretched(self, system: &System, from: &[f64], train: &[Recording]) -> Fit {
         let along = |s: &System| (0..from.len()).map(|i| s.towards[i] * (self.x[i] - from[i])).sum::<f64>();
         if along(&self.system(|_, _| true)) < STILL_FALLS * along(system) {
-            return;
+            return self;
         }
         let coordinates = &self.candidate.coordinates;
-        let (mut best, mut least) = (self.x.clone(), cost);
+        let (mut best, mut least) = (self.x.clone(), self.cost());
         for _ in 0..DOUBLINGS {
             let far = |((c, from), to): ((&Coordinate, &f64), &f64)| (2.0 * to - from).clamp(c.low, c.high);
             let tried: Vec<f64> = coordinates.iter().zip(from).zip(&best).map(far).collect();
@@ -211,9 +224,8 @@ impl Fit {
                 None => break,
             }
         }
-        if best != self.x {
-            self.go(best, train);
-        }
+        let farther = if best == self.x { None } else { self.gone(best, train) };
+        farther.unwrap_or(self)
     }
 
     /// Weighed squares and the prior.

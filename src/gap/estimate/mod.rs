@@ -11,4 +11,4 @@ pub mod start;
 mod tests;
 
 pub use candidate::{Candidate, Coordinate};
-pub use map::{Fit, System, Weights};
+pub use map::{Fit, System, Task, Weights};

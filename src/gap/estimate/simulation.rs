@@ -11,7 +11,9 @@ use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
 
 /// Halvings of the distance between two samples: so many at least are allowed, and as many as lead to the shortest step, s, in
-/// which valves and friction change; a coarse recording is simulated like a fine one. No more than the last ones.
+/// which valves and friction change; a coarse recording is simulated like a fine one. No more than the last ones. Short steps
+/// are for corners, which are passed in a few of them: once a recording has taken as many steps as it would with the first
+/// ones everywhere, no more than those are allowed. A model that chatters would take a million between two samples.
 const DEEP: u32 = 6;
 const SHORTEST: f64 = 1e-4;
 const DEEPEST: u32 = 24;
@@ -221,9 +223,9 @@ struct Stepper {
     mean: Exponential,
     /// Per length the step that the linearisation served last; 0 where it did not.
     lengths: [f64; DEEPEST as usize + 1],
-    /// Halvings of the last step, and those that are allowed.
+    /// Halvings of the last step, and steps until only the first ones are allowed.
     depth: u32,
-    deepest: u32,
+    spare: usize,
     /// x' in sizes where the step begins, a change over the step, and what the linear model leaves out of x' at its end.
     rate: DVector<f64>,
     change: DVector<f64>,
@@ -248,7 +250,7 @@ impl Stepper {
             mean: Exponential::new(n),
             lengths: [0.0; DEEPEST as usize + 1],
             depth: 0,
-            deepest: DEEP,
+            spare: recording.len() << DEEP,
             rate: zeros(),
             change: zeros(),
             remainder: zeros(),
@@ -264,10 +266,15 @@ impl Stepper {
         const WHOLE: u32 = 1 << DEEPEST;
         let mut linear_here = run.slopes.is_some();
         let mut gone = 0;
-        self.deepest = ((h / SHORTEST).log2().ceil() as u32).clamp(DEEP, DEEPEST);
-        self.depth = self.depth.min(self.deepest);
+        let to_shortest = ((h / SHORTEST).log2().ceil() as u32).clamp(DEEP, DEEPEST);
         self.take_rates(run);
         while gone < WHOLE {
+            let deepest = if self.spare > 0 { to_shortest } else { DEEP };
+            self.spare = self.spare.saturating_sub(1);
+            // a longer step begins where it would have begun
+            while self.depth > deepest && gone.is_multiple_of(2 * (WHOLE >> self.depth)) {
+                self.depth -= 1;
+            }
             let part = WHOLE >> self.depth;
             let fraction = |ticks: u32| h * f64::from(ticks) / f64::from(WHOLE);
             let (after, length) = (fraction(gone), fraction(part));
@@ -290,7 +297,7 @@ impl Stepper {
                 }
                 off = self.step(run, t, after, length, Remainder::Square);
             }
-            if off > CORRECTION && self.depth < self.deepest {
+            if off > CORRECTION && self.depth < deepest {
                 self.deepen();
                 continue;
             }

@@ -1,7 +1,6 @@
 //! The judge: hypotheses are compared on data that were left out, simulated from the inputs alone.
 
 pub mod choose;
-pub mod clock;
 pub mod compare;
 pub mod confirm;
 pub mod criteria;

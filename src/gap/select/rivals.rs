@@ -1,11 +1,11 @@
 //! The hypotheses of one step as models that are fitted.
 
+use super::super::clock::Deadline;
 use super::super::effects::Coefficient;
-use super::super::estimate::{Fit, Weights};
+use super::super::estimate::{Fit, Task, Weights};
 use super::super::hypotheses::Hypothesis;
 use super::super::policy::{DELTA, FRONT, HOPED, OTHER_WEIGHTING, ROUGH, TRIED};
 use super::super::problem::Problem;
-use super::clock::Deadline;
 use super::compare::{needed, total_gap};
 use super::criteria::Rival;
 use super::screen::{Ground, Screened, Start, by_turns};
@@ -33,7 +33,7 @@ struct Tried {
 /// is not kept. The front by both weightings while there is time.
 pub fn fitted(ground: &Ground<'_>, order: Vec<Screened>, until: Deadline<'_>) -> Fitted {
     let Ground { problem, sensors, .. } = *ground;
-    let (tried, rest) = until.of_step().rounds(order, |screened| tried(ground, screened));
+    let (tried, rest) = until.of_step().rounds(order, |screened| tried(ground, screened, until));
     let cost = |t: &Tried| t.fits.iter().map(Fit::cost).fold(f64::INFINITY, f64::min);
     let gap = |t: &Tried| t.fits.iter().map(|f| total_gap(&f.mean_squares(), sensors)).fold(f64::INFINITY, f64::min);
     let mut order = by_turns(tried, cost, gap);
@@ -54,7 +54,7 @@ pub fn fitted(ground: &Ground<'_>, order: Vec<Screened>, until: Deadline<'_>) ->
             if until.is_over() {
                 break;
             }
-            if let Some(better) = other(problem, sensors, &rival.model) {
+            if let Some(better) = other(problem, sensors, &rival.model, until) {
                 rival.model = better;
             }
         }
@@ -64,17 +64,17 @@ pub fn fitted(ground: &Ground<'_>, order: Vec<Screened>, until: Deadline<'_>) ->
 }
 
 /// A few iterations from the most promising starts of a hypothesis.
-fn tried(ground: &Ground<'_>, (hypothesis, starts): Screened) -> Tried {
-    let one = |s: &Start| begun(ground, s, s.x.clone(), &ground.before.weights);
+fn tried(ground: &Ground<'_>, (hypothesis, starts): Screened, until: Deadline<'_>) -> Tried {
+    let task = ground.problem.task(until);
+    let one = |s: &Start| begun(task, s, s.x.clone(), &ground.before.weights);
     let fits = starts.iter().take(TRIED).filter_map(one).collect();
     Tried { hypothesis, starts, fits }
 }
 
 /// A few iterations from a start.
-fn begun(ground: &Ground<'_>, start: &Start, x: Vec<f64>, weights: &Weights) -> Option<Fit> {
-    let Ground { problem, .. } = *ground;
-    let mut fit = Fit::begun(start.candidate.clone(), x, &problem.train, &problem.full_scale, Some(weights))?;
-    fit.descend(&problem.train, ROUGH);
+fn begun(task: Task<'_>, start: &Start, x: Vec<f64>, weights: &Weights) -> Option<Fit> {
+    let mut fit = Fit::begun(start.candidate.clone(), x, task, Some(weights))?;
+    fit.descend(task, ROUGH);
     Some(fit)
 }
 
@@ -82,7 +82,8 @@ fn begun(ground: &Ground<'_>, start: &Start, x: Vec<f64>, weights: &Weights) -> 
 /// with the least gap if it is less by far.
 fn from_all(ground: &Ground<'_>, needed: f64, tried: Tried, until: Deadline<'_>) -> Option<Fit> {
     let Ground { problem, sensors, before } = *ground;
-    let mut all = rough(ground, tried);
+    let task = problem.task(until);
+    let mut all = rough(ground, task, tried);
     let gap = |f: &Fit| total_gap(&f.mean_squares(), sensors);
     let least = |a: &Fit, b: &Fit| gap(a).total_cmp(&gap(b));
     let first = (0..all.len()).reduce(|a, b| if all[a].ahead(&all[b]) > 0.0 { b } else { a })?;
@@ -93,7 +94,7 @@ fn from_all(ground: &Ground<'_>, needed: f64, tried: Tried, until: Deadline<'_>)
     if !falls(&best) && before.ahead(&best) <= needed && !other.as_ref().is_some_and(falls) {
         return Some(best);
     }
-    let completed = |f: Fit| no_worse(problem, before, f.candidate, f.x);
+    let completed = |f: Fit| no_worse(task, before, f.candidate, f.x);
     let other = other.filter(|_| !until.is_over());
     [Some(best), other].into_iter().flatten().filter_map(completed).reduce(Fit::better_of)
 }
@@ -102,12 +103,11 @@ fn from_all(ground: &Ground<'_>, needed: f64, tried: Tried, until: Deadline<'_>)
 /// Sizes are looked for over the decades where the linear model has not kept its promise. Where the model before is bent away
 /// from the data sheet, its weights may count little what the hypothesis explains: then also as if only the sensors' noise
 /// were left, which finds the size that the data ask for, and from there with parameters at the data sheet again.
-fn rough(ground: &Ground<'_>, Tried { hypothesis, mut starts, fits: mut bent }: Tried) -> Vec<Fit> {
+fn rough(ground: &Ground<'_>, task: Task<'_>, Tried { hypothesis, mut starts, fits: mut bent }: Tried) -> Vec<Fit> {
     let Ground { problem, sensors, before } = *ground;
-    let (train, scale) = (&problem.train, &problem.full_scale);
     let costs = |a: &Fit, b: &Fit| a.cost().total_cmp(&b.cost());
     let gap = |f: &Fit| total_gap(&f.mean_squares(), sensors);
-    let as_before = |s: &Start| begun(ground, s, s.x.clone(), &before.weights);
+    let as_before = |s: &Start| begun(task, s, s.x.clone(), &before.weights);
     bent.extend(starts.iter().skip(if bent.is_empty() { 0 } else { TRIED }).filter_map(as_before));
     let promised = starts.iter().map(Start::promises).fold(f64::INFINITY, f64::min);
     if !bent.iter().any(|f| f.cost() <= (1.0 + DELTA) * promised) {
@@ -118,16 +118,16 @@ fn rough(ground: &Ground<'_>, Tried { hypothesis, mut starts, fits: mut bent }: 
     bent.sort_by(costs);
     let open = (1..bent.len()).min_by(|&a, &b| gap(&bent[a]).total_cmp(&gap(&bent[b])));
     let mut found: Vec<Fit> = open.map(|k| bent.swap_remove(k)).into_iter().chain(bent.into_iter().take(1)).collect();
-    found.iter_mut().for_each(|f| f.descend(train, ROUGH));
+    found.iter_mut().for_each(|f| f.descend(task, ROUGH));
     if before.prior() > OTHER_WEIGHTING {
-        let white = Weights::sensors(&sensors.noise, scale);
-        let unbent = |s: &Start| begun(ground, s, at_nominal(problem, &s.candidate, &s.x), &white);
+        let white = Weights::sensors(&sensors.noise, task.full_scale);
+        let unbent = |s: &Start| begun(task, s, at_nominal(problem, &s.candidate, &s.x), &white);
         let sized = starts.iter().filter_map(unbent).min_by(costs);
         found.extend(sized.and_then(|mut sized| {
-            sized.descend(train, ROUGH);
+            sized.descend(task, ROUGH);
             let x = at_nominal(problem, &sized.candidate, &sized.x);
-            let mut fit = Fit::begun(sized.candidate, x, train, scale, None)?;
-            fit.descend(train, 2 * ROUGH);
+            let mut fit = Fit::begun(sized.candidate, x, task, None)?;
+            fit.descend(task, 2 * ROUGH);
             Some(fit)
         }));
     }

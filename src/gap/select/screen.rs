@@ -2,6 +2,7 @@
 //! are fitted first. What vanishes at its off value leaves the model as it is there: one run with the slopes of all of them
 //! serves them all. What has no linear model at its off value is looked at over the decades where it may be.
 
+use super::super::clock::Deadline;
 use super::super::effects::Coefficient;
 use super::super::estimate::candidate::{Errors, Products};
 use super::super::estimate::map::squares;
@@ -9,7 +10,6 @@ use super::super::estimate::{Candidate, Fit, System};
 use super::super::hypotheses::Hypothesis;
 use super::super::policy::{DECADES, OTHER_WEIGHTING, SCANNED, SIZES, STARTS, UNCHANGED};
 use super::super::problem::{Chosen, Problem};
-use super::clock::Deadline;
 use super::compare::{Sensors, total_gap};
 use super::models::{self, beginnings, candidate};
 use super::weighed::at_nominal;

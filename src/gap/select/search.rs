@@ -1,13 +1,13 @@
 //! The search: one effect after another, until no hypothesis is sure, worth it and confirmed; then whether a shape that has
 //! no name says more.
 
+use super::super::clock::{Budget, Deadline};
 use super::super::data::Recording;
 use super::super::estimate::{Candidate, Fit};
 use super::super::hypotheses::Hypothesis;
 use super::super::policy::{EFFECTS, SEEN, SETTLING};
 use super::super::problem::{Chosen, Problem, Tolerance};
 use super::choose::{Chooser, Taken, Trial};
-use super::clock::{Budget, Deadline};
 use super::compare::needed;
 use super::confirm::Held;
 use super::criteria::{Criteria, Judged, Reason, Rival};
@@ -119,7 +119,7 @@ pub fn search<'a>(
     progress: Progress<'_>,
 ) -> Result<Found, Trouble> {
     let mut watch = Watch { progress, stopped: false };
-    let (mut search, mut base) = begun(problem, held, Deadline::of(budget), &mut watch)?;
+    let (mut search, mut base) = begun(problem, held, budget, &mut watch)?;
     let (mut last, mut taken) = (base.clone(), Vec::new());
     let mut shape = None;
     for step in 1..=EFFECTS + 1 {
@@ -169,7 +169,7 @@ pub fn explained(
     progress: Progress<'_>,
 ) -> Result<Option<Found>, Trouble> {
     let mut watch = Watch { progress, stopped: false };
-    let (search, base) = begun(problem, held, Deadline::default(), &mut watch)?;
+    let (search, base) = begun(problem, held, None, &mut watch)?;
     watch.begin(Stage::Fit(1)).ok_or(Trouble::Stopped)?;
     let sensors = &search.chooser.criteria.sensors;
     let ground = Ground { problem, sensors, before: &base.fit };
@@ -190,13 +190,14 @@ pub fn explained(
 fn begun<'a>(
     problem: &'a Problem<'a>,
     held: &'a [Recording],
-    ends: Deadline<'a>,
+    budget: Option<Budget<'a>>,
     watch: &mut Watch<'_>,
 ) -> Result<(Search<'a>, Weighed), Trouble> {
     watch.begin(Stage::Tolerances).ok_or(Trouble::Stopped)?;
     let sensors = models::sensors(problem);
     let nominal = models::nominal(problem).map_err(Trouble::Model)?;
     let x = nominal.present();
+    let ends = Deadline::of(budget, || drop(nominal.evaluate(&x, &problem.train)));
     let until = ends.of_step();
     let base = weighed(problem, &sensors, (nominal.clone(), x.clone()), until);
     let base = base.ok_or_else(|| stops(problem, &nominal, &x))?;
@@ -242,7 +243,7 @@ impl Search<'_> {
         for _ in 0..SETTLING {
             let sensors = &self.chooser.criteria.sensors;
             let Some((rival, _)) = &choice.taken else { break };
-            let again = as_in(self.problem, sensors, before, &rival.fit);
+            let again = as_in(self.problem, sensors, before, &rival.fit, self.ends);
             let shows_nothing = |a: &Weighed| ahead(a, rival, sensors) <= needed(self.chooser.criteria.count);
             let Some(again) = again.filter(shows_nothing) else { break };
             *before = again;
@@ -327,7 +328,7 @@ impl Search<'_> {
             return Vec::new();
         }
         // a step that ends before it begins would only add to what was fitted when there was time
-        if step > 1 && self.ends.is_over() {
+        if self.visible.is_some() && self.ends.is_over() {
             self.passed = open.iter().map(|&i| passed(step, i)).collect();
             return Vec::new();
         }

@@ -1,9 +1,9 @@
 //! Models with what they leave of left-out data, by both weightings.
 
-use super::super::estimate::{Candidate, Fit, Weights};
+use super::super::clock::Deadline;
+use super::super::estimate::{Candidate, Fit, Task, Weights};
 use super::super::policy::{LEAST, OTHER_WEIGHTING, SETTLING, SURE};
 use super::super::problem::Problem;
-use super::clock::Deadline;
 use super::compare::{Sensors, differences, evidence, gap, signal_gap, t_statistic};
 use super::folds::{LeftOut, left_out};
 
@@ -36,8 +36,9 @@ pub fn weighed(
     (candidate, x): (Candidate, Vec<f64>),
     until: Deadline<'_>,
 ) -> Option<Weighed> {
-    let one = Weighed::new(problem, as_they_are(problem, candidate, x)?);
-    let other = if until.is_over() { None } else { at_the_noise(problem, sensors, &one) };
+    let task = problem.task(until);
+    let one = Weighed::new(problem, as_they_are(task, candidate, x)?);
+    let other = if until.is_over() { None } else { at_the_noise(problem, sensors, &one, until) };
     Some(other.unwrap_or(one))
 }
 
@@ -48,8 +49,9 @@ pub fn settled(problem: &Problem<'_>, sensors: &Sensors, mut model: Weighed, unt
         if until.is_over() {
             break;
         }
-        let begun = (model.fit.candidate.clone(), model.fit.x.clone());
-        let Some(next) = weighed(problem, sensors, begun, until) else { break };
+        let (candidate, x) = (model.fit.candidate.clone(), model.fit.x.clone());
+        let Some(fit) = as_they_are(problem.task(until), candidate, x) else { break };
+        let next = Weighed::new(problem, fit);
         if !better(&model, &next, sensors) {
             break;
         }
@@ -59,35 +61,47 @@ pub fn settled(problem: &Problem<'_>, sensors: &Sensors, mut model: Weighed, unt
 }
 
 /// The model before a rival, fitted anew from where parameters are in the rival, where that is better.
-pub fn as_in(problem: &Problem<'_>, sensors: &Sensors, before: &Weighed, rival: &Fit) -> Option<Weighed> {
+pub fn as_in(
+    problem: &Problem<'_>,
+    sensors: &Sensors,
+    before: &Weighed,
+    rival: &Fit,
+    until: Deadline<'_>,
+) -> Option<Weighed> {
     // the coordinates of the cause that it has beyond the model before stand last
     let x = rival.x[..before.fit.x.len()].to_vec();
-    let other = Weighed::new(problem, as_they_are(problem, before.fit.candidate.clone(), x)?);
+    let other = Weighed::new(problem, as_they_are(problem.task(until), before.fit.candidate.clone(), x)?);
     better(before, &other, sensors).then_some(other)
 }
 
 /// A fit that weighs errors as large and as correlated as it leaves them.
-fn as_they_are(problem: &Problem<'_>, candidate: Candidate, x: Vec<f64>) -> Option<Fit> {
-    Fit::of(candidate, x, &problem.train, &problem.full_scale, None, 2)
+fn as_they_are(task: Task<'_>, candidate: Candidate, x: Vec<f64>) -> Option<Fit> {
+    Fit::of(candidate, x, task, None, 2)
 }
 
 /// The same of a model that holds the one before: where it comes out behind, it begins with the weights of that one.
-pub fn no_worse(problem: &Problem<'_>, before: &Fit, candidate: Candidate, x: Vec<f64>) -> Option<Fit> {
-    let fit = as_they_are(problem, candidate.clone(), x.clone());
+pub fn no_worse(task: Task<'_>, before: &Fit, candidate: Candidate, x: Vec<f64>) -> Option<Fit> {
+    let fit = as_they_are(task, candidate.clone(), x.clone());
     if fit.as_ref().is_some_and(|f| before.ahead(f) >= 0.0) {
         return fit;
     }
     let weights = Some(before.weights.clone());
-    let other = Fit::of(candidate, x, &problem.train, &problem.full_scale, weights, 2);
+    let other = Fit::of(candidate, x, task, weights, 2);
     fit.into_iter().chain(other).reduce(Fit::better_of)
 }
 
 /// The fit that begins where only the sensors' noise is left, where it is better.
-pub fn at_the_noise(problem: &Problem<'_>, sensors: &Sensors, one: &Weighed) -> Option<Weighed> {
+pub fn at_the_noise(
+    problem: &Problem<'_>,
+    sensors: &Sensors,
+    one: &Weighed,
+    until: Deadline<'_>,
+) -> Option<Weighed> {
+    let task = problem.task(until);
     let white = Weights::sensors(&sensors.noise, &problem.full_scale);
     let (candidate, x) = (one.fit.candidate.clone(), one.fit.x.clone());
-    let begun = Fit::of(candidate, x, &problem.train, &problem.full_scale, Some(white), 1)?;
-    let other = Weighed::new(problem, as_they_are(problem, begun.candidate, begun.x)?);
+    let begun = Fit::of(candidate, x, task, Some(white), 1)?;
+    let other = Weighed::new(problem, as_they_are(task, begun.candidate, begun.x)?);
     better(one, &other, sensors).then_some(other)
 }
 
@@ -100,12 +114,17 @@ fn better(one: &Weighed, other: &Weighed, sensors: &Sensors) -> bool {
 
 /// The fit that begins with parameters at their data sheet, where they are bent away from it and that is better: what was
 /// missing before bent them, and from there the fit with it need not find back.
-pub fn from_nominal(problem: &Problem<'_>, sensors: &Sensors, one: &Weighed) -> Option<Weighed> {
+pub fn from_nominal(
+    problem: &Problem<'_>,
+    sensors: &Sensors,
+    one: &Weighed,
+    until: Deadline<'_>,
+) -> Option<Weighed> {
     let Fit { candidate, x, .. } = &one.fit;
     if one.fit.prior() <= OTHER_WEIGHTING {
         return None;
     }
-    let begun = as_they_are(problem, candidate.clone(), at_nominal(problem, candidate, x))?;
+    let begun = as_they_are(problem.task(until), candidate.clone(), at_nominal(problem, candidate, x))?;
     let other = Weighed::new(problem, begun);
     (ahead(one, &other, sensors) > 0.0).then_some(other)
 }

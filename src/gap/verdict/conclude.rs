@@ -10,7 +10,7 @@ use super::super::mistakes;
 use super::super::policy::VISIBLE;
 use super::super::problem::{Chosen, Problem, Shown, Tolerance, through};
 use super::super::select::choose::{Taken, Trial};
-use super::super::select::clock::Deadline;
+use super::super::clock::Deadline;
 use super::super::select::models;
 use super::super::select::search::Found;
 use super::super::select::weighed::{Weighed, at_nominal, weighed};

@@ -1,6 +1,6 @@
 //! The time that a search may take. Only the caller has a clock.
 
-use super::super::policy::{ROUND, SHARE};
+use super::policy::{BUDGET, ROUND, RUNS, SHARE};
 use rayon::prelude::*;
 use std::fmt;
 use std::time::Duration;
@@ -8,8 +8,8 @@ use std::time::Duration;
 /// The time that a search may take, on the clock of whoever asks for it.
 #[derive(Clone, Copy)]
 pub struct Budget<'a> {
-    /// How long.
-    pub time: Duration,
+    /// How long; where nothing is said a minute, and longer for a slow model.
+    pub time: Option<Duration>,
     /// How long ago the search began.
     pub gone: &'a (dyn Fn() -> Duration + Sync),
 }
@@ -21,27 +21,47 @@ impl fmt::Debug for Budget<'_> {
 }
 
 /// When a search, or a step of it, must come to an end; never where there is no budget.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Deadline<'a>(Option<Budget<'a>>);
+#[derive(Clone, Copy, Default)]
+pub struct Deadline<'a>(Option<Due<'a>>);
+
+#[derive(Clone, Copy)]
+struct Due<'a> {
+    time: Duration,
+    gone: &'a (dyn Fn() -> Duration + Sync),
+}
+
+impl fmt::Debug for Deadline<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Deadline").field(&self.0.map(|due| due.time)).finish()
+    }
+}
 
 impl<'a> Deadline<'a> {
-    /// That of a budget.
-    pub fn of(budget: Option<Budget<'a>>) -> Self {
-        Deadline(budget)
+    /// That of a budget; `run` simulates all recordings once, where it has to be known how long that takes.
+    pub fn of(budget: Option<Budget<'a>>, run: impl FnOnce()) -> Self {
+        let due = |Budget { time, gone }: Budget<'a>| {
+            let usual = || {
+                let begun = gone();
+                run();
+                (gone().saturating_sub(begun) * RUNS).max(Duration::from_secs_f64(BUDGET))
+            };
+            Due { time: time.unwrap_or_else(usual), gone }
+        };
+        Deadline(budget.map(due))
     }
 
     /// That of one step: a part of what is left.
     pub fn of_step(self) -> Self {
-        let step = |b: Budget<'a>| {
-            let now = (b.gone)();
-            Budget { time: now + b.time.saturating_sub(now).mul_f64(SHARE), ..b }
+        let step = |due: Due<'a>| {
+            let now = (due.gone)();
+            Due { time: now + due.time.saturating_sub(now).mul_f64(SHARE), ..due }
         };
         Deadline(self.0.map(step))
     }
 
     /// Whether it has come.
     pub fn is_over(self) -> bool {
-        self.0.is_some_and(|b| (b.gone)() >= b.time)
+        self.0.is_some_and(|due| (due.gone)() >= due.time)
     }
 
     /// What comes of some things, a few at a time until the time is over, but of the first ones at least; and the others.
