@@ -129,7 +129,7 @@ Q = { unit = "m3/s" }
 }
 
 /// The machine of the closed circuit: efficiencies over 8 speeds at each of 8 pressures, 4 readings of each point.
-/// Slippers and plate are known; what flow and torque cannot tell apart is said by `tests/machines.rs`.
+/// Slippers and plate are known; what flow and torque cannot tell apart is said by `tests/circuits/machines.rs`.
 fn machine() -> Bench {
     let point = |k: usize| (k / 32, k / 4 % 8);
     let pressure = |k| 2.5e6 * (1 + point(k).0) as f64 + 2e6;

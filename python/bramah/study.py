@@ -53,7 +53,7 @@ def gap(
         study: a study file (docs/study.md), or a `Study`.
         data: the folder of the recordings; that of the study where left out.
         effect: fit this effect alone and show it, even where the diagnosis refuses it: "Effects.SensorLag@p".
-        budget: how long the search may take, s; where left out 60, or as long as 300 simulations of all recordings take. Effects for which the time does not last are named.
+        budget: how long the search may take, s; where left out 60, or as long as 500 simulations of all recordings take. Effects for which the time does not last are named.
         progress: True prints the stages, or a function that gets each as a text.
 
     Raises:

@@ -48,7 +48,7 @@ pub(super) struct GapArgs {
     /// What was found as one HTML page, `-` for stdout
     #[arg(long, value_name = "FILE")]
     report: Option<String>,
-    /// How long the search may take: seconds, or a time with a unit [default: 60 s, and on a slow model as long as 300
+    /// How long the search may take: seconds, or a time with a unit [default: 60 s, and on a slow model as long as 500
     /// simulations of all recordings take]. Effects for which the time does not last are named
     #[arg(long, value_name = "TIME", value_parser = budget, conflicts_with_all = ["list", "plan"])]
     budget: Option<Duration>,

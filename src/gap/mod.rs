@@ -32,7 +32,7 @@ pub mod verdict;
 pub mod whiteness;
 pub mod words;
 
-pub use diagnose::{DiagnoseOptions, Diagnosis, diagnose, diagnose_as};
 pub use clock::Budget;
+pub use diagnose::{DiagnoseOptions, Diagnosis, diagnose, diagnose_as};
 pub use select::search::Stage;
 pub use verdict::Verdict;

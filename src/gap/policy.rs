@@ -44,7 +44,7 @@ pub const EFFECTS: usize = 4;
 pub const BUDGET: f64 = 60.0;
 /// On a slow model as long as so many simulations of all recordings take, one after another: the fits of the model within its
 /// tolerances and of some dozens of hypotheses. Halved: as above.
-pub const RUNS: u32 = 300;
+pub const RUNS: u32 = 500;
 /// Part of the time that is left which one step may take.
 pub const SHARE: f64 = 0.5;
 /// Hypotheses that are fitted between two looks at the clock.

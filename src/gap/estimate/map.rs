@@ -105,15 +105,14 @@ impl Fit {
     /// Fits a model from `x`: once for each of `rounds`, with weights that the round before left. `first` are those of the
     /// first round, where they are not to be as the errors are at `x`. `None` where the model does not reach the end of a
     /// recording.
-    pub fn of(
-        candidate: Candidate,
-        x: Vec<f64>,
-        task: Task<'_>,
-        first: Option<Weights>,
-        rounds: usize,
-    ) -> Option<Fit> {
-        let mut fit = Fit::begun(candidate, x, task, first.as_ref())?;
+    pub fn of(candidate: Candidate, x: Vec<f64>, task: Task<'_>, first: Option<Weights>, rounds: usize) -> Option<Fit> {
+        let begun = Fit::begun(candidate, x, task, first.as_ref())?;
+        let mut fit = begun.clone();
         fit.descend(task, ITERATIONS);
+        // by weights that are those of the errors, what costs less may leave more of the signals that count little
+        if first.is_none() && begun.ahead(&fit) < 0.0 {
+            return Some(begun);
+        }
         for _ in 1..rounds {
             let mut next = fit.clone();
             next.weights = Weights::of(&fit.evaluated.errors, task.full_scale);
@@ -129,12 +128,7 @@ impl Fit {
 
     /// A model at a point that is fitted with given weights, or with weights as the errors are there. `None` where the model
     /// does not reach the end of a recording.
-    pub fn begun(
-        candidate: Candidate,
-        x: Vec<f64>,
-        task: Task<'_>,
-        weights: Option<&Weights>,
-    ) -> Option<Fit> {
+    pub fn begun(candidate: Candidate, x: Vec<f64>, task: Task<'_>, weights: Option<&Weights>) -> Option<Fit> {
         let evaluated = candidate.evaluate(&x, task.train)?;
         let weights = weights.cloned().unwrap_or_else(|| Weights::of(&evaluated.errors, task.full_scale));
         Some(Fit::at(candidate, x, evaluated, weights))

@@ -7,7 +7,7 @@ use super::super::problem::{Chosen, Problem};
 use super::compare::{closed, needed};
 use super::confirm::{Asked, Held};
 use super::criteria::{Criteria, Judged, Reason, Rival};
-use super::weighed::{Weighed, ahead, saved};
+use super::weighed::{Weighed, saved};
 use rayon::prelude::*;
 
 /// A hypothesis that was weighed in a step.
@@ -119,7 +119,7 @@ impl Chooser<'_> {
         let once = (1.0 / ALPHA).ln();
         let behind = |&i: &usize| {
             let other = &rivals[i].model;
-            let nats = ahead(other, best, sensors);
+            let nats = self.criteria.behind(best, other);
             (nats <= once).then(|| (last_cause(&other.fit), nats))
         };
         let Judged { evidence, t, .. } = judged[first];

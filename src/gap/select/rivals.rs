@@ -28,25 +28,44 @@ struct Tried {
     fits: Vec<Fit>,
 }
 
-/// Fits hypotheses from all their starts, beside the model before, until the time is over; at least the first ones. They are
-/// tried before, for at most half of the time, and those come first that then leave least: a linear model promises much that
-/// is not kept. The front by both weightings while there is time.
+/// A hypothesis after a few iterations from all its starts: the fit that the data prefer, and that with the least gap where
+/// it is less by far.
+struct Rough {
+    hypothesis: usize,
+    best: Fit,
+    other: Option<Fit>,
+}
+
+impl Rough {
+    fn fits(&self) -> impl Iterator<Item = &Fit> {
+        [&self.best].into_iter().chain(&self.other)
+    }
+}
+
+/// Fits hypotheses beside the model before until the time is over, in three stages, each for at most half of the time that is
+/// left: from their first starts, from all starts, to the end. A stage goes on with those first that then leave least: a
+/// linear model promises much that is not kept. What was not fitted to the end contends as it is. The front by both weightings
+/// while there is time.
 pub fn fitted(ground: &Ground<'_>, order: Vec<Screened>, until: Deadline<'_>) -> Fitted {
     let Ground { problem, sensors, .. } = *ground;
+    let cost = |fits: &mut dyn Iterator<Item = &Fit>| fits.map(Fit::cost).fold(f64::INFINITY, f64::min);
+    let gap = |fits: &mut dyn Iterator<Item = &Fit>| {
+        fits.map(|f| total_gap(&f.mean_squares(), sensors)).fold(f64::INFINITY, f64::min)
+    };
     let (tried, rest) = until.of_step().rounds(order, |screened| tried(ground, screened, until));
-    let cost = |t: &Tried| t.fits.iter().map(Fit::cost).fold(f64::INFINITY, f64::min);
-    let gap = |t: &Tried| t.fits.iter().map(|f| total_gap(&f.mean_squares(), sensors)).fold(f64::INFINITY, f64::min);
-    let mut order = by_turns(tried, cost, gap);
+    let mut order = by_turns(tried, |t| cost(&mut t.fits.iter()), |t| gap(&mut t.fits.iter()));
     order.extend(rest.into_iter().map(|(hypothesis, starts)| Tried { hypothesis, starts, fits: Vec::new() }));
-    let one = |tried: Tried| {
-        let hypothesis = tried.hypothesis;
-        let fit = from_all(ground, needed(problem.hypotheses.len()), tried, until)?;
+    let (roughly, passed) = until.of_step().rounds(order, |tried| from_all(ground, tried, until));
+    let roughly = roughly.into_iter().flatten().collect();
+    let order = by_turns(roughly, |r: &Rough| cost(&mut r.fits()), |r| gap(&mut r.fits()));
+    let (mut found, cut) = until.rounds(order, |r| (r.hypothesis, completed(ground, r, until)));
+    found.extend(cut.into_iter().map(|r| (r.hypothesis, Some(r.best))));
+    let rival = |(hypothesis, fit): (usize, Option<Fit>)| {
         let h = &problem.hypotheses[hypothesis];
         let (places, is_parameter) = (h.attachments.len(), h.family == "parameter");
-        Some(Rival { hypothesis, places, size: 0.0, is_parameter, model: Weighed::new(problem, fit) })
+        Some(Rival { hypothesis, places, size: 0.0, is_parameter, model: Weighed::new(problem, fit?) })
     };
-    let (found, passed) = until.rounds(order, one);
-    let mut rivals: Vec<Rival> = found.into_iter().flatten().collect();
+    let mut rivals: Vec<Rival> = found.into_par_iter().filter_map(rival).collect();
     rivals.sort_by(|a, b| a.model.gap(sensors).total_cmp(&b.model.gap(sensors)));
     let front = FRONT.min(rivals.len());
     rivals[..front].par_iter_mut().for_each(|rival| {
@@ -78,23 +97,28 @@ fn begun(task: Task<'_>, start: &Start, x: Vec<f64>, weights: &Weights) -> Optio
     Some(fit)
 }
 
-/// A few iterations from every start; where they gain anything, the best fit is completed, and, while there is time, that
-/// with the least gap if it is less by far.
-fn from_all(ground: &Ground<'_>, needed: f64, tried: Tried, until: Deadline<'_>) -> Option<Fit> {
-    let Ground { problem, sensors, before } = *ground;
-    let task = problem.task(until);
-    let mut all = rough(ground, task, tried);
-    let gap = |f: &Fit| total_gap(&f.mean_squares(), sensors);
+/// A few iterations from every start.
+fn from_all(ground: &Ground<'_>, tried: Tried, until: Deadline<'_>) -> Option<Rough> {
+    let hypothesis = tried.hypothesis;
+    let mut all = rough(ground, ground.problem.task(until), tried);
+    let gap = |f: &Fit| total_gap(&f.mean_squares(), ground.sensors);
     let least = |a: &Fit, b: &Fit| gap(a).total_cmp(&gap(b));
     let first = (0..all.len()).reduce(|a, b| if all[a].ahead(&all[b]) > 0.0 { b } else { a })?;
     let best = all.swap_remove(first);
     let other = all.into_iter().min_by(least).filter(|f| gap(f) < (1.0 - DELTA) * gap(&best));
+    Some(Rough { hypothesis, best, other })
+}
+
+/// The best fit of a hypothesis, to the end where it gains anything, and, while there is time, that with the least gap.
+fn completed(ground: &Ground<'_>, Rough { best, other, .. }: Rough, until: Deadline<'_>) -> Option<Fit> {
+    let Ground { problem, before, .. } = *ground;
     let falls =
         |f: &Fit| f.mean_squares().iter().zip(before.mean_squares()).any(|(now, then)| *now < (1.0 - HOPED) * then);
-    if !falls(&best) && before.ahead(&best) <= needed && !other.as_ref().is_some_and(falls) {
+    let gains = before.ahead(&best) > needed(problem.hypotheses.len());
+    if !falls(&best) && !gains && !other.as_ref().is_some_and(falls) {
         return Some(best);
     }
-    let completed = |f: Fit| no_worse(task, before, f.candidate, f.x);
+    let completed = |f: Fit| no_worse(problem.task(until), before, f.candidate, f.x);
     let other = other.filter(|_| !until.is_over());
     [Some(best), other].into_iter().flatten().filter_map(completed).reduce(Fit::better_of)
 }

@@ -91,12 +91,7 @@ pub fn no_worse(task: Task<'_>, before: &Fit, candidate: Candidate, x: Vec<f64>)
 }
 
 /// The fit that begins where only the sensors' noise is left, where it is better.
-pub fn at_the_noise(
-    problem: &Problem<'_>,
-    sensors: &Sensors,
-    one: &Weighed,
-    until: Deadline<'_>,
-) -> Option<Weighed> {
+pub fn at_the_noise(problem: &Problem<'_>, sensors: &Sensors, one: &Weighed, until: Deadline<'_>) -> Option<Weighed> {
     let task = problem.task(until);
     let white = Weights::sensors(&sensors.noise, &problem.full_scale);
     let (candidate, x) = (one.fit.candidate.clone(), one.fit.x.clone());
@@ -114,12 +109,7 @@ fn better(one: &Weighed, other: &Weighed, sensors: &Sensors) -> bool {
 
 /// The fit that begins with parameters at their data sheet, where they are bent away from it and that is better: what was
 /// missing before bent them, and from there the fit with it need not find back.
-pub fn from_nominal(
-    problem: &Problem<'_>,
-    sensors: &Sensors,
-    one: &Weighed,
-    until: Deadline<'_>,
-) -> Option<Weighed> {
+pub fn from_nominal(problem: &Problem<'_>, sensors: &Sensors, one: &Weighed, until: Deadline<'_>) -> Option<Weighed> {
     let Fit { candidate, x, .. } = &one.fit;
     if one.fit.prior() <= OTHER_WEIGHTING {
         return None;

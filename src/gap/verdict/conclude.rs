@@ -1,6 +1,7 @@
 //! What a search came to, said as a verdict.
 
 use super::super::circuit::same_kind;
+use super::super::clock::Deadline;
 use super::super::data::Recording;
 use super::super::estimate::Candidate;
 use super::super::estimate::candidate::Errors;
@@ -10,7 +11,6 @@ use super::super::mistakes;
 use super::super::policy::VISIBLE;
 use super::super::problem::{Chosen, Problem, Shown, Tolerance, through};
 use super::super::select::choose::{Taken, Trial};
-use super::super::clock::Deadline;
 use super::super::select::models;
 use super::super::select::search::Found;
 use super::super::select::weighed::{Weighed, at_nominal, weighed};

@@ -1,0 +1,9 @@
+//! Tests of the gap between model and machine.
+
+mod effects;
+mod gap;
+mod measured;
+mod recordings;
+#[path = "../rig/mod.rs"]
+mod rig;
+mod slopes;
