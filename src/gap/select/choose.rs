@@ -1,13 +1,14 @@
 //! Which of the rivals of one step is taken: once it is sure that something is missing, all that is worth it contends, and
 //! held recordings confirm.
 
+use super::super::clock::Deadline;
 use super::super::estimate::Fit;
 use super::super::policy::ALPHA;
 use super::super::problem::{Chosen, Problem};
 use super::compare::{closed, needed};
 use super::confirm::{Asked, Held};
 use super::criteria::{Criteria, Judged, Reason, Rival};
-use super::weighed::{Weighed, saved};
+use super::weighed::{Weighed, saved, widened};
 use rayon::prelude::*;
 
 /// A hypothesis that was weighed in a step.
@@ -72,7 +73,7 @@ impl Chooser<'_> {
     }
 
     /// The rival that is taken, with what cannot be told from it.
-    pub fn choose(&self, step: usize, before: &Weighed, mut rivals: Vec<Rival>) -> Choice {
+    pub fn choose(&self, step: usize, before: &Weighed, mut rivals: Vec<Rival>, until: Deadline<'_>) -> Choice {
         self.sort(before, &mut rivals);
         let judged = self.criteria.judged(before, &rivals, &self.problem.train);
         let needed = needed(self.criteria.count);
@@ -96,6 +97,7 @@ impl Chooser<'_> {
         }
         let contenders: Vec<usize> = if any { confirmed.into_iter().map(|c| c.0).collect() } else { Vec::new() };
         contenders.iter().for_each(|&i| reasons[i] = None);
+        self.widen(&contenders, &mut rivals, until);
         let is_shape = |i: usize| self.is_shape(&rivals[i]);
         let mut order = self.criteria.order(&contenders, &rivals, &judged, &mut reasons);
         // a shape has a coefficient for every bump: it counts where it surely leaves less than what has a name
@@ -131,6 +133,19 @@ impl Chooser<'_> {
             set: order.iter().filter(|i| **i != first).filter_map(behind).collect(),
         };
         Choice { trials, taken: Some((best.clone(), effect)), undecided: Vec::new() }
+    }
+
+    /// Frees the width of what leaves as small a gap as the best with fewer coefficients, and is behind: a corner of a fixed
+    /// width is not at its optimum beside a law whose own freedom rounds it.
+    fn widen(&self, contenders: &[usize], rivals: &mut [Rival], until: Deadline<'_>) {
+        let Some((&first, others)) = contenders.split_first() else { return };
+        let own = |r: &Rival| r.model.fit.candidate.own;
+        for &i in others {
+            let why = self.criteria.worse(&rivals[first].model, &rivals[i].model);
+            if matches!(why, Some(Reason::NatsBehind(_))) && own(&rivals[i]) < own(&rivals[first]) && !until.is_over() {
+                rivals[i].model = widened(self.problem, &self.criteria.sensors, rivals[i].model.clone(), until);
+            }
+        }
     }
 
     /// Best first.

@@ -14,7 +14,7 @@ use super::criteria::{Criteria, Judged, Reason, Rival};
 use super::models;
 use super::rivals::fitted;
 use super::screen::{Ground, screened};
-use super::weighed::{Weighed, ahead, as_in, left_by, settled, weighed};
+use super::weighed::{Weighed, ahead, as_in, left_by, settled, weighed, widened};
 use crate::diag::Diagnostic;
 use std::fmt;
 use std::ops::ControlFlow;
@@ -136,7 +136,8 @@ pub fn search<'a>(
             shape = Some(effect);
             break;
         }
-        last = settled(problem, &search.chooser.criteria.sensors, search.widened(chosen), search.ends);
+        let sensors = &search.chooser.criteria.sensors;
+        last = settled(problem, sensors, widened(problem, sensors, chosen, search.ends), search.ends);
         taken.push(effect);
         search.drop_needless(&mut last, &mut taken);
         if search.is_recording_error(&taken) {
@@ -177,7 +178,7 @@ pub fn explained(
     let rivals = fitted(&ground, screen.order, Deadline::default()).rivals;
     let Some(last) = rivals.first().map(|r| r.model.clone()) else { return Ok(None) };
     let closes = 1.0 - last.gap(sensors) / base.gap(sensors).max(f64::MIN_POSITIVE);
-    let trials = search.chooser.choose(1, &base, rivals).trials;
+    let trials = search.chooser.choose(1, &base, rivals, Deadline::default()).trials;
     let Some(Trial { found: Some(Judged { evidence, t, .. }), reason, .. }) = trials.first() else { return Ok(None) };
     let taken = vec![Taken { hypothesis, evidence: *evidence, t: *t, closes, set: Vec::new() }];
     let said = reason
@@ -239,7 +240,7 @@ impl Search<'_> {
     /// The rival that is taken. If from its parameters the model before comes out so well that the rival shows nothing beside
     /// it, that one was not at its optimum: it moves there, and the rivals are compared with it again.
     fn choose(&mut self, step: usize, before: &mut Weighed, rivals: Vec<Rival>) -> Option<(Weighed, Taken)> {
-        let mut choice = self.chooser.choose(step, before, rivals.clone());
+        let mut choice = self.chooser.choose(step, before, rivals.clone(), self.ends);
         for _ in 0..SETTLING {
             let sensors = &self.chooser.criteria.sensors;
             let Some((rival, _)) = &choice.taken else { break };
@@ -247,7 +248,7 @@ impl Search<'_> {
             let shows_nothing = |a: &Weighed| ahead(a, rival, sensors) <= needed(self.chooser.criteria.count);
             let Some(again) = again.filter(shows_nothing) else { break };
             *before = again;
-            choice = self.chooser.choose(step, before, rivals.clone());
+            choice = self.chooser.choose(step, before, rivals.clone(), self.ends);
         }
         self.trials.append(&mut choice.trials);
         self.trials.append(&mut self.passed);
@@ -350,15 +351,6 @@ impl Search<'_> {
     fn weighed(&self, model: Candidate) -> Option<Weighed> {
         let x = model.present();
         weighed(self.problem, &self.chooser.criteria.sensors, (model, x), self.ends)
-    }
-
-    /// The model with the widths of everything that was taken free, where that is better.
-    fn widened(&self, chosen: Weighed) -> Weighed {
-        let causes = chosen.fit.causes();
-        let wider = models::candidate(self.problem, &causes, Some(&chosen.fit.tolerances()), causes.len());
-        let fitted = wider.filter(|c| c.coordinates.len() > chosen.fit.x.len()).and_then(|c| self.weighed(c));
-        let better = |f: &Weighed| ahead(&chosen, f, &self.chooser.criteria.sensors) > 0.0;
-        fitted.filter(better).unwrap_or(chosen)
     }
 
     /// Drops what was taken before and is not missed any more.

@@ -6,6 +6,7 @@ use super::super::policy::{LEAST, OTHER_WEIGHTING, SETTLING, SURE};
 use super::super::problem::Problem;
 use super::compare::{Sensors, differences, evidence, gap, signal_gap, t_statistic};
 use super::folds::{LeftOut, left_out};
+use super::models;
 
 /// A fit with what it leaves of left-out data.
 #[derive(Clone, Debug)]
@@ -58,6 +59,18 @@ pub fn settled(problem: &Problem<'_>, sensors: &Sensors, mut model: Weighed, unt
         model = next;
     }
     model
+}
+
+/// The model with the widths of everything that was taken free, where that is better.
+pub fn widened(problem: &Problem<'_>, sensors: &Sensors, chosen: Weighed, until: Deadline<'_>) -> Weighed {
+    let causes = chosen.fit.causes();
+    let wider = models::candidate(problem, &causes, Some(&chosen.fit.tolerances()), causes.len());
+    let wider = wider.filter(|c| c.coordinates.len() > chosen.fit.x.len());
+    let fitted = wider.and_then(|c| {
+        let x = c.present();
+        weighed(problem, sensors, (c, x), until)
+    });
+    fitted.filter(|f| ahead(&chosen, f, sensors) > 0.0).unwrap_or(chosen)
 }
 
 /// The model before a rival, fitted anew from where parameters are in the rival, where that is better.
