@@ -1,5 +1,7 @@
 //! The file system as a world: what the command reads through a door of its own, tests read here.
 
+#![allow(clippy::disallowed_methods, reason = "tests read their own files")]
+
 use bramah::world::World;
 use std::path::Path;
 
