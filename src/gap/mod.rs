@@ -3,10 +3,11 @@
 //! Data goes one way. [`study`] reads the question into a [`problem`]: [`effects`] reads the effect models, [`circuit`] the
 //! places of the nominal model, [`hypotheses`] puts every effect at every place where it fits, [`shapes`] fits their grids
 //! to the recordings, `capacity` their bounds to the nodes, [`mistakes`] adds what may be wrong with the recordings, and
-//! [`augment`] writes the nominal model with effects attached. [`estimate`] fits such a model to the recordings, [`select`]
-//! judges on left-out data which hypothesis is taken, with the constants of [`policy`]. [`verdict`] says what came out, in
-//! [`figures`] and [`words`]; [`fixed`] writes the corrected model into one file, [`report`] the page, with the
-//! [`whiteness`] of what is left. [`plan`] says before measuring what an experiment would show.
+//! [`augment`] writes the nominal model with effects attached. [`estimate`] fits such a model to the recordings, within the
+//! budget of a [`clock`]; [`select`] judges on left-out data which hypothesis is taken, with the constants of [`policy`].
+//! [`verdict`] says what came out, in [`figures`] and [`words`]; [`fixed`] writes the corrected model into one file,
+//! [`report`] the page, with the [`whiteness`] of what is left. [`plan`] says before measuring what an experiment would
+//! show.
 
 pub mod augment;
 mod capacity;
