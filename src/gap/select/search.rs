@@ -244,7 +244,7 @@ impl Search<'_> {
         for _ in 0..SETTLING {
             let sensors = &self.chooser.criteria.sensors;
             let Some((rival, _)) = &choice.taken else { break };
-            let again = as_in(self.problem, sensors, before, &rival.fit, self.ends);
+            let again = as_in(self.problem, sensors, before, &rival.fit);
             let shows_nothing = |a: &Weighed| ahead(a, rival, sensors) <= needed(self.chooser.criteria.count);
             let Some(again) = again.filter(shows_nothing) else { break };
             *before = again;

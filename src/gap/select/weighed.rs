@@ -73,17 +73,12 @@ pub fn widened(problem: &Problem<'_>, sensors: &Sensors, chosen: Weighed, until:
     fitted.filter(|f| ahead(&chosen, f, sensors) > 0.0).unwrap_or(chosen)
 }
 
-/// The model before a rival, fitted anew from where parameters are in the rival, where that is better.
-pub fn as_in(
-    problem: &Problem<'_>,
-    sensors: &Sensors,
-    before: &Weighed,
-    rival: &Fit,
-    until: Deadline<'_>,
-) -> Option<Weighed> {
+/// The model before a rival, fitted anew from where parameters are in the rival, where that is better. It takes the time that
+/// it needs: what is not at its optimum would make a claim of any effect.
+pub fn as_in(problem: &Problem<'_>, sensors: &Sensors, before: &Weighed, rival: &Fit) -> Option<Weighed> {
     // the coordinates of the cause that it has beyond the model before stand last
     let x = rival.x[..before.fit.x.len()].to_vec();
-    let other = Weighed::new(problem, as_they_are(problem.task(until), before.fit.candidate.clone(), x)?);
+    let other = Weighed::new(problem, as_they_are(problem.task(Deadline::default()), before.fit.candidate.clone(), x)?);
     better(before, &other, sensors).then_some(other)
 }
 
