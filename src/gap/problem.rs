@@ -6,7 +6,7 @@ use super::circuit::Circuit;
 use super::clock::Deadline;
 use super::data::{Inputs, Recording};
 use super::estimate::Task;
-use super::estimate::simulation::from_start;
+use super::estimate::simulation::{correction, from_start};
 use super::hypotheses::{Hypothesis, Signal, Site};
 use crate::analysis::lift;
 use crate::analysis::local::{Local, Plan};
@@ -108,6 +108,8 @@ pub struct Assembled {
     pub own: Vec<(usize, usize)>,
     /// Usual size of each state.
     pub sizes: Vec<f64>,
+    /// What a step of a simulation may be corrected by, in parts of these sizes.
+    pub correction: f64,
     /// How far each state moves in the nominal model, SI; 0 where that is not known.
     pub travel: Vec<f64>,
     /// The Modelica text.
@@ -237,7 +239,7 @@ impl Problem<'_> {
         }
         let mut all = vec![Vec::new(); variables.len()];
         for r in &self.train {
-            let run = from_start(&model.plan, &model.theta, &model.sizes, r)?;
+            let run = from_start(&model.plan, &model.theta, (&model.sizes, model.correction), r)?;
             all.iter_mut().zip(run).for_each(|(a, v)| a.extend(v));
         }
         Some(all)
@@ -328,7 +330,8 @@ impl Problem<'_> {
                 *size = travel;
             }
         }
-        Ok(Assembled { plan, theta, free, sources, attached, own: Vec::new(), sizes, travel, augmented })
+        let correction = correction(&self.noise_floor, &self.full_scale);
+        Ok(Assembled { plan, theta, free, sources, attached, own: Vec::new(), sizes, correction, travel, augmented })
     }
 }
 

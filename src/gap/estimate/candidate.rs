@@ -237,13 +237,8 @@ impl Candidate {
     /// What the model leaves of a recording: of the train recordings the `number`-th, or any other. `None` where it does
     /// not reach the end.
     pub fn errors(&self, x: &[f64], recording: &Recording, number: Option<usize>) -> Option<Errors> {
-        self.errors_to(x, recording, number, recording.len())
-    }
-
-    /// The same of the samples before `end`.
-    pub fn errors_to(&self, x: &[f64], recording: &Recording, number: Option<usize>, end: usize) -> Option<Errors> {
         let mut errors = vec![Vec::with_capacity(recording.len()); self.deviations.len()];
-        self.run(x, recording, number, end, false, |errors_of, _| {
+        self.run(x, recording, number, false, |errors_of, _| {
             errors.iter_mut().zip(errors_of).for_each(|(all, e)| all.push(*e));
             ControlFlow::Continue(())
         })?;
@@ -302,7 +297,7 @@ impl Candidate {
     /// When the simulation of a train recording stops before its end, s.
     pub fn stops(&self, x: &[f64], recording: &Recording) -> Option<f64> {
         let mut sample = recording.settled();
-        let ends = self.run(x, recording, None, recording.len(), false, |_, _| {
+        let ends = self.run(x, recording, None, false, |_, _| {
             sample += 1;
             ControlFlow::Continue(())
         });
@@ -318,7 +313,7 @@ impl Candidate {
     /// where the model does not reach the end.
     pub fn slopes(&self, x: &[f64], recording: &Recording, number: usize) -> Option<Vec<f32>> {
         let mut all = Vec::with_capacity(recording.len() * self.deviations.len() * x.len());
-        self.run(x, recording, Some(number), recording.len(), true, |_, slopes| {
+        self.run(x, recording, Some(number), true, |_, slopes| {
             all.extend(slopes.into_iter().flat_map(|s| s.iter()).map(|v| *v as f32));
             ControlFlow::Continue(())
         })?;
@@ -331,7 +326,7 @@ impl Candidate {
         let limit = Limit::new(weights, self.prior(x), bound);
         let one = |(number, recording): (usize, &Recording)| {
             let mut own = 0.0;
-            self.run(x, recording, Some(number), recording.len(), false, |errors, _| limit.count(errors, &mut own))?;
+            self.run(x, recording, Some(number), false, |errors, _| limit.count(errors, &mut own))?;
             limit.add(own);
             Some(own)
         };
@@ -375,7 +370,7 @@ impl Candidate {
         let mut errors = vec![Vec::with_capacity(samples); signals];
         let mut sums = vec![vec![Products::none(width); signals]; PIECES];
         let (mut sample, mut cost) = (0, 0.0);
-        let off = self.run(x, recording, Some(number), recording.len(), true, |errors_of, slopes| {
+        let off = self.run(x, recording, Some(number), true, |errors_of, slopes| {
             let into = &mut sums[piece(sample, samples)];
             sample += 1;
             for (i, e) in errors_of.iter().enumerate() {
@@ -398,7 +393,7 @@ impl Candidate {
         let common = groups.first().map_or(0, |g| g.start);
         let mut sums: Vec<Grouped> = self.deviations.iter().map(|_| Grouped::none(common, x.len(), groups)).collect();
         for (number, recording) in train.iter().enumerate() {
-            self.run(x, recording, Some(number), recording.len(), true, |errors_of, slopes| {
+            self.run(x, recording, Some(number), true, |errors_of, slopes| {
                 let Some(slopes) = slopes else { return ControlFlow::Continue(()) };
                 for (i, (sums, e)) in sums.iter_mut().zip(errors_of).enumerate().filter(|(_, (_, e))| e.is_finite()) {
                     sums.add(slopes.column(i).as_slice(), *e, groups);
@@ -415,7 +410,6 @@ impl Candidate {
         x: &[f64],
         recording: &Recording,
         number: Option<usize>,
-        end: usize,
         slopes: bool,
         mut at: impl FnMut(&[f64], Option<&DMatrix<f64>>) -> ControlFlow<()>,
     ) -> Option<Vec<f64>> {
@@ -428,6 +422,7 @@ impl Candidate {
             plan: &model.plan,
             theta: &theta,
             sizes: &model.sizes,
+            correction: model.correction,
             travel: &model.travel,
             units: &self.units,
             deviations: &self.deviations,
@@ -440,10 +435,11 @@ impl Candidate {
             local: &mut begun.local,
             theta: &theta,
             sizes: &model.sizes,
+            correction: model.correction,
             state: begun.state,
             slopes: begun.slopes,
         };
-        run.along(recording, from..end.max(from + 1), |k, local, slopes| {
+        run.along(recording, from..recording.len(), |k, local, slopes| {
             // the sample at which the run begins is known
             if k == from {
                 return ControlFlow::Continue(());

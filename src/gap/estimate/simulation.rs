@@ -17,14 +17,24 @@ use std::sync::Arc;
 const DEEP: u32 = 6;
 const SHORTEST: f64 = 1e-4;
 const DEEPEST: u32 = 24;
-/// The correction of a linear step that is let pass, in parts of the states' sizes. What is left after it is a tenth and
-/// less: over whole recordings 1e-5 to 1e-4 of full scale, where sensors are good to 1e-3.
-const CORRECTION: f64 = 1e-4;
+/// The correction of a linear step that is let pass, in parts of the states' sizes, lies between these, ...
+const CORRECTION: (f64, f64) = (1e-5, 1e-4);
+/// ... and is this part of the noise of the best sensor in parts of its full scale. Where the model is smooth, what is left
+/// after a correction is a tenth and less. At a corner (friction that changes sign) it is as much as the correction, and over
+/// a recording that passes some ten corners it grows to four times as much: a tenth of the noise.
+const CORRECTED: f64 = 0.025;
 /// Part of it below which the next step is twice as long: the correction grows with the cube.
 const LENGTHENED: f64 = 0.1;
 /// What the change of the linear model over a step may do to slopes, as part of the states, for it to be added to second order:
 /// the cube of it is left. Beyond, a step has the exponential of the mean of both its ends.
 const MISSED: f64 = 0.1;
+
+/// The correction of a step that is let pass, in parts of the states' sizes, beside sensors with this noise and full scale.
+pub fn correction(noise: &[f64], full_scale: &[f64]) -> f64 {
+    let finest = noise.iter().zip(full_scale).map(|(n, f)| n / f).filter(|part| part.is_finite());
+    let (least, most) = CORRECTION;
+    (CORRECTED * finest.fold(f64::INFINITY, f64::min)).clamp(least, most)
+}
 
 /// How what a linearisation leaves out grows over a step: its weight beside phi_2, which belongs to growth in proportion.
 #[derive(Clone, Copy)]
@@ -135,6 +145,8 @@ pub struct Run<'a> {
     pub theta: &'a [f64],
     /// Sizes of its states.
     pub sizes: &'a [f64],
+    /// What a step may be corrected by, in parts of these sizes.
+    pub correction: f64,
     /// The state, SI.
     pub state: Vec<f64>,
     /// Slopes, where they are wanted.
@@ -195,13 +207,19 @@ fn is_small(missed: &DMatrix<f64>) -> bool {
     missed.row_iter().all(|row| row.iter().map(|v| v.abs()).sum::<f64>() <= MISSED)
 }
 
-/// Outputs of a model over a recording, from its own start: signals by samples. `None` where it does not reach the end.
-pub fn from_start(plan: &Arc<Plan>, theta: &[f64], sizes: &[f64], recording: &Recording) -> Option<Vec<Vec<f64>>> {
+/// Outputs of a model over a recording, from its own start: signals by samples. Its states have these sizes, of which a step
+/// may be corrected by this part. `None` where it does not reach the end.
+pub fn from_start(
+    plan: &Arc<Plan>,
+    theta: &[f64],
+    (sizes, correction): (&[f64], f64),
+    recording: &Recording,
+) -> Option<Vec<Vec<f64>>> {
     let u = Inputs::new(recording).from;
     let mut local = Local::start(plan.clone(), recording.times[0], theta, &u).ok()?;
     let mut outputs = vec![Vec::with_capacity(recording.len()); plan.outputs()];
     let state = local.state();
-    let mut run = Run { local: &mut local, theta, sizes, state, slopes: None };
+    let mut run = Run { local: &mut local, theta, sizes, correction, state, slopes: None };
     run.along(recording, 0..recording.len(), |_, local, _| {
         outputs.iter_mut().zip(&local.outputs).for_each(|(all, y)| all.push(*y));
         ControlFlow::Continue(())
@@ -285,7 +303,7 @@ impl Stepper {
                 self.grow();
                 off = self.step(run, t, after, length, Remainder::Proportional);
             }
-            if off > CORRECTION {
+            if off > run.correction {
                 if !linear_here {
                     self.inputs.at(after, &mut self.u);
                     run.local.linearize(t + after, &run.state, run.theta, &self.u).ok()?;
@@ -297,7 +315,7 @@ impl Stepper {
                 }
                 off = self.step(run, t, after, length, Remainder::Square);
             }
-            if off > CORRECTION && self.depth < deepest {
+            if off > run.correction && self.depth < deepest {
                 self.deepen();
                 continue;
             }
@@ -318,7 +336,7 @@ impl Stepper {
                 }
                 self.take_rates(run);
             }
-            if off < LENGTHENED * CORRECTION && self.depth > 0 && gone.is_multiple_of(2 * part) {
+            if off < LENGTHENED * run.correction && self.depth > 0 && gone.is_multiple_of(2 * part) {
                 self.depth -= 1;
             }
         }
@@ -418,7 +436,7 @@ impl Stepper {
         let most =
             self.change.iter().fold(0.0, |m: f64, v| if v.abs() >= 0.0 { m.max(v.abs()) } else { f64::INFINITY });
         // behind a corner the rates say nothing of the step before it
-        if most <= CORRECTION {
+        if most <= run.correction {
             let moves = self.next.iter_mut().zip(self.change.iter().zip(run.sizes));
             moves.for_each(|(next, (change, size))| *next += change * size);
         }

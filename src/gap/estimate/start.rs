@@ -36,6 +36,8 @@ pub struct Valued<'a> {
     pub theta: &'a [f64],
     /// Usual size of each state, SI.
     pub sizes: &'a [f64],
+    /// What a step may be corrected by, in parts of these sizes.
+    pub correction: f64,
     /// How far each moves in the nominal model, SI; 0 where that is not known.
     pub travel: &'a [f64],
     /// Per signal its unit, as written.
@@ -175,7 +177,7 @@ impl Valued<'_> {
         let mut gram = DMatrix::zeros(n, width + 1);
         let mut row = vec![0.0; width + 1];
         let mut cost = x.component_div(loose).norm_squared();
-        let mut run = Run { local, theta: self.theta, sizes: self.sizes, state, slopes };
+        let mut run = Run { local, theta: self.theta, sizes: self.sizes, correction: self.correction, state, slopes };
         run.along(recording, 0..recording.settled() + 1, |k, local, slopes| {
             let Some(slopes) = slopes else { return ControlFlow::Continue(()) };
             for (i, deviation) in self.deviations.iter().enumerate() {

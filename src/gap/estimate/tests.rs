@@ -9,6 +9,9 @@ use crate::expr::VarId;
 use nalgebra::DMatrix;
 use std::sync::Arc;
 
+/// The largest correction that any study lets pass.
+const CORRECTION: f64 = 1e-4;
+
 fn plan(text: &str, parameters: &[&str], outputs: &[&str]) -> Arc<Plan> {
     let flat = crate::compile::flatten_text(text, None).value.expect("a model").flat;
     let id = |name: &&str| {
@@ -32,7 +35,7 @@ fn recording(samples: usize, step: f64, input: &[fn(f64) -> f64], signals: &[&dy
 /// The largest distance of the first output from a closed form.
 fn farthest(plan: &Arc<Plan>, sizes: &[f64], recording: &Recording, exact: impl Fn(f64) -> f64) -> f64 {
     let theta = plan.parameter_values();
-    let found = from_start(plan, &theta, sizes, recording).expect("a trajectory");
+    let found = from_start(plan, &theta, (sizes, CORRECTION), recording).expect("a trajectory");
     found[0].iter().zip(recording.times.iter()).map(|(y, t)| (y - exact(*t)).abs()).fold(0.0, f64::max)
 }
 
@@ -76,7 +79,8 @@ fn slopes_go_along() {
     let recording = recording(101, 0.02, &[], &[]);
     let mut local = Local::start(plan.clone(), 0.0, &[1.0], &[]).expect("starts");
     let slopes = Some(Slopes::new(DMatrix::zeros(1, 1), vec![Some((0, 1.0))], 1));
-    let mut run = Run { local: &mut local, theta: &[1.0], sizes: &[1.0], state: vec![1.0], slopes };
+    let mut run =
+        Run { local: &mut local, theta: &[1.0], sizes: &[1.0], correction: CORRECTION, state: vec![1.0], slopes };
     let mut off = 0.0_f64;
     run.along(&recording, 0..recording.len(), |k, _, slopes| {
         let t = recording.times[k];
@@ -98,7 +102,14 @@ fn slopes_pass_corners() {
     let mut local = Local::start(plan.clone(), 0.0, &[1.0], &[]).expect("starts");
     let states = DMatrix::from_row_slice(2, 1, &[1.0, 0.0]);
     let slopes = Some(Slopes::new(states, vec![Some((0, 1.0))], 1));
-    let mut run = Run { local: &mut local, theta: &[1.0], sizes: &[1.0, 1.0], state: vec![1.0, 0.0], slopes };
+    let mut run = Run {
+        local: &mut local,
+        theta: &[1.0],
+        sizes: &[1.0, 1.0],
+        correction: CORRECTION,
+        state: vec![1.0, 0.0],
+        slopes,
+    };
     let (mut off, mut bounces, mut fell) = (0.0_f64, 0, false);
     run.along(&recording, 0..recording.len(), |_, local, slopes| {
         off = off.max((slopes.expect("slopes")[(0, 0)] - local.outputs[0]).abs());
@@ -119,7 +130,7 @@ fn valued<'a>(
     deviations: &'a [f64],
     units: &'a [String],
 ) -> Valued<'a> {
-    Valued { plan, theta, sizes, travel: &[0.0, 0.0], units, deviations }
+    Valued { plan, theta, sizes, correction: CORRECTION, travel: &[0.0, 0.0], units, deviations }
 }
 
 /// A recording begins where its first samples show it, far from the model's own start as that may be: a pendulum that the
@@ -133,7 +144,7 @@ fn a_measured_state_begins_where_the_first_samples_show_it() {
     let elsewhere = self::plan(&elsewhere, &[], &["phi"]);
     let mut recording = recording(200, 0.01, &[], &[&|_| 0.0]);
     let sizes = [1.0, 1.0];
-    let swung = from_start(&elsewhere, &[], &sizes, &recording).expect("a trajectory").remove(0);
+    let swung = from_start(&elsewhere, &[], (&sizes, CORRECTION), &recording).expect("a trajectory").remove(0);
     recording.signals[0] = swung.clone().into();
     let units = ["rad".to_string()];
     let begun = valued(&plan, &[], &sizes, &[1e-3], &units).begin(&recording, None, None).expect("a start");

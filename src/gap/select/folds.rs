@@ -4,12 +4,8 @@
 use super::super::data::Recording;
 use super::super::estimate::Fit;
 use super::super::estimate::candidate::{Errors, piece};
-use super::super::policy::{BLOCKS, DAMPINGS, PIECES, WHOLE_RECORDINGS};
+use super::super::policy::{BLOCKS, DAMPINGS, PIECES, SETTLED, WHOLE_RECORDINGS};
 use std::ops::Range;
-
-/// Part by which a step that lands may leave more of the data that are not left out: of these, what comes after the last
-/// sample of the fold is not looked at.
-const LANDS: f64 = 0.05;
 
 /// Left-out errors, and their mean squares.
 #[derive(Clone, Debug, PartialEq)]
@@ -136,8 +132,8 @@ impl Fold<'_> {
         self.scheme.fold(number, piece(sample, samples)) == self.k
     }
 
-    /// Errors of all recordings as far as something of them is left out, from the least damped step that lands: on the data
-    /// that are not left out it leaves no more than the fit to all data does. `None` where no simulation gets there.
+    /// Errors of all recordings, from the least damped step that lands: the data that are not left out cost no more than in
+    /// the fit to all data, from which it began. `None` where no simulation gets there.
     fn found(&self) -> Option<Vec<Errors>> {
         let system = self.fit.system(|recording, piece| self.scheme.fold(recording, piece) != self.k);
         let coordinates = &self.fit.candidate.coordinates;
@@ -146,35 +142,22 @@ impl Fold<'_> {
         let lands = |x: Vec<f64>| {
             let errors = self.simulated(&x)?;
             let cost = self.kept(&errors) + self.fit.candidate.prior(&x);
-            (cost <= before.max(f64::MIN_POSITIVE) * (1.0 + LANDS)).then_some(errors)
+            (cost <= before + SETTLED).then_some(errors)
         };
         steps.into_iter().find_map(lands).or_else(|| self.simulated(&self.fit.x))
     }
 
-    /// Errors of the recordings up to the last sample that is left out; nothing of those of which none is.
     fn simulated(&self, x: &[f64]) -> Option<Vec<Errors>> {
-        let one = |(number, (own, recording)): (usize, (&Errors, &Recording))| {
-            let samples = own.first().map_or(0, Vec::len);
-            match (0..samples).rev().find(|s| self.out(number, *s, samples)) {
-                Some(last) => {
-                    let end = recording.len() - samples + last + 1;
-                    self.fit.candidate.errors_to(x, recording, Some(number), end)
-                }
-                None => Some(vec![Vec::new(); own.len()]),
-            }
-        };
-        self.fit.evaluated.errors.iter().zip(self.train).enumerate().map(one).collect()
+        self.fit.candidate.all_errors(x, self.train)
     }
 
-    /// Weighed squares of what was simulated and is not left out.
+    /// Weighed squares of what is not left out.
     fn kept(&self, errors: &[Errors]) -> f64 {
         let mut sum = 0.0;
-        for (number, (e, own)) in errors.iter().zip(&self.fit.evaluated.errors).enumerate() {
+        for (number, own) in errors.iter().enumerate() {
             let samples = own.first().map_or(0, Vec::len);
-            let last = (0..samples).rev().find(|s| self.out(number, *s, samples)).map_or(0, |s| s + 1);
-            for (i, signal) in e.iter().enumerate() {
-                let kept = signal.iter().take(last).enumerate();
-                let kept = kept.filter(|(s, v)| v.is_finite() && !self.out(number, *s, samples));
+            for (i, signal) in own.iter().enumerate() {
+                let kept = signal.iter().enumerate().filter(|(s, v)| v.is_finite() && !self.out(number, *s, samples));
                 sum += self.fit.weights.weight(i) * kept.map(|(_, v)| v * v).sum::<f64>();
             }
         }
