@@ -332,6 +332,12 @@ impl System {
         (unit, matrix)
     }
 
+    /// By how much the cost falls from one point to another, if the model is linear between them.
+    pub fn promised(&self, from: &[f64], to: &[f64]) -> f64 {
+        let change = DVector::from_fn(from.len(), |i, _| to[i] - from[i]);
+        2.0 * self.towards.dot(&change) - change.dot(&(&self.information * &change))
+    }
+
     /// Where a damped Gauss-Newton step from `x` leads, within the bounds.
     pub fn step(&self, coordinates: &[Coordinate], x: &[f64], damping: f64) -> Vec<f64> {
         let free = self.free(coordinates, x);

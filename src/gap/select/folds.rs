@@ -132,8 +132,8 @@ impl Fold<'_> {
         self.scheme.fold(number, piece(sample, samples)) == self.k
     }
 
-    /// Errors of all recordings, from the least damped step that lands: the data that are not left out cost no more than in
-    /// the fit to all data, from which it began. `None` where no simulation gets there.
+    /// Errors of all recordings, from the least damped step that lands: the data that are not left out cost as little as the
+    /// linear model promised. One that leads on a plateau is at no optimum of them. `None` where no simulation gets there.
     fn found(&self) -> Option<Vec<Errors>> {
         let system = self.fit.system(|recording, piece| self.scheme.fold(recording, piece) != self.k);
         let coordinates = &self.fit.candidate.coordinates;
@@ -142,7 +142,7 @@ impl Fold<'_> {
         let lands = |x: Vec<f64>| {
             let errors = self.simulated(&x)?;
             let cost = self.kept(&errors) + self.fit.candidate.prior(&x);
-            (cost <= before + SETTLED).then_some(errors)
+            (cost <= before - system.promised(&self.fit.x, &x) + SETTLED).then_some(errors)
         };
         steps.into_iter().find_map(lands).or_else(|| self.simulated(&self.fit.x))
     }

@@ -44,9 +44,10 @@ pub fn weighed(
 }
 
 /// A model fitted again with the weights that it left, until left-out data see no difference or the time is over: what is
-/// not at its optimum would be improved by any effect.
+/// not at its optimum would be improved by any effect. The first of these fits takes the time that it needs.
 pub fn settled(problem: &Problem<'_>, sensors: &Sensors, mut model: Weighed, until: Deadline<'_>) -> Weighed {
-    for _ in 0..SETTLING {
+    for round in 0..SETTLING {
+        let until = if round == 0 { Deadline::default() } else { until };
         if until.is_over() {
             break;
         }
