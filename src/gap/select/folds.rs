@@ -133,18 +133,26 @@ impl Fold<'_> {
     }
 
     /// Errors of all recordings, from the least damped step that lands: the data that are not left out cost as little as the
-    /// linear model promised. One that leads on a plateau is at no optimum of them. `None` where no simulation gets there.
+    /// linear model promised (one that leads on a plateau is at no optimum of them), else no more than where they began: the
+    /// fit to all data has seen what is left out. `None` where no simulation gets there.
     fn found(&self) -> Option<Vec<Errors>> {
         let system = self.fit.system(|recording, piece| self.scheme.fold(recording, piece) != self.k);
         let coordinates = &self.fit.candidate.coordinates;
         let steps = DAMPINGS.into_iter().map(|d| system.step(coordinates, &self.fit.x, d));
         let before = self.kept(&self.fit.evaluated.errors) + self.fit.candidate.prior(&self.fit.x);
+        let mut second = None;
         let lands = |x: Vec<f64>| {
             let errors = self.simulated(&x)?;
             let cost = self.kept(&errors) + self.fit.candidate.prior(&x);
-            (cost <= before - system.promised(&self.fit.x, &x) + SETTLED).then_some(errors)
+            let gains = cost <= before + SETTLED;
+            if cost <= before - system.promised(&self.fit.x, &x) + SETTLED {
+                return Some(errors);
+            }
+            second = second.take().or_else(|| gains.then_some(errors));
+            None
         };
-        steps.into_iter().find_map(lands).or_else(|| self.simulated(&self.fit.x))
+        let landed = steps.into_iter().find_map(lands);
+        landed.or(second).or_else(|| self.simulated(&self.fit.x))
     }
 
     fn simulated(&self, x: &[f64]) -> Option<Vec<Errors>> {
