@@ -13,18 +13,18 @@ use std::sync::Arc;
 /// Halvings of the distance between two samples: so many at least are allowed, and as many as lead to the shortest step, s, in
 /// which valves and friction change; a coarse recording is simulated like a fine one. No more than the last ones. Short steps
 /// are for corners, which are passed in a few of them: once a recording has taken as many steps as it would with the first
-/// ones everywhere, or as many as a long one may, no more than those are allowed. A model that chatters would take a million
-/// between two samples.
+/// ones everywhere, and some seconds' worth of steps in all, no more than those are allowed. A model that chatters would take a
+/// million between two samples.
 const DEEP: u32 = 6;
 const SHORTEST: f64 = 1e-4;
 const DEEPEST: u32 = 24;
 const MANY: usize = 20_000;
 /// The correction of a linear step that is let pass, in parts of the states' sizes, lies between these, ...
-const CORRECTION: (f64, f64) = (2e-5, 1e-4);
-/// ... and is this part of the noise of the best sensor in parts of its full scale. Where the model is smooth, what is left
-/// after a correction is a tenth and less. At a corner (friction that changes sign) it is as much as the correction, and over
-/// a recording that passes some ten corners it grows to four times as much: a tenth of the noise.
-const CORRECTED: f64 = 0.025;
+const CORRECTION: (f64, f64) = (5e-6, 1e-4);
+/// ... and is this part of the noise of the best sensor in parts of its full scale: costs are compared to half a squared
+/// deviation, and 5000 samples that are each a hundredth of the noise off add up to that. Where the model is smooth, what is
+/// left after a correction is a tenth and less of it; at a corner (friction that changes sign) it is as much.
+const CORRECTED: f64 = 0.01;
 /// Part of it below which the next step is twice as long: the correction grows with the cube.
 const LENGTHENED: f64 = 0.1;
 /// What the change of the linear model over a step may do to slopes, as part of the states, for it to be added to second order:

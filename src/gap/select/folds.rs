@@ -100,9 +100,11 @@ pub fn left_out(fit: &Fit, train: &[Recording]) -> Vec<LeftOut> {
 }
 
 fn errors(fit: &Fit, train: &[Recording], scheme: Scheme) -> Vec<Errors> {
-    let mut all = fit.evaluated.errors.clone();
+    // a run without slopes takes other steps than one with them: only runs of one kind are compared
+    let Some(complete) = fit.candidate.all_errors(&fit.x, train) else { return infinite(&fit.evaluated.errors) };
+    let mut all = complete.clone();
     for k in 0..scheme.folds(train.len()) {
-        let fold = Fold { fit, train, scheme, k };
+        let fold = Fold { fit, complete: &complete, train, scheme, k };
         let found = fold.found();
         for (number, own) in all.iter_mut().enumerate() {
             let samples = own.first().map_or(0, Vec::len);
@@ -110,7 +112,7 @@ fn errors(fit: &Fit, train: &[Recording], scheme: Scheme) -> Vec<Errors> {
                 for (s, e) in
                     signal.iter_mut().enumerate().filter(|(s, e)| fold.out(number, *s, samples) && !e.is_nan())
                 {
-                    *e = found.as_ref().map_or(f64::INFINITY, |f| f[number][i][s]);
+                    *e = found[number][i][s];
                 }
             }
         }
@@ -118,9 +120,18 @@ fn errors(fit: &Fit, train: &[Recording], scheme: Scheme) -> Vec<Errors> {
     all
 }
 
+/// Where no simulation gets there.
+fn infinite(errors: &[Errors]) -> Vec<Errors> {
+    let one = |e: &f64| if e.is_nan() { f64::NAN } else { f64::INFINITY };
+    let of_recording = |e: &Errors| e.iter().map(|signal| signal.iter().map(one).collect()).collect();
+    errors.iter().map(of_recording).collect()
+}
+
 /// One fold that is left out of a fit.
 struct Fold<'a> {
     fit: &'a Fit,
+    /// What the fit to all data leaves.
+    complete: &'a [Errors],
     train: &'a [Recording],
     scheme: Scheme,
     k: usize,
@@ -132,31 +143,27 @@ impl Fold<'_> {
         self.scheme.fold(number, piece(sample, samples)) == self.k
     }
 
-    /// Errors of all recordings, from the least damped step that lands: the data that are not left out cost as little as the
-    /// linear model promised (one that leads on a plateau is at no optimum of them), else no more than where they began: the
-    /// fit to all data has seen what is left out. `None` where no simulation gets there.
-    fn found(&self) -> Option<Vec<Errors>> {
+    /// Errors of all recordings with parameters that were fitted without the fold: where the kept data cost least, of the
+    /// Gauss-Newton steps from the fit to all data, more and more damped until the kept data cost as little as the linear
+    /// model promised. A step that leads onto a plateau costs little, but more than a shorter one.
+    fn found(&self) -> Vec<Errors> {
+        let Fit { candidate, x: from, .. } = self.fit;
         let system = self.fit.system(|recording, piece| self.scheme.fold(recording, piece) != self.k);
-        let coordinates = &self.fit.candidate.coordinates;
-        let steps = DAMPINGS.into_iter().map(|d| system.step(coordinates, &self.fit.x, d));
-        let before = self.kept(&self.fit.evaluated.errors) + self.fit.candidate.prior(&self.fit.x);
-        let mut second = None;
-        let lands = |x: Vec<f64>| {
-            let errors = self.simulated(&x)?;
-            let cost = self.kept(&errors) + self.fit.candidate.prior(&x);
-            let gains = cost <= before + SETTLED;
-            if cost <= before - system.promised(&self.fit.x, &x) + SETTLED {
-                return Some(errors);
+        let before = self.kept(self.complete) + candidate.prior(from);
+        // the fit to all data has seen the fold: it stands only where every step costs more
+        let (mut least, mut found) = (before + SETTLED, self.complete.to_vec());
+        for damping in DAMPINGS {
+            let x = system.step(&candidate.coordinates, from, damping);
+            let Some(errors) = candidate.all_errors(&x, self.train) else { continue };
+            let cost = self.kept(&errors) + candidate.prior(&x);
+            if cost < least {
+                (least, found) = (cost, errors);
             }
-            second = second.take().or_else(|| gains.then_some(errors));
-            None
-        };
-        let landed = steps.into_iter().find_map(lands);
-        landed.or(second).or_else(|| self.simulated(&self.fit.x))
-    }
-
-    fn simulated(&self, x: &[f64]) -> Option<Vec<Errors>> {
-        self.fit.candidate.all_errors(x, self.train)
+            if cost <= before - system.promised(from, &x) + SETTLED {
+                break;
+            }
+        }
+        found
     }
 
     /// Weighed squares of what is not left out.
