@@ -52,7 +52,7 @@ pub(super) fn prepare(experiment: &Experiment, dae: &Dae, messages: &mut Message
     let id = data::text(path, messages)?;
     let entries = entries(experiment, dae, messages.sources.get(id).text.as_str());
     let columns: Vec<String> = entries.iter().map(|e| e.column.clone()).collect();
-    let strictness = Strictness::Recording { inputs: &columns, outputs: &[] };
+    let strictness = Strictness::Inputs(&columns);
     let checked = read_csv(&messages.sources, id, experiment.time_column.as_deref(), strictness);
     let recording = messages.value(checked)?;
     let times: Arc<[f64]> = recording.times.as_slice().into();
@@ -62,6 +62,9 @@ pub(super) fn prepare(experiment: &Experiment, dae: &Dae, messages: &mut Message
         inputs.push(track(entry, variable, dae, &recording, k, &times, experiment.interpolation)?);
     }
     all_driven(dae, &inputs)?;
+    if let Some(note) = held_without_asking(experiment, &entries, dae, &inputs) {
+        messages.say(&[note]);
+    }
     for entry in &experiment.map {
         let Some(unit) = entry.unit.as_deref() else { continue };
         if let Some(d) = contradiction(&messages.sources, id, &entry.column, unit) {
@@ -113,6 +116,28 @@ fn track(
     let linear = target.ty == Type::Real && entry.hold.or(usual) == Some(Hold::Linear);
     let interpolation = if linear { Interpolation::Linear } else { Interpolation::Held };
     Ok(Input { variable, times: times.clone(), values, interpolation })
+}
+
+/// A note where inputs that rise from row to row hold their samples because nobody said how they run between them.
+fn held_without_asking(
+    experiment: &Experiment,
+    entries: &[InputMap],
+    dae: &Dae,
+    inputs: &[Input],
+) -> Option<Diagnostic> {
+    let asked = |v: VarId| {
+        let name = &dae.variables[v.index()].name;
+        experiment.interpolation.is_some() || entries.iter().any(|e| &e.input == name && e.hold.is_some())
+    };
+    let rises = |i: &Input| i.values.windows(3).any(|v| v[0] != v[1] && v[1] != v[2]);
+    let real = |i: &Input| dae.variables[i.variable.index()].ty == Type::Real;
+    let held = inputs.iter().filter(|i| real(i) && !asked(i.variable) && rises(i));
+    let names: Vec<String> = held.map(|i| format!("`{}`", dae.variables[i.variable.index()].name)).collect();
+    let (first, rest) = names.split_first()?;
+    let others = if rest.is_empty() { String::new() } else { format!(" and {} more", rest.len()) };
+    let text = format!("{first}{others} hold{} each sample until the next one", if rest.is_empty() { "s" } else { "" });
+    let help = "`--interpolation linear` joins samples by straight lines, `--interpolation held` says that they hold";
+    Some(Diagnostic::new(Code::InputsHeld, text).help(help))
 }
 
 /// From the unit of the column to that of the variable.

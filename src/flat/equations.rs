@@ -13,6 +13,7 @@ use crate::instance::{Instance, ScopeId, View};
 use crate::network;
 use crate::syntax::ast::{self, ClassBody, EquationKind, Expr, ExprKind, Statement};
 use crate::syntax::symbol::Symbol;
+use rustc_hash::FxHashSet;
 
 /// Scalar sides of an equation with the place it comes from.
 struct Pair {
@@ -533,6 +534,14 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
         self.instance.diagnostics.push(Diagnostic::new(Code::BadCall, message).at(span, ""));
     }
 
+    fn only_in_when(&mut self, name: &str, span: Span) {
+        self.instance.diagnostics.push(
+            Diagnostic::new(Code::BadCall, format!("`{name}` can only stand inside a `when`"))
+                .at(span, "")
+                .help("write `when condition then ... end when;` around it"),
+        );
+    }
+
     fn call(&mut self, call: &'a Expr, view: View, span: Span) {
         let ExprKind::Call { function, .. } = &call.kind else { return };
         match function.parts[0].name.name.as_str() {
@@ -541,12 +550,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
                 self.push_guarded(assert);
             }
             "reinit" | "terminate" => {
-                let name = function.parts[0].name.name;
-                self.instance.diagnostics.push(
-                    Diagnostic::new(Code::BadCall, format!("`{name}` can only stand inside a `when`"))
-                        .at(span, "")
-                        .help("write `when condition then ... end when;` around it"),
-                );
+                self.only_in_when(function.parts[0].name.name.as_str(), span);
             }
             // a statement about the connection graph, which `network` has read
             "Connections" if network::is_graph_statement(function) => {}
@@ -583,20 +587,28 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
     fn algorithm(&mut self, section: &'a [Statement], view: View, initial: bool) {
         let (mut always, mut in_when) = (Vec::new(), Vec::new());
         assigned(section, false, &mut always, &mut in_when);
-        let names: Vec<&'a ast::ReferencePart> = always.iter().chain(&in_when).copied().collect();
-        let mut seen: Vec<Symbol> = Vec::new();
-        let mut originals: Vec<(Symbol, Val)> = Vec::new();
+        let mut originals: Vec<Assigned> = Vec::new();
         let mut count = 0;
-        for part in names {
-            if seen.contains(&part.name.name) {
+        for name in always.iter().chain(&in_when).map(|r| r.parts[0].name.name) {
+            if originals.iter().any(|o| o.name == name) {
                 continue;
             }
-            seen.push(part.name.name);
-            let Some(own) = self.instance.element_value(view, part) else { return };
-            let discrete = in_when.iter().any(|p| p.name.name == part.name.name);
-            let start = self.algorithm_start(&own, discrete);
-            originals.push((part.name.name, own));
-            self.instance.push_local(part.name.name, start);
+            let of = |targets: &[&'a ast::Reference]| -> Vec<&'a ast::Reference> {
+                targets.iter().copied().filter(|r| r.parts[0].name.name == name).collect()
+            };
+            let (always, in_when) = (of(&always), of(&in_when));
+            let targets: Vec<&'a ast::Reference> = always.iter().chain(&in_when).copied().collect();
+            let Some(own) = self.instance.assigned_value(view, &targets) else { return };
+            let scalars = |targets: &[&'a ast::Reference]| {
+                let mut found = FxHashSet::default();
+                let below: Vec<&[ast::ReferencePart]> = targets.iter().map(|r| &r.parts[1..]).collect();
+                scalars_of(&own, &below, &mut found);
+                found
+            };
+            let (all, in_when) = (scalars(&targets), scalars(&in_when));
+            let start = self.algorithm_start(&own, &all, &in_when);
+            originals.push(Assigned { name, own, in_when });
+            self.instance.push_local(name, start);
             count += 1;
         }
         let done = self.instance.run_section(section, view, count);
@@ -607,7 +619,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
             self.section_failed(section);
             return;
         }
-        self.section_results(&originals, &results, &whens, &in_when, view, section, initial);
+        self.section_results(&originals, &results, &whens, view, section, initial);
         for when in in_order(self.instance, whens, &originals) {
             self.algorithm_when(when, &originals, view);
         }
@@ -616,12 +628,19 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
         }
     }
 
-    /// An `assert` of an algorithm section outside `when`; one of an initial section is judged at the start only.
+    /// An `assert` or `terminate` of an algorithm section outside `when`; one of an initial section counts at the start only.
     fn algorithm_call(&mut self, call: AlgorithmCall, view: View, initial: bool) {
         let span = call.span;
         let origin = self.origin(span, view);
+        if call.condition.is_none() && initial {
+            let mut actions = Vec::new();
+            self.algorithm_action(call, view, &mut actions);
+            let conditions = vec![self.instance.exprs.intern(Node::Initial)];
+            self.flat.whens.push(When { branches: vec![WhenBranch { conditions, actions }], origin });
+            return;
+        }
         let Some(mut assert) = assert_of(self.instance, call, origin) else {
-            self.bad_call(span, "`terminate` can only stand inside a `when`");
+            self.only_in_when("terminate", span);
             return;
         };
         if initial {
@@ -657,13 +676,13 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
         }
     }
 
-    /// What a variable holds before the section: its `pre` value if discrete, its start value else.
-    fn algorithm_start(&mut self, own: &Val, discrete: bool) -> Val {
+    /// What the variables that the section assigns hold before it: their `pre` value if discrete, their start value else.
+    fn algorithm_start(&mut self, own: &Val, assigned: &FxHashSet<ExprId>, in_when: &FxHashSet<ExprId>) -> Val {
         let variables = &self.flat.variables;
         let pool = &mut self.instance.exprs;
         own.map(&mut |e, ty| match pool.node(e) {
-            Node::Var(v) if discrete || ty != Type::Real => pool.pre(v),
-            Node::Var(v) => match variables[v.index()].variability {
+            Node::Var(v) if in_when.contains(&e) || ty != Type::Real && assigned.contains(&e) => pool.pre(v),
+            Node::Var(v) if assigned.contains(&e) => match variables[v.index()].variability {
                 Variability::Discrete => pool.pre(v),
                 _ => variables[v.index()].start.unwrap_or(Exprs::ZERO),
             },
@@ -671,43 +690,42 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
         })
     }
 
-    #[allow(clippy::too_many_arguments, reason = "the pieces of one section")]
+    /// The equations that the section comes to, for all that it does not hold between the events of its `when`s.
     fn section_results(
         &mut self,
-        originals: &[(Symbol, Val)],
+        originals: &[Assigned],
         results: &[Val],
         whens: &[AlgorithmWhen],
-        in_when: &[&'a ast::ReferencePart],
         view: View,
         section: &'a [Statement],
         initial: bool,
     ) {
         let span = section.first().map_or(self.flat.instances[0].span, |s| s.span);
-        for ((name, own), result) in originals.iter().zip(results) {
+        for (Assigned { name, own, in_when }, result) in originals.iter().zip(results) {
             let held = whens.iter().any(|w| w.branches.iter().any(|b| b.values.iter().any(|(n, _)| n == name)));
-            if held && in_when.iter().any(|p| p.name.name == *name) {
-                continue;
-            }
             let mut pairs = Vec::new();
             own.zip(result, &mut |x, y, _| {
-                pairs.push(Pair { lhs: x, rhs: y, span });
+                // a variable that nothing assigns is what it was
+                if x != y && !(held && in_when.contains(&x)) {
+                    pairs.push(Pair { lhs: x, rhs: y, span });
+                }
                 x
             });
             self.push(pairs, view, initial);
         }
     }
 
-    fn algorithm_when(&mut self, when: AlgorithmWhen, originals: &[(Symbol, Val)], view: View) {
+    fn algorithm_when(&mut self, when: AlgorithmWhen, originals: &[Assigned], view: View) {
         let origin = self.origin(when.span, view);
         let mut made = When { branches: Vec::new(), origin };
         for branch in when.branches {
             let mut actions = Vec::new();
             for (name, value) in &branch.values {
-                let Some((_, own)) = originals.iter().find(|(n, _)| n == name) else { continue };
+                let Some(Assigned { own, in_when, .. }) = originals.iter().find(|o| o.name == *name) else { continue };
                 let (mut to, mut from) = (Vec::new(), Vec::new());
                 own.scalars(&mut to);
                 value.scalars(&mut from);
-                for (t, value) in to.into_iter().zip(from) {
+                for (t, value) in to.into_iter().zip(from).filter(|(t, _)| in_when.contains(t)) {
                     if let Node::Var(variable) = self.instance.exprs.node(t) {
                         actions.push(WhenAction::Assign { variable, value, origin });
                     }
@@ -722,19 +740,42 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
     }
 }
 
+/// An element of which an algorithm section assigns something.
+struct Assigned {
+    name: Symbol,
+    /// Its variables.
+    own: Val,
+    /// Those that are assigned in a `when`.
+    in_when: FxHashSet<ExprId>,
+}
+
+/// The scalars of a value that references name, which begin below it; of an array all, whatever its indices say.
+fn scalars_of(value: &Val, targets: &[&[ast::ReferencePart]], found: &mut FxHashSet<ExprId>) {
+    match value {
+        _ if targets.iter().any(|parts| parts.is_empty()) => found.extend(value.all_scalars()),
+        Val::Array { elements, .. } => elements.iter().for_each(|element| scalars_of(element, targets, found)),
+        Val::Record(record) => {
+            for (name, field) in &record.fields {
+                let below: Vec<&[ast::ReferencePart]> =
+                    targets.iter().filter(|parts| parts[0].name.name == *name).map(|parts| &parts[1..]).collect();
+                if !below.is_empty() {
+                    scalars_of(field, &below, found);
+                }
+            }
+        }
+        _ => {}
+    }
+}
+
 /// Several `when`s of an algorithm that assign one variable become one: of those that fire at once the last one counts
 /// (MLS 11.2.7). Where one of them reads what another one assigns, or a branch leaves the variable alone, they stay as they
 /// are, and the variable is determined twice.
-fn in_order(
-    instance: &Instance<'_, '_>,
-    mut whens: Vec<AlgorithmWhen>,
-    originals: &[(Symbol, Val)],
-) -> Vec<AlgorithmWhen> {
+fn in_order(instance: &Instance<'_, '_>, mut whens: Vec<AlgorithmWhen>, originals: &[Assigned]) -> Vec<AlgorithmWhen> {
     let assigned = |w: &AlgorithmWhen| -> Vec<Symbol> {
         w.branches.iter().flat_map(|b| &b.values).map(|(name, _)| *name).collect()
     };
     let read = |w: &AlgorithmWhen, name: Symbol| {
-        let own = originals.iter().find(|(n, _)| *n == name).map(|(_, v)| v.all_scalars()).unwrap_or_default();
+        let own = originals.iter().find(|o| o.name == name).map(|o| o.own.all_scalars()).unwrap_or_default();
         let values: Vec<ExprId> =
             w.branches.iter().flat_map(|b| &b.values).flat_map(|(_, v)| v.all_scalars()).collect();
         let before = instance.exprs.dependencies(&values).pres;

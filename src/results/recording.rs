@@ -18,6 +18,8 @@ use crate::units::Unit;
 pub enum Strictness<'a> {
     /// Every column is read. Empty cells, words (`true`, literals) and rows of equal time are fine.
     Result,
+    /// Only these columns are read, and must hold numbers. Time must not fall and have no gaps; rows of equal time are jumps.
+    Inputs(&'a [String]),
     /// Only these columns are read. Time must grow without gaps; cells of `inputs` must all hold numbers, those of
     /// `outputs` may be empty.
     Recording {
@@ -59,6 +61,7 @@ pub fn read_csv(
     };
     let strict = strictness != Strictness::Result;
     let mut reader = Reader::new(file, time, &wanted, head.width, strict, rows.decimal_comma());
+    reader.jumps = matches!(strictness, Strictness::Inputs(_));
     let mut first = true;
     while rows.next_row(&mut cells) {
         if !(std::mem::take(&mut first) && head.take_units(&cells, time, rows.decimal_comma())) {
@@ -157,6 +160,7 @@ impl Head {
         };
         let wanted = match strictness {
             Strictness::Result => self.all_but(time)?,
+            Strictness::Inputs(inputs) => self.named(inputs, &[])?,
             Strictness::Recording { inputs, outputs } => self.named(inputs, outputs)?,
         };
         Ok((time, wanted))
@@ -284,6 +288,8 @@ struct Reader {
     time: usize,
     width: usize,
     strict: bool,
+    /// Whether rows may have equal times all the same.
+    jumps: bool,
     decimal_comma: bool,
     times: Vec<f64>,
     time_places: Vec<Range<usize>>,
@@ -305,6 +311,7 @@ impl Reader {
             time,
             width,
             strict,
+            jumps: false,
             decimal_comma,
             times: Vec::new(),
             time_places: Vec::new(),
@@ -348,7 +355,7 @@ impl Reader {
             let said = format!("{} after {}", number::text(time), number::text(last));
             if time < last {
                 self.fault(Fault::TimeFalls, 0, &cell.place, said);
-            } else if time == last && self.strict {
+            } else if time == last && self.strict && !self.jumps {
                 self.fault(Fault::TimeStands, 0, &cell.place, said);
             }
         }

@@ -23,7 +23,8 @@ pub enum Interpolation {
 pub struct Input {
     /// The input variable.
     pub variable: VarId,
-    /// Times of the samples in seconds, growing; may be shared between inputs.
+    /// Times of the samples in seconds, none before the last one; may be shared between inputs. Of several samples at one time
+    /// the first is where the input arrives, the last where it goes on from.
     pub times: Arc<[f64]>,
     /// Values, in the variable's unit, as many as times.
     pub values: Arc<[f64]>,
@@ -126,20 +127,19 @@ impl Playback {
         }
     }
 
-    /// The next time after `t` at which a held input or a delayed value jumps.
+    /// The next time after `t` at which an input or a delayed value jumps.
     pub fn next_jump(&self, t: f64) -> f64 {
-        self.next(t, Interpolation::Held).min(self.delays.next_jump(t))
+        self.next(t, Track::jumps).min(self.delays.next_jump(t))
     }
 
     /// The next time after `t` at which a linear input or a delayed value bends.
     pub fn next_kink(&self, t: f64) -> f64 {
-        let linear = if self.any_linear { self.next(t, Interpolation::Linear) } else { f64::INFINITY };
+        let linear = if self.any_linear { self.next(t, Track::bends) } else { f64::INFINITY };
         linear.min(self.delays.next_bend(t))
     }
 
-    fn next(&self, t: f64, kind: Interpolation) -> f64 {
-        let tracks = self.tracks.iter().filter(|track| track.input.interpolation == kind);
-        tracks.map(|track| track.next_change(t)).fold(f64::INFINITY, f64::min)
+    fn next(&self, t: f64, changes: impl Fn(&Track, usize) -> bool) -> f64 {
+        self.tracks.iter().map(|track| track.next_change(t, &changes)).fold(f64::INFINITY, f64::min)
     }
 }
 
@@ -156,24 +156,34 @@ impl Track {
         }
     }
 
-    /// The time of the next sample that brings another value, or another slope.
-    fn next_change(&self, t: f64) -> f64 {
+    /// Whether the value changes at sample `k`: of a linear input where there are two samples at one time.
+    fn jumps(&self, k: usize) -> bool {
         let (times, samples) = (&self.input.times, &self.input.values);
-        (self.at + 1..times.len())
-            .find(|&k| {
-                let changes = match self.input.interpolation {
-                    Interpolation::Held => samples[k] != samples[self.at],
-                    Interpolation::Linear => true,
-                };
-                changes && times[k] > t && !same_time(times[k], t)
-            })
-            .map_or(f64::INFINITY, |k| times[k])
+        match self.input.interpolation {
+            Interpolation::Held => samples[k] != samples[self.at],
+            Interpolation::Linear => same_time(times[k], times[k - 1]) && samples[k] != samples[k - 1],
+        }
+    }
+
+    /// Whether the slope may change at sample `k`.
+    fn bends(&self, _: usize) -> bool {
+        self.input.interpolation == Interpolation::Linear
+    }
+
+    /// The time of the next sample at which something changes.
+    fn next_change(&self, t: f64, changes: &impl Fn(&Track, usize) -> bool) -> f64 {
+        let times = &self.input.times;
+        let next = (self.at + 1..times.len()).find(|&k| changes(self, k) && times[k] > t && !same_time(times[k], t));
+        next.map_or(f64::INFINITY, |k| times[k])
     }
 }
 
 /// Value and slope on the line that starts at sample `at`; constant outside the samples.
 fn line(times: &[f64], samples: &[f64], at: usize, t: f64) -> (f64, f64) {
-    if at + 1 >= times.len() || t < times[0] {
+    if t < times[0] {
+        return (samples[0], 0.0);
+    }
+    if at + 1 >= times.len() {
         return (samples[at], 0.0);
     }
     let slope = (samples[at + 1] - samples[at]) / (times[at + 1] - times[at]);
@@ -186,13 +196,17 @@ mod tests {
     use crate::structure::Dae;
 
     fn playback(interpolation: Interpolation) -> (Playback, Vec<f64>) {
+        playback_of(interpolation, &[(1.0, 10.0), (2.0, 20.0), (3.0, 20.0), (5.0, 0.0)])
+    }
+
+    fn playback_of(interpolation: Interpolation, samples: &[(f64, f64)]) -> (Playback, Vec<f64>) {
         let dae = Dae { variables: vec![crate::solve::tests::variable("u")], ..Dae::default() };
         let layout = Layout::new(&dae);
         let values = layout.values();
         let input = Input {
             variable: VarId(0),
-            times: Arc::from([1.0, 2.0, 3.0, 5.0]),
-            values: Arc::from([10.0, 20.0, 20.0, 0.0]),
+            times: samples.iter().map(|s| s.0).collect(),
+            values: samples.iter().map(|s| s.1).collect(),
             interpolation,
         };
         (Playback::new(&[input], &layout), values)
@@ -222,5 +236,25 @@ mod tests {
         }
         p.seek(2.0, &mut values);
         assert_eq!(p.next_kink(2.0), 3.0);
+        assert_eq!(p.next_jump(2.0), f64::INFINITY);
+    }
+
+    #[test]
+    fn two_samples_at_one_time_are_a_jump() {
+        let samples = [(0.0, 0.0), (2.0, 20.0), (2.0, 0.0), (4.0, 40.0), (4.0, 50.0)];
+        for (interpolation, before, after, end) in
+            [(Interpolation::Linear, 10.0, 20.0, 50.0), (Interpolation::Held, 0.0, 0.0, 50.0)]
+        {
+            let (mut p, mut values) = playback_of(interpolation, &samples);
+            for (t, u) in [(1.0, before), (2.0, 0.0), (3.0, after), (4.0, end), (9.0, end)] {
+                assert_eq!(at(&mut p, &mut values, t), u, "{interpolation:?} {t}");
+            }
+            p.seek(2.0, &mut values);
+            assert_eq!(p.next_jump(2.0), 4.0);
+        }
+        let (mut p, mut values) = playback_of(Interpolation::Linear, &samples);
+        p.seek(1.0, &mut values);
+        p.set(2.0, &mut values);
+        assert_eq!(values[p.tracks[0].slot], 20.0, "arrives at the first of the two");
     }
 }

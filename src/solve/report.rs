@@ -4,8 +4,8 @@ use super::blocks::BlockFailure;
 use super::continuity::Jump;
 use super::newton::{NewtonFailure, Reason};
 use crate::diag::{Code, Diagnostic};
-use crate::expr::{ExprId, VarId};
-use crate::flat::{Message, MessagePart, Origin, Type};
+use crate::expr::{ExprId, Node, VarId};
+use crate::flat::{Equation, Message, MessagePart, Origin, Type};
 use crate::lower::{System, Trap};
 use crate::structure::{Block, Dae, Loop, Unknown, places};
 
@@ -213,6 +213,18 @@ fn loop_failure(system: &System, code: Code, failure: &NewtonFailure, values: &[
     };
     let rows = failure.unknowns.iter().take(ROWS).map(|&(u, from, to)| [name(dae, u), number(from), number(to)]);
     let residual = failure.residuals.first().map_or(0.0, |r| r.1);
+    if let (Reason::Singular(_), Some(v)) =
+        (&failure.reason, dae.equations.get(worst as usize).and_then(|e| one_sided(dae, e)))
+    {
+        let v = &dae.variables[v.index()].name;
+        return equation_diagnostic(dae, code, text, worst)
+            .note(format!(
+                "`{v}` is a state in one branch of an `if` only, and a circuit has the same states all the time"
+            ))
+            .help(format!(
+                "write an equation for `der({v})` in every branch, and set `{v}` by `reinit` where it jumps"
+            ));
+    }
     equation_diagnostic(dae, code, text, worst)
         .note(table(["unknown", "first guess", "now"], rows))
         .note(format!(
@@ -221,6 +233,16 @@ fn loop_failure(system: &System, code: Code, failure: &NewtonFailure, values: &[
             number(residual)
         ))
         .help("give `start` values near the solution and `nominal` values of the right size to the unknowns above")
+}
+
+/// A variable whose derivative stands in one branch of an `if` of an equation and not in the other.
+fn one_sided(dae: &Dae, equation: &Equation) -> Option<VarId> {
+    let nodes = dae.exprs.reachable(&[equation.lhs, equation.rhs], |_| true);
+    nodes.into_iter().find_map(|e| {
+        let Node::If(_, a, b) = dae.exprs.node(e) else { return None };
+        let (a, b) = (dae.exprs.derivatives(a), dae.exprs.derivatives(b));
+        a.iter().find(|v| !b.contains(v)).or_else(|| b.iter().find(|v| !a.contains(v))).copied()
+    })
 }
 
 /// The operation behind a residual that is not finite, with its equation: what follows explicitly in its loop comes
@@ -277,12 +299,14 @@ fn no_pressure_level(dae: &Dae, l: &Loop) -> Option<Diagnostic> {
     }
     let text = format!("nothing fixes the pressure level of {{{}}}", owners.join(", "));
     let place = places::place_of(&dae.variables, &dae.instances, first);
+    let line = owners.iter().find(|o| dae.variables.iter().any(|v| v.name == format!("{o}.volume_a")));
+    let at_line = line.map_or(String::new(), |l| format!("; at an end of `{l}`, `volume_a` or `volume_b` is one"));
     let label = format!("`{}` and the others hang on each other alone", variable(first).name);
     Some(
         Diagnostic::new(Code::NoReference, text)
             .at(place, label)
             .note("no pressure from elsewhere enters their equations, and what the density changes with pressure does not fix it")
-            .help("connect a tank, a volume or a fixed pressure to one of these nodes"),
+            .help(format!("connect a tank, a volume or a fixed pressure to one of these nodes{at_line}")),
     )
 }
 

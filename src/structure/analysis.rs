@@ -9,8 +9,8 @@ use super::solve_block::BlockSolver;
 use super::sorting::{Columns, System, SystemRow};
 use super::{
     ActionKind, Alias, Assign, Block, Conserved, Dae, Selection, StateChoice, Unknown, alias, assertions, cancelling,
-    closed_groups, conserved, delays, discrete, dummy_derivatives, duplicates, events, held, initial, messages,
-    parameters, regularity, start_derivatives, zeros,
+    closed_groups, conserved, delays, dependence, discrete, dummy_derivatives, duplicates, events, held, initial,
+    messages, parameters, regularity, start_derivatives, zeros,
 };
 use crate::diag::{Checked, Diagnostic};
 use crate::expr::{Node, VarId};
@@ -81,7 +81,7 @@ fn run(
         return Err(messages::closed_group(&draft, &aliases, &flows));
     }
 
-    let mut reduction = Reduction::new(&mut draft);
+    let mut reduction = dependence::expose(&mut draft, &mut known, !flat.varied)?;
     reduction.reduce(&mut draft)?;
     diagnostics.extend(held::find(&draft, &reduction, &aliases));
     let chosen = dummy_derivatives::select(&mut draft, &reduction, &values, choice);
@@ -96,7 +96,7 @@ fn run(
     let with_derivatives = start_derivatives::add(&mut draft, &running, &states.states)?;
     let at_start = with_derivatives.as_ref().unwrap_or(&running);
     let model = initial::Model { running: at_start, states: &states.states, demoted: &states.demoted };
-    let start = initial::assemble(&mut draft, &model);
+    let start = initial::assemble(&mut draft, &mut known, &model);
     diagnostics.extend(start.diagnostics);
     let further = zeros::decisive(&mut draft, &mut known, [&running, &start.system]);
     blocks.sort_initial(&mut draft, &mut known, &start.system);

@@ -7,8 +7,9 @@
 use super::draft::{Draft, Role, RowKind};
 use super::incidence::{Incidence, NONE, Scanner};
 use super::matching::{Augmenter, Matching};
+use super::parameters::{self, Known};
 use super::sorting::{Columns, System, SystemRow};
-use super::{Unknown, delays, discrete, messages, parameters};
+use super::{Unknown, delays, dependence, discrete, messages};
 use crate::diag::Diagnostic;
 use crate::expr::{ExprId, Exprs, Node, VarId};
 use crate::flat::{Equation, Origin, OriginKind, StateSelect, Variability};
@@ -44,13 +45,13 @@ pub(super) struct Model<'a> {
 }
 
 /// Sets up and matches the initial system.
-pub(super) fn assemble(draft: &mut Draft, model: &Model) -> Start {
+pub(super) fn assemble(draft: &mut Draft, known: &mut Known, model: &Model) -> Start {
     let mut assembly = Assembly::new(draft, model);
     assembly.model_rows(draft, model);
     assembly.initial_equations(draft);
     assembly.fixed_starts(draft, model);
     assembly.discrete_defaults(draft);
-    assembly.choose_starts(draft, model);
+    assembly.choose_starts(draft, known, model);
     assembly.check_said_starts(draft, model);
     assembly.finish(draft)
 }
@@ -126,7 +127,7 @@ impl Assembly {
     }
 
     fn augment(&mut self, row: u32) -> bool {
-        self.augmenter.augment(&self.incidence, &mut self.matching, row, |_| true)
+        self.augmenter.augment(&self.incidence, &mut self.matching, row, |_, _, _| true)
     }
 
     /// The equations of the model, matched as they are when the model runs wherever possible.
@@ -281,19 +282,23 @@ impl Assembly {
     }
 
     /// Starts of states, best first, then of other unknowns, until everything is determined.
-    fn choose_starts(&mut self, draft: &mut Draft, model: &Model) {
+    fn choose_starts(&mut self, draft: &mut Draft, known: &mut Known, model: &Model) {
         let mut missing = self.matching.row_of.iter().filter(|&&r| r == NONE).count();
         if missing == 0 {
             return;
         }
+        let first = self.rows.len();
         for v in self.start_candidates(draft, model) {
-            if missing == 0 {
-                return;
-            }
             let row = self.push_start(draft, v);
             if self.augment(row) {
                 self.chosen.push(v);
                 missing -= 1;
+            }
+            if missing == 0 {
+                missing = self.give_up_what_follows(draft, known, first);
+            }
+            if missing == 0 {
+                return;
             }
         }
         let open = (0..self.columns.len()).filter(|&c| self.matching.row_of[c] == NONE);
@@ -301,6 +306,22 @@ impl Assembly {
         if !open.is_empty() && self.diagnostics.is_empty() {
             self.diagnostics.push(messages::initially_undetermined(draft, &open));
         }
+    }
+
+    /// Takes back chosen starts, in rows from `first` on, of what the other rows determine beyond their structure; how many.
+    fn give_up_what_follows(&mut self, draft: &Draft, known: &mut Known, first: usize) -> usize {
+        let matched: Vec<usize> = (0..self.rows.len())
+            .filter(|&row| self.matching.column_of[row] != NONE && !self.rows[row].discrete)
+            .collect();
+        let equations: Vec<Equation> = matched.iter().map(|&row| self.rows[row].equation).collect();
+        let follows = dependence::following(draft, known, &equations, |leaf| self.places.of_node(leaf));
+        let chosen: Vec<usize> = follows.into_iter().map(|i| matched[i]).filter(|&row| row >= first).collect();
+        for &row in &chosen {
+            let column = std::mem::replace(&mut self.matching.column_of[row], NONE);
+            self.matching.row_of[column as usize] = NONE;
+            self.chosen.retain(|&v| draft.exprs.node(self.rows[row].equation.lhs) != Node::Var(v));
+        }
+        chosen.len()
     }
 
     /// What the model says of its components holds for a variable that another one took the place of as state, too; but

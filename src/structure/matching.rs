@@ -149,15 +149,15 @@ pub(super) struct Augmenter {
 }
 
 impl Augmenter {
-    /// Matches `row`, moving other rows to other columns as needed; columns for which `usable` says false are left
-    /// alone. If it fails, [`Augmenter::rows_seen`] holds the rows that share too few columns, `row` among them, and
+    /// Matches `row`, moving other rows to other columns as needed; entries (row, position in it, column) for which `usable`
+    /// says false are left alone. If it fails, [`Augmenter::rows_seen`] holds the rows that share too few columns, `row` among them, and
     /// [`Augmenter::columns_seen`] these columns.
     pub fn augment(
         &mut self,
         incidence: &Incidence,
         matching: &mut Matching,
         row: u32,
-        usable: impl Fn(u32) -> bool,
+        usable: impl Fn(u32, usize, u32) -> bool,
     ) -> bool {
         self.begin(incidence.rows(), matching.row_of.len());
         self.see_row(row);
@@ -165,8 +165,8 @@ impl Augmenter {
         while let Some(&(row, position)) = self.path.last() {
             if position == 0 {
                 // Look ahead for a free column before going deeper.
-                let free =
-                    incidence.solvable(row).iter().position(|&c| matching.row_of[c as usize] == NONE && usable(c));
+                let mut entries = incidence.solvable(row).iter().enumerate();
+                let free = entries.position(|(i, &c)| matching.row_of[c as usize] == NONE && usable(row, i, c));
                 if let Some(at) = free {
                     self.path.last_mut().expect("just seen").1 = at as u32 + 1;
                     self.flip(incidence, matching);
@@ -184,14 +184,14 @@ impl Augmenter {
         matching: &Matching,
         row: u32,
         position: u32,
-        usable: &impl Fn(u32) -> bool,
+        usable: &impl Fn(u32, usize, u32) -> bool,
     ) {
         let Some(&c) = incidence.solvable(row).get(position as usize) else {
             self.path.pop();
             return;
         };
         self.path.last_mut().expect("the row being looked at").1 += 1;
-        if self.column_mark[c as usize] == self.stamp || !usable(c) {
+        if self.column_mark[c as usize] == self.stamp || !usable(row, position as usize, c) {
             return;
         }
         self.column_mark[c as usize] = self.stamp;
@@ -273,7 +273,7 @@ mod tests {
             let mut one_by_one = Matching::empty(rows.len(), 6);
             let mut augmenter = Augmenter::default();
             let found = (0..rows.len() as u32)
-                .filter(|&r| augmenter.augment(&incidence, &mut one_by_one, r, |_| true))
+                .filter(|&r| augmenter.augment(&incidence, &mut one_by_one, r, |_, _, _| true))
                 .count();
             prop_assert!(consistent(&rows, &one_by_one));
             prop_assert_eq!(found, best);
@@ -286,7 +286,7 @@ mod tests {
         let mut matching = maximum(&incidence, 3);
         let free = matching.column_of.iter().position(|&c| c == NONE).expect("one too many") as u32;
         let mut augmenter = Augmenter::default();
-        assert!(!augmenter.augment(&incidence, &mut matching, free, |_| true));
+        assert!(!augmenter.augment(&incidence, &mut matching, free, |_, _, _| true));
         augmenter.rows_seen.sort_unstable();
         assert_eq!(augmenter.rows_seen, [0, 2]);
         assert_eq!(augmenter.columns_seen, [0]);

@@ -94,9 +94,45 @@ pub(super) fn not_differentiable(draft: &Draft, equation: &Equation, v: VarId) -
 pub(super) fn cancelling(draft: &Draft, equation: &Equation) -> Diagnostic {
     let message = format!("the equation `{}` determines nothing", sides(draft, equation));
     let made = Diagnostic::new(Code::Singular, message)
-        .at(equation.origin.span, "its unknowns cancel when it is differentiated")
+        .at(equation.origin.span, "its unknowns cancel")
         .help("look for a term that stands on both sides, or write the equation that was meant");
     located(draft, made, equation)
+}
+
+/// Equations whose unknowns cancel when they are added up, while something else is left.
+pub(super) fn contradiction(draft: &Draft, equations: &[Equation], left: ExprId) -> Diagnostic {
+    let message =
+        format!("{} equations contradict each other: together they say `0 = {}`", equations.len(), draft.text(left));
+    with_equations(draft, Diagnostic::new(Code::Overdetermined, message), equations).help(
+        "two ideal sources cannot act on the same quantity: put a resistance or a storage between them, or remove one",
+    )
+}
+
+/// Equations of which one follows from the others, and unknowns that therefore can change together by these parts.
+pub(super) fn repeated(draft: &Draft, equations: &[Equation], free: &[(VarId, f64)]) -> Diagnostic {
+    let message = format!("each of {} equations follows from the others", equations.len());
+    let unknowns: Vec<VarId> = free.iter().map(|(v, _)| *v).collect();
+    let names: Vec<String> = unknowns.iter().map(|&v| name(draft, v)).collect();
+    let together = free.iter().all(|(_, part)| (part - free[0].1).abs() < 1e-9);
+    let flow = unknowns.iter().any(|v| draft.variables[v.index()].flow);
+    let made = Diagnostic::new(Code::Singular, message);
+    let made = with_equations(draft, made, equations);
+    match names.as_slice() {
+        [] => made.help("replace one of them by one that says something new"),
+        [one] => made.note(format!("nothing determines {one}")),
+        _ if together && !flow => {
+            let (level, advice) = kind_of_level(draft, &unknowns);
+            made.note(format!("nothing determines the common {level} of {}", listed(&names))).help(advice)
+        }
+        _ => {
+            let part = |&(v, part): &(VarId, f64)| {
+                format!("{} by {}", name(draft, v), crate::expr::print::number(part, Some(4)))
+            };
+            let parts: Vec<String> = free.iter().map(part).collect();
+            made.note(format!("all equations still hold if these change together: {}", listed(&parts)))
+                .help("add a resistance, a storage or a reference that determines how they share, or remove one of the components")
+        }
+    }
 }
 
 /// `reinit` of something that follows from other quantities.

@@ -11,6 +11,7 @@ mod cancelling;
 mod closed_groups;
 mod conserved;
 mod delays;
+mod dependence;
 mod discrete;
 mod draft;
 mod dulmage_mendelsohn;

@@ -93,6 +93,16 @@ impl Reduction {
         }
     }
 
+    /// Columns that a row holds where it can be solved for them.
+    pub fn solvable(&self, row: u32) -> &[u32] {
+        self.incidence.solvable(row)
+    }
+
+    /// The column of a leaf that is an unknown or its derivative.
+    pub fn column(&self, draft: &Draft, leaf: Node) -> Option<u32> {
+        column(&self.of_var, &self.of_der, &draft.derivative, leaf)
+    }
+
     /// Columns of a row that are derivatives of highest order.
     pub fn highest(&self, row: u32) -> impl Iterator<Item = u32> {
         self.incidence.solvable(row).iter().copied().filter(|&c| self.columns[c as usize].derivative == NONE)
@@ -144,17 +154,7 @@ impl Reduction {
         let row = self.equations.len() as u32;
         let Equation { lhs, rhs, .. } = draft.equations[equation as usize];
         let (of_var, of_der, derivative) = (&self.of_var, &self.of_der, &draft.derivative);
-        let column = |node: Node| {
-            let found = match node {
-                Node::Var(v) => of_var[v.index()],
-                Node::Der(v) => match derivative[v.index()] {
-                    Some(w) => of_var[w.variable.index()],
-                    None => of_der[v.index()],
-                },
-                _ => NONE,
-            };
-            (found != NONE).then_some(found)
-        };
+        let column = |node: Node| column(of_var, of_der, derivative, node);
         self.scanner.push(&draft.exprs, [lhs, rhs], column, |_| true, &mut self.incidence);
         self.equations.push(equation);
         self.derivative.push(NONE);
@@ -181,7 +181,7 @@ impl Reduction {
             let mut row = first;
             while matching.column_of[row as usize] == NONE {
                 let columns = &self.columns;
-                let highest = |c: u32| columns[c as usize].derivative == NONE;
+                let highest = |_, _, c: u32| columns[c as usize].derivative == NONE;
                 if augmenter.augment(&self.incidence, &mut matching, row, highest) {
                     break;
                 }
@@ -199,7 +199,7 @@ impl Reduction {
     }
 
     /// A largest matching with the derivatives of highest order.
-    fn first_matching(&self) -> Matching {
+    pub fn first_matching(&self) -> Matching {
         let mut highest = Incidence::default();
         let mut columns = Vec::new();
         for row in 0..self.equations.len() as u32 {
@@ -280,6 +280,31 @@ impl Reduction {
         self.of_der[v.index()] = made;
     }
 
+    /// The derivative of this order of the variable of a column that is no derivative.
+    pub fn derivative_of(&mut self, draft: &mut Draft, mut column: u32, order: u32) -> ExprId {
+        for _ in 0..order {
+            if self.columns[column as usize].derivative == NONE {
+                self.add_derivative(draft, column);
+            }
+            column = self.columns[column as usize].derivative;
+        }
+        self.leaf(&mut draft.exprs, column)
+    }
+
+    /// The derivative of a part of an equation.
+    pub fn differentiate(&mut self, draft: &mut Draft, equation: &Equation, e: ExprId) -> Result<ExprId, Diagnostic> {
+        for x in draft.exprs.derivatives(e) {
+            if let Some(column) = self.column(draft, Node::Der(x)) {
+                self.materialize(draft, column);
+            }
+        }
+        let derivative = self.differentiate_side(draft, e);
+        match undifferentiable(draft, [derivative, Exprs::ZERO]) {
+            Some(v) => Err(messages::not_differentiable(draft, equation, v)),
+            None => Ok(derivative),
+        }
+    }
+
     /// The variable of a column; a derivative becomes a variable of its own, named as the user would write it.
     pub fn materialize(&mut self, draft: &mut Draft, column: u32) -> VarId {
         let x = match self.columns[column as usize].unknown {
@@ -314,6 +339,20 @@ impl Reduction {
         let mut leaf = |pool: &mut Exprs, leaf: Leaf| Some(leaf_derivative(pool, roles, links, leaf));
         self.time_derivative.derive(&mut draft.exprs, e, &mut leaf).expect("every leaf has an answer")
     }
+}
+
+/// The column of a leaf.
+fn column(of_var: &[u32], of_der: &[u32], links: &[Option<Signed>], leaf: Node) -> Option<u32> {
+    let place = |of: &[u32], v: VarId| of.get(v.index()).copied();
+    let found = match leaf {
+        Node::Var(v) => place(of_var, v),
+        Node::Der(v) => match links[v.index()] {
+            Some(w) => place(of_var, w.variable),
+            None => place(of_der, v),
+        },
+        _ => None,
+    };
+    found.filter(|&c| c != NONE)
 }
 
 /// The time derivative of a variable or of a derivative that is a variable. What has none is marked, since it may stand

@@ -1,4 +1,4 @@
-//! E301 at 8: "its unknowns cancel when it is differentiated"
+//! E301 at 8: "its unknowns cancel"
 model M
   Real x;
   Real y;

@@ -4,6 +4,7 @@ mod accuracy;
 mod checkpoint;
 #[path = "../disk/mod.rs"]
 mod disk;
+mod networks;
 mod robust;
 mod stepping;
 mod stiff;

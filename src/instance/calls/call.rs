@@ -354,7 +354,8 @@ impl<'a> Instance<'a, '_> {
             body.algorithms
                 .iter()
                 .for_each(|s| crate::instance::algorithm::assigned(s, false, &mut targets, &mut in_when));
-            if let Some(part) = targets.iter().find(|p| inputs.iter().any(|f| f.name == p.name.name)) {
+            let names = targets.iter().map(|r| &r.parts[0]);
+            if let Some(part) = names.into_iter().find(|p| inputs.iter().any(|f| f.name == p.name.name)) {
                 let message =
                     format!("`{}` is an input of `{}` and cannot be assigned to", part.name.name, callee.name);
                 let d = Diagnostic::new(Code::TypeMismatch, message).at(part.name.span, "assigned here");

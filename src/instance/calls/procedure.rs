@@ -206,11 +206,11 @@ impl<'a> Instance<'a, '_> {
     fn assigned_locals(&mut self, s: &'a Statement) -> Option<Vec<usize>> {
         let (mut targets, mut in_when) = (Vec::new(), Vec::new());
         assigned(std::slice::from_ref(s), false, &mut targets, &mut in_when);
-        if let Some(part) = in_when.first() {
+        if let Some(target) = in_when.first() {
             let message = "a `when` cannot stand in a loop that runs as often as changing values say";
-            return self.fail(Code::Unsupported, message, part.name.span);
+            return self.fail(Code::Unsupported, message, target.parts[0].name.span);
         }
-        let mut changed: Vec<usize> = targets.iter().filter_map(|p| self.local(p.name.name)).collect();
+        let mut changed: Vec<usize> = targets.iter().filter_map(|r| self.local(r.parts[0].name.name)).collect();
         changed.sort_unstable();
         changed.dedup();
         Some(changed)

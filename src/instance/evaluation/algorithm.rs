@@ -632,16 +632,16 @@ impl<'a> Instance<'a, '_> {
     }
 }
 
-/// First parts of the names assigned in statements: outside `when`, and inside.
+/// What is assigned in statements: outside `when`, and inside.
 pub fn assigned<'a>(
     statements: &'a [Statement],
     inside: bool,
-    always: &mut Vec<&'a ReferencePart>,
-    in_when: &mut Vec<&'a ReferencePart>,
+    always: &mut Vec<&'a Reference>,
+    in_when: &mut Vec<&'a Reference>,
 ) {
     let mut note = |e: &'a Expr| {
         if let ExprKind::Reference(r) = &e.kind {
-            if inside { in_when.push(&r.parts[0]) } else { always.push(&r.parts[0]) }
+            if inside { in_when.push(r) } else { always.push(r) }
         }
     };
     for s in statements {

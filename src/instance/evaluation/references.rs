@@ -37,7 +37,9 @@ impl<'a> Instance<'a, '_> {
     pub(in crate::instance) fn reference(&mut self, r: &'a Reference, view: View) -> Option<Val> {
         let first = &r.parts[0];
         if !r.global {
-            if let Some(i) = self.local(first.name.name) {
+            if let Some(i) = self.local(first.name.name)
+                && !(self.eval.section.contains(&i) && lies_beside(&self.eval.locals[i].1, r))
+            {
                 let value = self.eval.locals[i].1.clone();
                 return self.local_part(value, r, view);
             }
@@ -554,6 +556,19 @@ impl<'a> Instance<'a, '_> {
         }
         Some(Val::Scalar(self.exprs.var(id), ty))
     }
+}
+
+/// Whether a reference names a variable of a component that is no value, of which an algorithm section assigns other ones.
+fn lies_beside(mut value: &Val, r: &Reference) -> bool {
+    for part in &r.parts[1..] {
+        value = value.elements().first().unwrap_or(value);
+        let Val::Record(record) = value else { return false };
+        match record.fields.iter().find(|(name, _)| *name == part.name.name) {
+            Some((_, field)) => value = field,
+            None => return true,
+        }
+    }
+    false
 }
 
 pub(in crate::instance) enum Descent<'a> {

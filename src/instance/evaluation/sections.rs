@@ -4,10 +4,11 @@ use crate::instance::algorithm::{AlgorithmCall, AlgorithmWhen};
 use crate::instance::deduce::Body;
 use crate::instance::evaluation::state::Work;
 use crate::instance::lookup::Found;
-use crate::instance::value::Val;
-use crate::instance::{Instance, View};
-use crate::syntax::ast::{Equation, Expr, Iterator as LoopIterator, ReferencePart, Statement};
+use crate::instance::value::{Record, Val};
+use crate::instance::{Instance, Node, NodeId, View};
+use crate::syntax::ast::{ClassKind, Equation, Expr, Iterator as LoopIterator, Reference, ReferencePart, Statement};
 use crate::syntax::symbol::Symbol;
+use std::rc::Rc;
 
 impl<'a> Instance<'a, '_> {
     /// Runs something for every value of the iterators, innermost last.
@@ -47,19 +48,56 @@ impl<'a> Instance<'a, '_> {
         std::mem::replace(&mut self.eval.mode.no_event, off)
     }
 
-    /// The whole value of an element named in an algorithm section.
-    pub fn element_value(&mut self, view: View, part: &ReferencePart) -> Option<Val> {
-        match self.lookup(view, part.name.name) {
+    /// The value of an element of which an algorithm section assigns these parts; of a component that is no value only these.
+    pub fn assigned_value(&mut self, view: View, targets: &[&'a Reference]) -> Option<Val> {
+        let first = &targets.first()?.parts[0];
+        match self.lookup(view, first.name.name) {
             Some(Found::Component(scope, index)) => {
                 let node = self.component(scope, index)?;
-                self.node_value(node, part.name.span)
+                let parts: Vec<&'a [ReferencePart]> = targets.iter().map(|r| &r.parts[1..]).collect();
+                self.assigned_parts(node, &parts, first)
             }
             _ => {
                 let names = self.visible_names(view);
-                self.unknown_name(part.name.name, part.name.span, &names);
+                self.unknown_name(first.name.name, first.name.span, &names);
                 None
             }
         }
+    }
+
+    /// What these references, which begin below it, name of a node.
+    fn assigned_parts(&mut self, node: NodeId, targets: &[&'a [ReferencePart]], named: &ReferencePart) -> Option<Val> {
+        let scope = match self.node(node) {
+            Node::Object(scope) => *scope,
+            Node::Array { dims, elements, .. } if matches!(self.node(elements.first().copied()?), Node::Object(_)) => {
+                let (dims, elements) = (dims.clone(), elements.clone());
+                let values: Option<Vec<Val>> =
+                    elements.iter().map(|&node| self.assigned_parts(node, targets, named)).collect();
+                return Some(Val::array(dims, values?));
+            }
+            _ => return self.node_value(node, named.name.span),
+        };
+        let template = self.scope(scope).template.clone();
+        let is_value = matches!(template.kind, ClassKind::Record { .. } | ClassKind::Connector { .. });
+        if is_value || targets.iter().any(|parts| parts.is_empty()) {
+            return self.node_value(node, named.name.span);
+        }
+        let mut fields: Vec<(Symbol, Val)> = Vec::new();
+        for part in targets.iter().map(|parts| &parts[0]) {
+            if fields.iter().any(|(name, _)| *name == part.name.name) {
+                continue;
+            }
+            let element = template.elements.iter().position(|e| e.name == part.name.name);
+            let Some(node) = element.and_then(|i| self.component(scope, i as u32)) else {
+                let names: Vec<Symbol> = template.elements.iter().map(|e| e.name).collect();
+                self.unknown_name(part.name.name, part.name.span, &names);
+                return None;
+            };
+            let below = targets.iter().filter(|parts| parts[0].name.name == part.name.name).map(|parts| &parts[1..]);
+            let below: Vec<&'a [ReferencePart]> = below.collect();
+            fields.push((part.name.name, self.assigned_parts(node, &below, part)?));
+        }
+        Some(Val::Record(Rc::new(Record { fields, class: None })))
     }
 
     /// Carries out an algorithm section of the model on the `count` locals that were pushed for it.

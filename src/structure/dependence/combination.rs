@@ -1,0 +1,225 @@
+//! A combination of equations as an equation.
+
+use super::super::draft::{Draft, Role};
+use super::super::pantelides::Reduction;
+use super::super::parameters::{self, Known};
+use super::Jacobian;
+use super::elimination::{CANCELLED, Combination};
+use super::linear::{Factor, Linear};
+use super::offsets::Place;
+use crate::diag::Diagnostic;
+use crate::expr::{ExprId, Exprs};
+use crate::flat::Equation;
+
+/// The sum of some equations, each differentiated so often that their derivatives of highest order cancel.
+pub(super) struct Combined {
+    /// The rows of the Jacobian that take part.
+    pub rows: Vec<usize>,
+    /// The one whose place the sum takes.
+    pub replaced: usize,
+    /// Unknowns and their derivatives with their factors.
+    terms: Vec<(Place, Factor)>,
+    /// All other terms, how often they are differentiated, and their factors.
+    rest: Vec<((ExprId, u32), Factor)>,
+}
+
+impl Combined {
+    /// `None` where the rows depend on each other by values only: of what changes, or of parameters that may not be fixed.
+    pub fn new(
+        draft: &mut Draft,
+        known: &mut Known,
+        (jacobian, reduction): (&Jacobian, &Reduction),
+        found: &Combination,
+        fixable: bool,
+    ) -> Option<Self> {
+        let rows: Vec<usize> = found.iter().map(|term| term.0).collect();
+        let mut linear: Vec<Linear> = rows.iter().map(|&row| jacobian.linear(draft, known, reduction, row)).collect();
+        let factors = factors(draft, known, jacobian, found, &mut linear, fixable)?;
+        let offsets = || rows.iter().map(|&row| jacobian.offsets[row]);
+        let least = offsets().min()?;
+        let mut may_be = |i: &usize| {
+            let factor: &Factor = &factors[*i];
+            jacobian.offsets[rows[*i]] == least && factor.expressions().all(|e| known.is_nonzero(&draft.exprs, e))
+        };
+        let place = (0..rows.len()).rev().find(|i| factors[*i].is_number() && may_be(i));
+        let place = place.or_else(|| (0..rows.len()).rev().find(may_be))?;
+        let mut made = Combined { replaced: rows[place], terms: Vec::new(), rest: Vec::new(), rows: rows.clone() };
+        for ((offset, linear), factor) in offsets().zip(&linear).zip(factors) {
+            let times = offset - least;
+            // its derivative would have more terms
+            let varying = |e: ExprId| known.value(&draft.exprs, e).is_none();
+            if times > 0 && linear.terms.iter().flat_map(|t| t.1.expressions()).any(varying) {
+                return None;
+            }
+            for ((chain, order), of_term) in &linear.terms {
+                add_to(&mut made.terms, (*chain, order + times), of_term.clone().times(&factor, 1));
+            }
+            for (e, of_rest) in &linear.rest {
+                add_to(&mut made.rest, (*e, times), of_rest.clone().times(&factor, 1));
+            }
+        }
+        made.is_lower(draft, known, (jacobian, reduction), least).then_some(made)
+    }
+
+    /// Whether no derivative of highest order is left, not in factors either.
+    fn is_lower(
+        &self,
+        draft: &Draft,
+        known: &mut Known,
+        (jacobian, reduction): (&Jacobian, &Reduction),
+        offset: u32,
+    ) -> bool {
+        let mut varying: Vec<ExprId> = Vec::new();
+        for factor in self.terms.iter().map(|t| &t.1).chain(self.rest.iter().map(|t| &t.1)) {
+            varying.extend(factor.expressions().filter(|&e| known.value(&draft.exprs, e).is_none()));
+        }
+        let rest = self.rest.iter().map(|&((e, times), _)| (e, offset + times));
+        let mut parts = rest.chain(varying.iter().map(|&e| (e, offset)));
+        self.terms.iter().all(|(place, _)| !jacobian.is_highest(*place, offset))
+            && parts.all(|(e, offset)| !jacobian.holds_highest(draft, reduction, e, offset))
+    }
+
+    /// What is left where that holds no unknown: 0 where the equations say the same, else what would have to be 0.
+    pub fn contradiction(&self, draft: &mut Draft) -> Option<ExprId> {
+        let mut sum = Exprs::ZERO;
+        for ((e, times), factor) in &self.rest {
+            let found = draft.exprs.dependencies(&[*e]);
+            let unknown = found.vars.iter().chain(&found.ders).any(|v| draft.role(*v) == Role::Continuous);
+            if unknown || *times > 0 {
+                return None;
+            }
+            let factor = factor.expression(&mut draft.exprs);
+            let term = draft.exprs.mul(factor, *e);
+            sum = draft.exprs.add(sum, term);
+        }
+        self.terms.is_empty().then_some(sum)
+    }
+
+    /// Puts the sum in the place of an equation.
+    pub fn write(&self, draft: &mut Draft, reduction: &mut Reduction, at: usize) -> Result<(), Diagnostic> {
+        let equation = draft.equations[at];
+        let mut sum = Exprs::ZERO;
+        let mut add = |draft: &mut Draft, factor: &Factor, e: ExprId| {
+            let factor = factor.expression(&mut draft.exprs);
+            let term = draft.exprs.mul(factor, e);
+            sum = draft.exprs.add(sum, term);
+        };
+        for ((chain, order), factor) in &self.terms {
+            let leaf = reduction.derivative_of(draft, *chain, *order);
+            add(draft, factor, leaf);
+        }
+        for ((e, times), factor) in &self.rest {
+            let mut e = *e;
+            for _ in 0..*times {
+                e = reduction.differentiate(draft, &equation, e)?;
+            }
+            add(draft, factor, e);
+        }
+        draft.equations[at] = Equation { lhs: sum, rhs: Exprs::ZERO, ..equation };
+        Ok(())
+    }
+}
+
+/// Adds a term to the like one, if there is one; what cancels goes.
+fn add_to<T: PartialEq>(terms: &mut Vec<(T, Factor)>, of: T, factor: Factor) {
+    let Some(at) = terms.iter().position(|t| t.0 == of && t.1.is_like(&factor)) else {
+        return terms.push((of, factor));
+    };
+    match sum(&terms[at].1, &factor) {
+        Some(sum) => terms[at].1 = sum,
+        None => drop(terms.swap_remove(at)),
+    }
+}
+
+/// The sum of two like factors; `None` where they cancel.
+fn sum(a: &Factor, b: &Factor) -> Option<Factor> {
+    let number = a.number + b.number;
+    let cancels = number.abs() <= CANCELLED * (a.number.abs() + b.number.abs());
+    (!cancels).then(|| a.clone().with_number(number))
+}
+
+/// The factors by which rows add up to 0 whatever their expressions are worth. Where they do so only with the parameters as
+/// they are, these are fixed if they may be.
+fn factors(
+    draft: &mut Draft,
+    known: &mut Known,
+    jacobian: &Jacobian,
+    found: &Combination,
+    linear: &mut [Linear],
+    fixable: bool,
+) -> Option<Vec<Factor>> {
+    let rows: Vec<Vec<(u32, &Factor)>> =
+        found.iter().zip(&*linear).map(|(&(row, _), linear)| jacobian.entries(row, linear)).collect();
+    let expressions: Vec<ExprId> = rows.iter().flatten().flat_map(|(_, factor)| factor.expressions()).collect();
+    let numbers = || found.iter().map(|&(_, factor)| Factor::number(factor)).collect();
+    if expressions.is_empty() {
+        return Some(numbers());
+    }
+    if let Some(factors) = monomials(&rows) {
+        return Some(with_most_numbers(factors));
+    }
+    if !fixable || expressions.iter().any(|&e| known.value(&draft.exprs, e).is_none()) {
+        return None;
+    }
+    let parameters = draft.exprs.dependencies(&expressions).vars;
+    parameters::fix(draft, &parameters);
+    for factor in linear.iter_mut().flat_map(|l| &mut l.terms).map(|term| &mut term.1) {
+        if factor.expressions().all(|e| known.value(&draft.exprs, e).is_some()) {
+            *factor = Factor::number(factor.value(draft, known));
+        }
+    }
+    Some(numbers())
+}
+
+/// Elimination by hand: more rows than this are too many.
+const MOST_ROWS: usize = 100;
+
+/// The factors by which these rows (chains with factors) add up to 0, by elimination; `None` where they do not, or where a
+/// sum of unlike factors would be needed.
+fn monomials(rows: &[Vec<(u32, &Factor)>]) -> Option<Vec<Factor>> {
+    let mut chains: Vec<u32> = rows.iter().flatten().map(|entry| entry.0).collect();
+    chains.sort_unstable();
+    chains.dedup();
+    let width = chains.len();
+    let mut pivots: Vec<(Vec<Option<Factor>>, usize)> = Vec::new();
+    for (r, entries) in rows.iter().take(MOST_ROWS).enumerate() {
+        // the row, and which rows it consists of
+        let mut row: Vec<Option<Factor>> = vec![None; width + rows.len()];
+        row[width + r] = Some(Factor::ONE);
+        for (chain, factor) in entries {
+            add(&mut row[chains.binary_search(chain).ok()?], (*factor).clone())?;
+        }
+        for (pivot, c) in &pivots {
+            let (Some(entry), Some(of_pivot)) = (row[*c].take(), &pivot[*c]) else { continue };
+            let factor = entry.times(of_pivot, -1).negative();
+            for (at, part) in pivot.iter().enumerate().filter(|(at, _)| at != c) {
+                if let Some(part) = part {
+                    add(&mut row[at], part.clone().times(&factor, 1))?;
+                }
+            }
+        }
+        let entries = row[..width].iter().enumerate().filter_map(|(c, entry)| Some((c, entry.as_ref()?)));
+        match entries.min_by_key(|(_, factor)| !factor.is_number()) {
+            Some((c, _)) => pivots.push((row, c)),
+            None => return row.split_off(width).into_iter().map(Some).map(|f| f?).collect(),
+        }
+    }
+    None
+}
+
+/// Adds to an entry; `None` where the sum is no single factor.
+fn add(entry: &mut Option<Factor>, factor: Factor) -> Option<()> {
+    *entry = match entry.take() {
+        None => Some(factor),
+        Some(old) if old.is_like(&factor) => sum(&old, &factor),
+        Some(_) => return None,
+    };
+    Some(())
+}
+
+/// A multiple of these factors in which as many as possible are numbers.
+fn with_most_numbers(factors: Vec<Factor>) -> Vec<Factor> {
+    let like = |f: &Factor| factors.iter().filter(|other| other.is_like(f)).count();
+    let Some(common) = factors.iter().max_by_key(|f| like(f)).cloned() else { return factors };
+    factors.into_iter().map(|f| f.times(&common, -1)).collect()
+}
