@@ -15,6 +15,8 @@ const MAX_ITERATIONS: u32 = 60;
 const SMALLEST_DAMPING: f64 = 1e-5;
 /// The smallest part of the first residuals that is taken away at once.
 const SMALLEST_PART: f64 = 1.0 / 256.0;
+/// How far beside a root its equation is looked at, in units of the unknown's size.
+const ASIDE: f64 = 1e-3;
 /// Steps of a linear loop at most.
 const REFINEMENTS: u32 = 3;
 
@@ -133,7 +135,10 @@ impl Newton {
             Err(reason) => reason,
         };
         let failure = self.failure(code, scales, values, reason);
-        if self.x.len() == 1 && !code.linear && self.bracket(code, scales, values) {
+        if self.x.len() == 1
+            && !code.linear
+            && (self.is_double_root(code, scales, values) || self.bracket(code, scales, values))
+        {
             return Ok(());
         }
         if failure.reason == Reason::NoConvergence && !code.linear && self.in_parts(code, scales, values) {
@@ -318,6 +323,18 @@ impl Newton {
         }
         self.rest.fill(0.0);
         at >= 1.0
+    }
+
+    /// Whether the guess solves one equation whose derivative vanishes there, as `x^2 + y^2 = 1` at `x = 1`: a root all the same
+    /// where values on both sides differ from 0. Values are those of the guess afterwards.
+    fn is_double_root(&self, code: &LoopCode, scales: &Scales, values: &mut [f64]) -> bool {
+        let guess = self.guess[0];
+        let aside = ASIDE * guess.abs().max(scales.of(code.tearing[0]).0);
+        let mut at =
+            |x: f64| if evaluate(code, &[x], values) { values[code.residual_slots[0]].abs() } else { f64::NAN };
+        let (below, above) = (at(guess - aside), at(guess + aside));
+        let root = at(guess);
+        below > 0.0 && above > 0.0 && root <= f64::EPSILON * below.min(above)
     }
 
     /// A search for a root around the guess, for one equation.

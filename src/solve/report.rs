@@ -327,6 +327,11 @@ fn shared(system: &System, code: Code, variables: &[VarId], unknown: Unknown, wh
         Some(v) => at_origin(dae, code, text, dae.variables[v.index()].origin, "switches here"),
         None => Diagnostic::new(code, text),
     };
+    if components.len() == 1 {
+        return diagnostic
+            .note("what slides there has no mass, so that nothing says how fast a force beyond the holding one moves it")
+            .help("put a mass or an inertia where the friction acts, or make it smooth (`SmoothBearingFriction`, `SmoothSupportFriction`)");
+    }
     diagnostic
         .note("parts that hold one rigid body share its load in no unique way")
         .help("leave one dry friction to each rigid body, make the others smooth (`SmoothBearingFriction`, `SmoothSupportFriction`), or put what is elastic in reality between them")

@@ -2,8 +2,9 @@
 
 use super::draft::{Draft, Role, RowKind, carried};
 use super::{Crossing, CrossingKind, Sample};
-use crate::expr::{ExprId, Exprs, Node, Rel, VarId};
+use crate::expr::{Binary, ExprId, Exprs, Node, Rel, Unary, VarId};
 use crate::flat::{Equation, Origin, OriginKind, Type};
+use rustc_hash::FxHashMap;
 
 /// How an expression varies, by how much has to be watched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -20,18 +21,22 @@ enum Varies {
 /// of the same relation elsewhere if there is one, and else is evaluated as it stands.
 pub(super) fn extract(draft: &mut Draft) {
     let origins = eventful_origins(draft);
-    let mut extraction = Extraction { map: Vec::with_capacity(origins.len()), varies: Vec::new() };
+    let mut extraction = Extraction { map: Vec::with_capacity(origins.len()), ..Extraction::default() };
     let live = draft.live_nodes();
     for (i, origin) in origins.iter().enumerate() {
         if !live[i] {
             extraction.map.push(ExprId(i as u32));
             extraction.varies.push(Varies::AtEvents);
+            extraction.rooted.push(false);
             continue;
         }
         let image = extraction.image(draft, ExprId(i as u32), *origin);
         extraction.map.push(image);
         let varies = extraction.variation(draft, ExprId(i as u32));
         extraction.varies.push(varies);
+        let operands = draft.exprs.operands(ExprId(i as u32));
+        let within = operands.as_slice().iter().any(|a| extraction.rooted[a.index()]);
+        extraction.rooted.push(within || root(&draft.exprs, ExprId(i as u32)).is_some());
     }
     draft.map_expressions(&extraction.map);
 }
@@ -60,13 +65,18 @@ fn eventful_origins(draft: &Draft) -> Vec<Option<Origin>> {
     origins
 }
 
+#[derive(Default)]
 struct Extraction {
     map: Vec<ExprId>,
     varies: Vec<Varies>,
+    /// Whether an expression holds a root.
+    rooted: Vec<bool>,
+    /// Modes with the relations they are of.
+    watched: FxHashMap<ExprId, ExprId>,
 }
 
 impl Extraction {
-    fn image(&self, draft: &mut Draft, e: ExprId, origin: Option<Origin>) -> ExprId {
+    fn image(&mut self, draft: &mut Draft, e: ExprId, origin: Option<Origin>) -> ExprId {
         match draft.exprs.node(e) {
             Node::EventRel(rel, a, b) => self.relation(draft, (rel, a, b), origin),
             Node::EventFloor(a) => self.floor(draft, a, origin),
@@ -74,11 +84,23 @@ impl Extraction {
                 Some(origin) => self.sampling(draft, start, interval, origin),
                 None => Exprs::ZERO,
             },
+            Node::If(c, a, b) if self.rooted[a.index()] || self.rooted[b.index()] => {
+                let [c, a, b] = [c, a, b].map(|e| self.map[e.index()]);
+                let modes = draft.exprs.reachable(&[c], |_| true).into_iter();
+                let modes: Vec<(ExprId, ExprId)> = modes.filter_map(|e| Some((e, *self.watched.get(&e)?))).collect();
+                let holds = draft.exprs.substitute(c, &modes);
+                if holds == c {
+                    return draft.exprs.if_(c, a, b);
+                }
+                let fails = draft.exprs.not(holds);
+                let (a, b) = (beyond(&mut draft.exprs, a, holds), beyond(&mut draft.exprs, b, fails));
+                draft.exprs.if_(c, a, b)
+            }
             _ => carried(&mut draft.exprs, e, &self.map),
         }
     }
 
-    fn relation(&self, draft: &mut Draft, (rel, a, b): (Rel, ExprId, ExprId), origin: Option<Origin>) -> ExprId {
+    fn relation(&mut self, draft: &mut Draft, (rel, a, b): (Rel, ExprId, ExprId), origin: Option<Origin>) -> ExprId {
         let (left, right) = (self.map[a.index()], self.map[b.index()]);
         let varies = self.varies[a.index()].max(self.varies[b.index()]);
         let (Some(origin), true) = (origin, varies > Varies::AtEvents) else {
@@ -94,7 +116,11 @@ impl Extraction {
         };
         match draft.exprs.node(value) {
             Node::Num(_) => value,
-            _ => watched(draft, kind, value, Type::Boolean, origin),
+            _ => {
+                let mode = watched(draft, kind, value, Type::Boolean, origin);
+                self.watched.insert(mode, value);
+                mode
+            }
         }
     }
 
@@ -162,6 +188,36 @@ fn mirrored(rel: Rel) -> Rel {
         Rel::Ge => Rel::Le,
         same => same,
     }
+}
+
+/// The argument of a root that changes.
+fn root(pool: &Exprs, e: ExprId) -> Option<ExprId> {
+    let argument = match pool.node(e) {
+        Node::Unary(Unary::Sqrt, u) => u,
+        Node::Binary(Binary::Pow, u, n) if pool.as_num(n).is_some_and(|n| n > 0.0 && n.fract() != 0.0) => u,
+        _ => return None,
+    };
+    pool.as_num(argument).is_none().then_some(argument)
+}
+
+/// A branch of an `if` as it goes on where its condition does not hold any more, until the event is found a little later: a
+/// root whose argument the condition keeps from falling below 0, as in `if dp > 0 then sqrt(dp) else 0`, goes on below 0 with
+/// the other sign, so that the solver finds the crossing.
+fn beyond(pool: &mut Exprs, branch: ExprId, holds: ExprId) -> ExprId {
+    let mut replaced = Vec::new();
+    for e in pool.reachable(&[branch], |_| true) {
+        let Some(argument) = root(pool, e) else { continue };
+        let opposite = pool.neg(argument);
+        let below = match pool.node(e) {
+            Node::Binary(_, _, n) => pool.pow(opposite, n),
+            _ => pool.sqrt(opposite),
+        };
+        let below = pool.neg(below);
+        let negative = pool.rel(Rel::Lt, argument, Exprs::ZERO);
+        let other = pool.if_(negative, below, e);
+        replaced.push((e, pool.if_(holds, e, other)));
+    }
+    if replaced.is_empty() { branch } else { pool.substitute(branch, &replaced) }
 }
 
 /// A mode variable with its equation and its crossing.

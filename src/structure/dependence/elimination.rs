@@ -49,7 +49,8 @@ struct Elimination {
 
 impl Elimination {
     fn new(rows: &[Row], columns: usize) -> Self {
-        let scale: Vec<f64> = rows.iter().map(|row| row.iter().fold(0.0, |m: f64, e| m.max(e.1.abs()))).collect();
+        let largest = |row: &Row| row.iter().fold(0.0, |m: f64, e| m.max(e.1.abs()));
+        let scale: Vec<f64> = rows.iter().map(|row| if row.is_empty() { 1.0 } else { largest(row) }).collect();
         let scaled = |(row, scale): (&Row, &f64)| -> Row { row.iter().map(|&(c, v)| (c, v / scale)).collect() };
         let mut users: Vec<Vec<u32>> = vec![Vec::new(); columns];
         for (r, row) in (0..).zip(rows) {
@@ -139,7 +140,8 @@ impl Elimination {
                     } else {
                         self.count_down(c);
                     }
-                    (a.next(), b.next());
+                    a.next();
+                    b.next();
                 }
                 (_, Some(&&(d, y))) => {
                     made.push((d, -factor * y));
