@@ -37,9 +37,15 @@ use offsets::{Offsets, Place};
 /// Errors: equations that say the same (E301, E302) or contradict each other (E303), constraints that cannot be
 /// differentiated (E304).
 pub(super) fn expose(draft: &mut Draft, known: &mut Known, fixable: bool) -> Result<Reduction, Diagnostic> {
+    let mut degrees = i64::MAX;
     loop {
         let mut reduction = Reduction::new(draft);
-        let jacobian = Jacobian::new(draft, known, &reduction);
+        let places = offsets::places(&reduction);
+        // what is no system is refused when it is reduced
+        let offsets = Offsets::new(&reduction, &places).filter(|found| found.degrees() < degrees);
+        let Some(offsets) = offsets else { return Ok(reduction) };
+        degrees = offsets.degrees();
+        let jacobian = Jacobian::new(draft, known, &reduction, (places, offsets));
         let mut changed: Vec<usize> = Vec::new();
         for found in jacobian.vanishing() {
             if found.iter().any(|(row, _)| changed.contains(row)) {
@@ -107,9 +113,12 @@ struct Jacobian {
 }
 
 impl Jacobian {
-    fn new(draft: &Draft, known: &mut Known, reduction: &Reduction) -> Self {
-        let places = offsets::places(reduction);
-        let Offsets { rows: offsets, chains: highest } = Offsets::new(reduction, &places);
+    fn new(
+        draft: &Draft,
+        known: &mut Known,
+        reduction: &Reduction,
+        (places, Offsets { rows: offsets, chains: highest }): (Vec<Place>, Offsets),
+    ) -> Self {
         let beyond = vec![false; places.len()];
         let (equations, rows) = (Vec::new(), Vec::new());
         let mut made = Jacobian { places, highest, equations, offsets: Vec::new(), rows, beyond };

@@ -34,7 +34,8 @@ pub(super) fn places(reduction: &Reduction) -> Vec<Place> {
 }
 
 impl Offsets {
-    pub fn new(reduction: &Reduction, places: &[Place]) -> Self {
+    /// `None` where equations cannot have an unknown each however often they are differentiated: unknowns that cancel.
+    pub fn new(reduction: &Reduction, places: &[Place]) -> Option<Self> {
         let mut chains = vec![0; places.len()];
         for &(chain, order) in places {
             chains[chain as usize] = order.max(chains[chain as usize]);
@@ -46,12 +47,19 @@ impl Offsets {
         for (row, &column) in highest.column_of.iter().enumerate().filter(|(_, c)| **c != NONE) {
             matching.join(row as u32, places[column as usize].0);
         }
-        found.raise(&signature, &mut matching);
-        found
+        found.raise(&signature, &mut matching).then_some(found)
     }
 
-    /// Until every row has a chain of its own in which its order is the highest that it can be.
-    fn raise(&mut self, signature: &Signature, matching: &mut Matching) {
+    /// How many states there are: the sum of the orders along the matching.
+    pub fn degrees(&self) -> i64 {
+        let sum = |orders: &[u32]| orders.iter().map(|&n| i64::from(n)).sum::<i64>();
+        sum(&self.chains) - sum(&self.rows)
+    }
+
+    /// Until every row has a chain of its own in which its order is the highest that it can be; false where that never is, as
+    /// in [`Reduction::reduce`].
+    fn raise(&mut self, signature: &Signature, matching: &mut Matching) -> bool {
+        let most = self.chains.len() as u32;
         let mut augmenter = Augmenter::default();
         for row in 0..self.rows.len() as u32 {
             while matching.column_of[row as usize] == NONE {
@@ -63,8 +71,12 @@ impl Offsets {
                 }
                 augmenter.rows_seen.iter().for_each(|&r| self.rows[r as usize] += 1);
                 augmenter.columns_seen.iter().for_each(|&c| self.chains[c as usize] += 1);
+                if self.rows[row as usize] > most {
+                    return false;
+                }
             }
         }
+        true
     }
 }
 
