@@ -127,8 +127,8 @@ codes! {
     SteppingInput = "W608", Warning, "an input that steps is joined by straight lines";
     ForeignColumn = "W609", Warning, "a column seems to have another sign or unit than the study says";
     TimeUnit = "W611", Warning, "a time column without a unit looks like no seconds";
-    InputsHeld = "N613", Note, "recorded inputs hold their samples";
     UnitsDiffer = "E612", Error, "the unit of a column is said twice, differently";
+    InputsHeld = "N613", Note, "recorded inputs hold their samples";
     // 9xx command line
     BadArgument = "E901", Error, "an argument cannot be used";
     FileAccess = "E902", Error, "a file cannot be read or written";

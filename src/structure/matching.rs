@@ -150,8 +150,8 @@ pub(super) struct Augmenter {
 
 impl Augmenter {
     /// Matches `row`, moving other rows to other columns as needed; entries (row, position in it, column) for which `usable`
-    /// says false are left alone. If it fails, [`Augmenter::rows_seen`] holds the rows that share too few columns, `row` among them, and
-    /// [`Augmenter::columns_seen`] these columns.
+    /// says false are left alone. If it fails, [`Augmenter::rows_seen`] holds the rows that share too few columns, `row`
+    /// among them, and [`Augmenter::columns_seen`] these columns.
     pub fn augment(
         &mut self,
         incidence: &Incidence,

@@ -11,7 +11,7 @@ use proptest::prelude::*;
 const NODES: usize = 4;
 const STOP: f64 = 2.0;
 
-/// A branch of two poles: `p` times the level difference, `d` times its derivative, or their integral.
+/// The flow through a branch: in proportion to the difference of its levels, to its derivative, or to its integral.
 #[derive(Clone, Copy, Debug)]
 enum Law {
     Resistor,

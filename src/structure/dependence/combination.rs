@@ -201,7 +201,7 @@ fn monomials(rows: &[Vec<(u32, &Factor)>]) -> Option<Vec<Factor>> {
         let entries = row[..width].iter().enumerate().filter_map(|(c, entry)| Some((c, entry.as_ref()?)));
         match entries.min_by_key(|(_, factor)| !factor.is_number()) {
             Some((c, _)) => pivots.push((row, c)),
-            None => return row.split_off(width).into_iter().map(Some).map(|f| f?).collect(),
+            None => return row.split_off(width).into_iter().collect(),
         }
     }
     None

@@ -26,6 +26,15 @@ pub(super) fn vanishing(rows: &[Row], columns: usize) -> Vec<Combination> {
     empty.map(|row| elimination.combination(row)).collect()
 }
 
+/// The last row of each combination that vanishes, each once: one row may be the last of several.
+pub(super) fn following(rows: &[Row], columns: usize) -> Vec<usize> {
+    let last = |combination: Combination| combination.last().map(|term| term.0);
+    let mut found: Vec<usize> = vanishing(rows, columns).into_iter().filter_map(last).collect();
+    found.sort_unstable();
+    found.dedup();
+    found
+}
+
 /// Gaussian elimination of the column that the fewest rows hold: one that a single row holds takes that row out for nothing,
 /// so that in most models little is left to do.
 struct Elimination {
@@ -190,6 +199,19 @@ mod tests {
         let ring: Vec<Row> = vec![vec![(0, 1.0), (1, -1.0)], vec![(1, 1.0), (2, -1.0)], vec![(0, -1.0), (2, 1.0)]];
         assert_eq!(vanishing(&ring, 3), [vec![(0, 1.0), (1, 1.0), (2, 1.0)]]);
         assert_eq!(vanishing(&ring[..2], 3), Vec::<Combination>::new());
+    }
+
+    #[test]
+    fn a_row_without_columns_vanishes_by_itself() {
+        assert_eq!(vanishing(&[Row::new()], 1), [vec![(0, 1.0)]]);
+    }
+
+    #[test]
+    fn a_row_that_two_combinations_end_with_is_named_once() {
+        let rows = [vec![(0, 1.0), (1, 1.0)], vec![(0, 1.0), (1, 2.0)], vec![(1, 1.0)], vec![(0, 1.0)]];
+        let last: Vec<usize> = vanishing(&rows, 2).iter().map(|c| c[c.len() - 1].0).collect();
+        assert_eq!(last, [3, 3]);
+        assert_eq!(following(&rows, 2), [3]);
     }
 
     #[test]

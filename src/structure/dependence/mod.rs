@@ -92,8 +92,7 @@ pub(super) fn following(
             rows.push(row);
         }
     }
-    let found = elimination::vanishing(&rows, columns).into_iter();
-    found.filter_map(|combination| combination.last().map(|term| places[term.0])).collect()
+    elimination::following(&rows, columns).into_iter().map(|row| places[row]).collect()
 }
 
 /// The system Jacobian of the equations that are linear in the derivatives of highest order.
