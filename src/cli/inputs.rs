@@ -118,7 +118,8 @@ fn track(
     Ok(Input { variable, times: times.clone(), values, interpolation })
 }
 
-/// A note where inputs that rise from row to row hold their samples because nobody said how they run between them.
+/// A note where inputs that rise or fall over rows on end hold their samples because nobody said how they run between
+/// them. A command that steps up and back does not: it holds by itself.
 fn held_without_asking(
     experiment: &Experiment,
     entries: &[InputMap],
@@ -129,7 +130,7 @@ fn held_without_asking(
         let name = &dae.variables[v.index()].name;
         experiment.interpolation.is_some() || entries.iter().any(|e| &e.input == name && e.hold.is_some())
     };
-    let rises = |i: &Input| i.values.windows(3).any(|v| v[0] != v[1] && v[1] != v[2]);
+    let rises = |i: &Input| i.values.windows(3).any(|v| (v[1] - v[0]) * (v[2] - v[1]) > 0.0);
     let real = |i: &Input| dae.variables[i.variable.index()].ty == Type::Real;
     let held = inputs.iter().filter(|i| real(i) && !asked(i.variable) && rises(i));
     let names: Vec<String> = held.map(|i| format!("`{}`", dae.variables[i.variable.index()].name)).collect();
@@ -162,7 +163,6 @@ fn convert(values: &mut [f64], unit: &str, target: &Variable, entry: &InputMap) 
     Ok(())
 }
 
-/// Every input is driven, or has a value of its own.
 /// Says which inputs have neither a recording nor a value of their own.
 fn all_driven(dae: &Dae, inputs: &[Input]) -> Result<(), Failure> {
     let help = |name: &str| {
