@@ -108,7 +108,7 @@ impl Fit {
     pub fn of(candidate: Candidate, x: Vec<f64>, task: Task<'_>, first: Option<Weights>, rounds: usize) -> Option<Fit> {
         let begun = Fit::begun(candidate, x, task, first.as_ref())?;
         let mut fit = begun.clone();
-        fit.descend(task, ITERATIONS);
+        fit.settle(task);
         // by weights that are those of the errors, what costs less may leave more of the signals that count little
         if first.is_none() && begun.ahead(&fit) < 0.0 {
             return Some(begun);
@@ -116,7 +116,7 @@ impl Fit {
         for _ in 1..rounds {
             let mut next = fit.clone();
             next.weights = Weights::of(&fit.evaluated.errors, task.full_scale);
-            next.descend(task, ITERATIONS);
+            next.settle(task);
             // a weaker weight of the data may lead away from them for good
             if fit.ahead(&next) < 0.0 {
                 break;
@@ -132,6 +132,30 @@ impl Fit {
         let evaluated = candidate.evaluate(&x, task.train)?;
         let weights = weights.cloned().unwrap_or_else(|| Weights::of(&evaluated.errors, task.full_scale));
         Some(Fit::at(candidate, x, evaluated, weights))
+    }
+
+    /// The same fit simulated as accurately as a ranking asks for, or as a judgement does. `None` where the model does not
+    /// reach the end of a recording.
+    pub fn simulated(&self, roughly: bool, train: &[Recording]) -> Option<Fit> {
+        if self.candidate.is_rough == roughly {
+            return Some(self.clone());
+        }
+        let candidate = Candidate { is_rough: roughly, ..self.candidate.clone() };
+        let evaluated = candidate.evaluate(&self.x, train)?;
+        Some(Fit::at(candidate, self.x.clone(), evaluated, self.weights.clone()))
+    }
+
+    /// Levenberg-Marquardt to the end: rough simulations lead most of the way.
+    fn settle(&mut self, task: Task<'_>) {
+        let roughly = || {
+            let mut fit = self.simulated(true, task.train)?;
+            fit.descend(task, ITERATIONS);
+            fit.simulated(self.candidate.is_rough, task.train)
+        };
+        if let Some(fit) = roughly().filter(|f| f.cost() < self.cost()) {
+            *self = fit;
+        }
+        self.descend(task, ITERATIONS);
     }
 
     /// A model where it was evaluated.

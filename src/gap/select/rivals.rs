@@ -2,7 +2,7 @@
 
 use super::super::clock::Deadline;
 use super::super::effects::Coefficient;
-use super::super::estimate::{Fit, Task, Weights};
+use super::super::estimate::{Candidate, Fit, Task, Weights};
 use super::super::hypotheses::Hypothesis;
 use super::super::policy::{DELTA, FRONT, HOPED, OTHER_WEIGHTING, ROUGH, TRIED};
 use super::super::problem::Problem;
@@ -40,13 +40,20 @@ impl Rough {
     fn fits(&self) -> impl Iterator<Item = &Fit> {
         [&self.best].into_iter().chain(&self.other)
     }
+
+    /// Whether a fit to the end may come to something.
+    fn is_promising(&self, Ground { problem, before, .. }: &Ground<'_>) -> bool {
+        let fell = |(now, then): (f64, f64)| now < (1.0 - HOPED) * then;
+        let falls = |f: &Fit| f.mean_squares().into_iter().zip(before.mean_squares()).any(fell);
+        before.ahead(&self.best) > needed(problem.hypotheses.len()) || self.fits().any(falls)
+    }
 }
 
 /// Fits hypotheses beside the model before until the time is over, in three stages, each for at most half of the time that is
 /// left: from their first starts, from all starts, to the end. A stage goes on with those first that then leave least: a
-/// linear model promises much that is not kept. What was not fitted to the end contends as it is. The front by both weightings
-/// while there is time.
-pub fn fitted(ground: &Ground<'_>, order: Vec<Screened>, until: Deadline<'_>) -> Fitted {
+/// linear model promises much that is not kept. The first two only rank. The front by both weightings while there is time.
+/// `before`: the model before as it was judged.
+pub fn fitted(ground: &Ground<'_>, before: &Fit, order: Vec<Screened>, until: Deadline<'_>) -> Fitted {
     let Ground { problem, sensors, .. } = *ground;
     let cost = |fits: &mut dyn Iterator<Item = &Fit>| fits.map(Fit::cost).fold(f64::INFINITY, f64::min);
     let gap = |fits: &mut dyn Iterator<Item = &Fit>| {
@@ -58,14 +65,17 @@ pub fn fitted(ground: &Ground<'_>, order: Vec<Screened>, until: Deadline<'_>) ->
     let (roughly, passed) = until.of_step().rounds(order, |tried| from_all(ground, tried, until));
     let roughly = roughly.into_iter().flatten().collect();
     let order = by_turns(roughly, |r: &Rough| cost(&mut r.fits()), |r| gap(&mut r.fits()));
-    let (mut found, cut) = until.rounds(order, |r| (r.hypothesis, completed(ground, r, until)));
-    found.extend(cut.into_iter().map(|r| (r.hypothesis, Some(r.best))));
-    let rival = |(hypothesis, fit): (usize, Option<Fit>)| {
+    let (mut order, others): (Vec<Rough>, Vec<Rough>) = order.into_iter().partition(|r| r.is_promising(ground));
+    order.extend(others);
+    let rival = |rough: Rough| {
+        let hypothesis = rough.hypothesis;
         let h = &problem.hypotheses[hypothesis];
         let (places, is_parameter) = (h.attachments.len(), h.family == "parameter");
-        Some(Rival { hypothesis, places, size: 0.0, is_parameter, model: Weighed::new(problem, fit?) })
+        let model = Weighed::new(problem, completed(ground, before, rough, until)?);
+        Some(Rival { hypothesis, places, size: 0.0, is_parameter, model })
     };
-    let mut rivals: Vec<Rival> = found.into_par_iter().filter_map(rival).collect();
+    let (found, cut) = until.rounds(order, rival);
+    let mut rivals: Vec<Rival> = found.into_iter().flatten().collect();
     rivals.sort_by(|a, b| a.model.gap(sensors).total_cmp(&b.model.gap(sensors)));
     let front = FRONT.min(rivals.len());
     rivals[..front].par_iter_mut().for_each(|rival| {
@@ -79,7 +89,8 @@ pub fn fitted(ground: &Ground<'_>, order: Vec<Screened>, until: Deadline<'_>) ->
         }
     });
     rivals.par_iter_mut().for_each(|r| r.size = size(problem, &problem.hypotheses[r.hypothesis], &r.model.fit));
-    Fitted { rivals, passed: passed.into_iter().map(|t| t.hypothesis).collect() }
+    let passed = passed.into_iter().map(|t| t.hypothesis).chain(cut.into_iter().map(|r| r.hypothesis));
+    Fitted { rivals, passed: passed.collect() }
 }
 
 /// A few iterations from the most promising starts of a hypothesis.
@@ -109,18 +120,16 @@ fn from_all(ground: &Ground<'_>, tried: Tried, until: Deadline<'_>) -> Option<Ro
     Some(Rough { hypothesis, best, other })
 }
 
-/// The best fit of a hypothesis, to the end where it gains anything, and, while there is time, that with the least gap.
-fn completed(ground: &Ground<'_>, Rough { best, other, .. }: Rough, until: Deadline<'_>) -> Option<Fit> {
-    let Ground { problem, before, .. } = *ground;
-    let falls =
-        |f: &Fit| f.mean_squares().iter().zip(before.mean_squares()).any(|(now, then)| *now < (1.0 - HOPED) * then);
-    let gains = before.ahead(&best) > needed(problem.hypotheses.len());
-    if !falls(&best) && !gains && !other.as_ref().is_some_and(falls) {
-        return Some(best);
+/// The best fit of a hypothesis as it is judged, to the end where it gains anything, and, while there is time, that with the
+/// least gap.
+fn completed(ground: &Ground<'_>, before: &Fit, rough: Rough, until: Deadline<'_>) -> Option<Fit> {
+    let task = ground.problem.task(until);
+    if !rough.is_promising(ground) {
+        return rough.best.simulated(false, task.train);
     }
-    let completed = |f: Fit| no_worse(problem.task(until), before, f.candidate, f.x);
-    let other = other.filter(|_| !until.is_over());
-    [Some(best), other].into_iter().flatten().filter_map(completed).reduce(Fit::better_of)
+    let completed = |f: Fit| no_worse(task, before, Candidate { is_rough: false, ..f.candidate }, f.x);
+    let other = rough.other.filter(|_| !until.is_over());
+    [Some(rough.best), other].into_iter().flatten().filter_map(completed).reduce(Fit::better_of)
 }
 
 /// A few iterations from every start, with the weights of the model before; those with the least cost and the least gap go on.

@@ -173,9 +173,10 @@ pub fn explained(
     let (search, base) = begun(problem, held, None, &mut watch)?;
     watch.begin(Stage::Fit(1)).ok_or(Trouble::Stopped)?;
     let sensors = &search.chooser.criteria.sensors;
-    let ground = Ground { problem, sensors, before: &base.fit };
+    let rough = base.fit.simulated(true, &problem.train);
+    let ground = Ground { problem, sensors, before: rough.as_ref().unwrap_or(&base.fit) };
     let screen = screened(&ground, &[hypothesis], Deadline::default());
-    let rivals = fitted(&ground, screen.order, Deadline::default()).rivals;
+    let rivals = fitted(&ground, &base.fit, screen.order, Deadline::default()).rivals;
     let Some(last) = rivals.first().map(|r| r.model.clone()) else { return Ok(None) };
     let closes = 1.0 - last.gap(sensors) / base.gap(sensors).max(f64::MIN_POSITIVE);
     let trials = search.chooser.choose(1, &base, rivals, Deadline::default()).trials;
@@ -334,7 +335,8 @@ impl Search<'_> {
             return Vec::new();
         }
         let (problem, sensors) = (self.problem, &self.chooser.criteria.sensors);
-        let ground = Ground { problem, sensors, before: &before.fit };
+        let rough = before.fit.simulated(true, &problem.train);
+        let ground = Ground { problem, sensors, before: rough.as_ref().unwrap_or(&before.fit) };
         let until = self.ends.of_step();
         let screen = screened(&ground, open, until.of_step());
         let seen = |visible: &[f64]| visible.iter().filter(|v| **v > SEEN).count() as f64 / visible.len().max(1) as f64;
@@ -342,7 +344,7 @@ impl Search<'_> {
         if watch.is_some_and(|w| w.begin(Stage::Fit(step)).is_none()) {
             return Vec::new();
         }
-        let found = fitted(&ground, screen.order, until);
+        let found = fitted(&ground, &before.fit, screen.order, until);
         self.passed = found.passed.into_iter().chain(screen.passed).map(|i| passed(step, i)).collect();
         found.rivals
     }
