@@ -103,12 +103,33 @@ pub struct Fit {
 
 impl Fit {
     /// Fits a model from `x`: once for each of `rounds`, with weights that the round before left. `first` are those of the
-    /// first round, where they are not to be as the errors are at `x`. `None` where the model does not reach the end of a
-    /// recording.
+    /// first round, where they are not to be as the errors are at `x`. Rough simulations lead there, and fine ones the last
+    /// steps. `None` where the model does not reach the end of a recording.
     pub fn of(candidate: Candidate, x: Vec<f64>, task: Task<'_>, first: Option<Weights>, rounds: usize) -> Option<Fit> {
+        let is_rough = candidate.is_rough;
+        let rough = Candidate { is_rough: true, ..candidate.clone() };
+        let near = Fit::in_rounds(rough, x.clone(), task, first.clone(), rounds);
+        if is_rough {
+            return near;
+        }
+        let fine = near.and_then(|f| f.simulated(false, task.train)).map(|mut fit| {
+            fit.descend(task, ITERATIONS);
+            fit
+        });
+        // what the rough simulations of a model do not reach the end of is fitted by fine ones alone
+        fine.or_else(|| Fit::in_rounds(candidate, x, task, first, rounds))
+    }
+
+    fn in_rounds(
+        candidate: Candidate,
+        x: Vec<f64>,
+        task: Task<'_>,
+        first: Option<Weights>,
+        rounds: usize,
+    ) -> Option<Fit> {
         let begun = Fit::begun(candidate, x, task, first.as_ref())?;
         let mut fit = begun.clone();
-        fit.settle(task);
+        fit.descend(task, ITERATIONS);
         // by weights that are those of the errors, what costs less may leave more of the signals that count little
         if first.is_none() && begun.ahead(&fit) < 0.0 {
             return Some(begun);
@@ -116,7 +137,7 @@ impl Fit {
         for _ in 1..rounds {
             let mut next = fit.clone();
             next.weights = Weights::of(&fit.evaluated.errors, task.full_scale);
-            next.settle(task);
+            next.descend(task, ITERATIONS);
             // a weaker weight of the data may lead away from them for good
             if fit.ahead(&next) < 0.0 {
                 break;
@@ -143,19 +164,6 @@ impl Fit {
         let candidate = Candidate { is_rough: roughly, ..self.candidate.clone() };
         let evaluated = candidate.evaluate(&self.x, train)?;
         Some(Fit::at(candidate, self.x.clone(), evaluated, self.weights.clone()))
-    }
-
-    /// Levenberg-Marquardt to the end: rough simulations lead most of the way.
-    fn settle(&mut self, task: Task<'_>) {
-        let roughly = || {
-            let mut fit = self.simulated(true, task.train)?;
-            fit.descend(task, ITERATIONS);
-            fit.simulated(self.candidate.is_rough, task.train)
-        };
-        if let Some(fit) = roughly().filter(|f| f.cost() < self.cost()) {
-            *self = fit;
-        }
-        self.descend(task, ITERATIONS);
     }
 
     /// A model where it was evaluated.

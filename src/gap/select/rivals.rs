@@ -4,7 +4,7 @@ use super::super::clock::Deadline;
 use super::super::effects::Coefficient;
 use super::super::estimate::{Candidate, Fit, Task, Weights};
 use super::super::hypotheses::Hypothesis;
-use super::super::policy::{DELTA, FRONT, HOPED, OTHER_WEIGHTING, ROUGH, TRIED};
+use super::super::policy::{DELTA, FRONT, GLANCE, GLANCES, HOPED, KEPT, OTHER_WEIGHTING, ROUGH, TRIED};
 use super::super::problem::Problem;
 use super::compare::{needed, total_gap};
 use super::criteria::Rival;
@@ -25,57 +25,57 @@ struct Tried {
     hypothesis: usize,
     starts: Vec<Start>,
     /// From as many of the first starts as have values.
-    fits: Vec<Fit>,
+    ways: Vec<Way>,
 }
 
-/// A hypothesis after a few iterations from all its starts: the fit that the data prefer, and that with the least gap where
-/// it is less by far.
-struct Rough {
-    hypothesis: usize,
-    best: Fit,
-    other: Option<Fit>,
-}
-
-impl Rough {
+impl Tried {
     fn fits(&self) -> impl Iterator<Item = &Fit> {
-        [&self.best].into_iter().chain(&self.other)
-    }
-
-    /// Whether a fit to the end may come to something.
-    fn is_promising(&self, Ground { problem, before, .. }: &Ground<'_>) -> bool {
-        let fell = |(now, then): (f64, f64)| now < (1.0 - HOPED) * then;
-        let falls = |f: &Fit| f.mean_squares().into_iter().zip(before.mean_squares()).any(fell);
-        before.ahead(&self.best) > needed(problem.hypotheses.len()) || self.fits().any(falls)
+        self.ways.iter().map(|w| &w.fit)
     }
 }
 
-/// Fits hypotheses beside the model before until the time is over, in three stages, each for at most half of the time that is
-/// left: from their first starts, from all starts, to the end. A stage goes on with those first that then leave least: a
-/// linear model promises much that is not kept. The first two only rank. The front by both weightings while there is time.
-/// `before`: the model before as it was judged.
+/// A rough fit that is on its way to an optimum.
+#[derive(Clone)]
+struct Way {
+    fit: Fit,
+    /// It was followed to the end already.
+    is_known: bool,
+}
+
+impl From<Fit> for Way {
+    fn from(fit: Fit) -> Self {
+        Way { fit, is_known: false }
+    }
+}
+
+/// A hypothesis whose best first fit was followed to the end, where it promises to come to something.
+struct Followed {
+    tried: Tried,
+    rival: Option<Rival>,
+}
+
+/// Fits hypotheses beside the model before until the time is over, in three stages: a few iterations from their first starts, the best of these to the end, and the same from all their starts. A stage
+/// goes on with those first that then leave least: a linear model promises much that is not kept. Then the front by both
+/// weightings while there is time. `before`: the model before as it was judged.
 pub fn fitted(ground: &Ground<'_>, before: &Fit, order: Vec<Screened>, until: Deadline<'_>) -> Fitted {
     let Ground { problem, sensors, .. } = *ground;
-    let cost = |fits: &mut dyn Iterator<Item = &Fit>| fits.map(Fit::cost).fold(f64::INFINITY, f64::min);
-    let gap = |fits: &mut dyn Iterator<Item = &Fit>| {
-        fits.map(|f| total_gap(&f.mean_squares(), sensors)).fold(f64::INFINITY, f64::min)
-    };
-    let (tried, rest) = until.of_step().rounds(order, |screened| tried(ground, screened, until));
-    let mut order = by_turns(tried, |t| cost(&mut t.fits.iter()), |t| gap(&mut t.fits.iter()));
-    order.extend(rest.into_iter().map(|(hypothesis, starts)| Tried { hypothesis, starts, fits: Vec::new() }));
-    let (roughly, passed) = until.of_step().rounds(order, |tried| from_all(ground, tried, until));
-    let roughly = roughly.into_iter().flatten().collect();
-    let order = by_turns(roughly, |r: &Rough| cost(&mut r.fits()), |r| gap(&mut r.fits()));
-    let (mut order, others): (Vec<Rough>, Vec<Rough>) = order.into_iter().partition(|r| r.is_promising(ground));
-    order.extend(others);
-    let rival = |rough: Rough| {
-        let hypothesis = rough.hypothesis;
-        let h = &problem.hypotheses[hypothesis];
-        let (places, is_parameter) = (h.attachments.len(), h.family == "parameter");
-        let model = Weighed::new(problem, completed(ground, before, rough, until)?);
-        Some(Rival { hypothesis, places, size: 0.0, is_parameter, model })
-    };
-    let (found, cut) = until.rounds(order, rival);
+    let cost = |t: &Tried| t.fits().map(Fit::cost).fold(f64::INFINITY, f64::min);
+    let gap = |t: &Tried| t.fits().map(|f| ground.gap(f)).fold(f64::INFINITY, f64::min);
+    let (found, rest) = until.part(GLANCES).rounds(order, |screened| tried(ground, screened, until));
+    let mut order = by_turns(found, cost, gap);
+    order.extend(rest.into_iter().map(|(hypothesis, starts)| Tried { hypothesis, starts, ways: Vec::new() }));
+    let (found, rest) = until.rounds(order, |tried| followed(ground, before, tried, until));
+    let mut order = by_turns(found, |f| cost(&f.tried), |f| gap(&f.tried));
+    order.extend(rest.into_iter().map(|tried| Followed { tried, rival: None }));
+    let (found, rest) = until.rounds(order, |followed| from_all(ground, before, followed, until));
     let mut rivals: Vec<Rival> = found.into_iter().flatten().collect();
+    let mut passed = Vec::new();
+    for Followed { tried, rival } in rest {
+        match rival {
+            Some(rival) => rivals.push(rival),
+            None => passed.push(tried.hypothesis),
+        }
+    }
     rivals.sort_by(|a, b| a.model.gap(sensors).total_cmp(&b.model.gap(sensors)));
     let front = FRONT.min(rivals.len());
     rivals[..front].par_iter_mut().for_each(|rival| {
@@ -89,79 +89,118 @@ pub fn fitted(ground: &Ground<'_>, before: &Fit, order: Vec<Screened>, until: De
         }
     });
     rivals.par_iter_mut().for_each(|r| r.size = size(problem, &problem.hypotheses[r.hypothesis], &r.model.fit));
-    let passed = passed.into_iter().map(|t| t.hypothesis).chain(cut.into_iter().map(|r| r.hypothesis));
-    Fitted { rivals, passed: passed.collect() }
+    Fitted { rivals, passed }
+}
+
+impl Ground<'_> {
+    /// Noise-free gap that a fit leaves of the data that were fitted, in parts of full scale.
+    fn gap(&self, fit: &Fit) -> f64 {
+        total_gap(&fit.mean_squares(), self.sensors)
+    }
+
+    /// Whether a rough fit may come to something at its end.
+    fn is_promising(&self, fit: &Fit) -> bool {
+        let fell = |(now, then): (f64, f64)| now < (1.0 - HOPED) * then;
+        let falls = fit.mean_squares().into_iter().zip(self.before.mean_squares()).any(fell);
+        falls || self.before.ahead(fit) > needed(self.problem.hypotheses.len())
+    }
+
+    /// A hypothesis with its fit, weighed.
+    fn rival(&self, hypothesis: usize, fit: Fit) -> Rival {
+        let h = &self.problem.hypotheses[hypothesis];
+        let (places, is_parameter) = (h.attachments.len(), h.family == "parameter");
+        Rival { hypothesis, places, size: 0.0, is_parameter, model: Weighed::new(self.problem, fit) }
+    }
 }
 
 /// A few iterations from the most promising starts of a hypothesis.
 fn tried(ground: &Ground<'_>, (hypothesis, starts): Screened, until: Deadline<'_>) -> Tried {
     let task = ground.problem.task(until);
-    let one = |s: &Start| begun(task, s, s.x.clone(), &ground.before.weights);
-    let fits = starts.iter().take(TRIED).filter_map(one).collect();
-    Tried { hypothesis, starts, fits }
+    let one = |s: &Start| begun(task, s, s.x.clone(), &ground.before.weights, GLANCE).map(Way::from);
+    let ways = starts.iter().take(TRIED).filter_map(one).collect();
+    Tried { hypothesis, starts, ways }
 }
 
-/// A few iterations from a start.
-fn begun(task: Task<'_>, start: &Start, x: Vec<f64>, weights: &Weights) -> Option<Fit> {
+/// So many iterations from a start.
+fn begun(task: Task<'_>, start: &Start, x: Vec<f64>, weights: &Weights, iterations: usize) -> Option<Fit> {
     let mut fit = Fit::begun(start.candidate.clone(), x, task, Some(weights))?;
-    fit.descend(task, ROUGH);
+    fit.descend(task, iterations);
     Some(fit)
 }
 
-/// A few iterations from every start.
-fn from_all(ground: &Ground<'_>, tried: Tried, until: Deadline<'_>) -> Option<Rough> {
-    let hypothesis = tried.hypothesis;
-    let mut all = rough(ground, ground.problem.task(until), tried);
-    let gap = |f: &Fit| total_gap(&f.mean_squares(), ground.sensors);
-    let least = |a: &Fit, b: &Fit| gap(a).total_cmp(&gap(b));
-    let first = (0..all.len()).reduce(|a, b| if all[a].ahead(&all[b]) > 0.0 { b } else { a })?;
-    let best = all.swap_remove(first);
-    let other = all.into_iter().min_by(least).filter(|f| gap(f) < (1.0 - DELTA) * gap(&best));
-    Some(Rough { hypothesis, best, other })
+/// The fit that the data prefer of those of the first starts, to the end.
+fn followed(ground: &Ground<'_>, before: &Fit, mut tried: Tried, until: Deadline<'_>) -> Followed {
+    let ways = &mut tried.ways;
+    let best = (0..ways.len()).reduce(|a, b| if ways[a].fit.ahead(&ways[b].fit) > 0.0 { b } else { a });
+    let best = best.map(|k| &mut ways[k]).filter(|way| ground.is_promising(&way.fit));
+    let end = best.and_then(|way| {
+        way.is_known = true;
+        completed(before, ground.problem.task(until), way.fit.clone())
+    });
+    let rival = end.map(|fit| ground.rival(tried.hypothesis, fit));
+    Followed { tried, rival }
 }
 
-/// The best fit of a hypothesis as it is judged, to the end where it gains anything, and, while there is time, that with the
-/// least gap.
-fn completed(ground: &Ground<'_>, before: &Fit, rough: Rough, until: Deadline<'_>) -> Option<Fit> {
+/// The best of a hypothesis from all its starts: the fit that the data prefer, and that with the least gap where it is less by
+/// far, each to the end where it promises to come to something.
+fn from_all(ground: &Ground<'_>, before: &Fit, followed: Followed, until: Deadline<'_>) -> Option<Rival> {
+    let Followed { tried, rival } = followed;
+    let hypothesis = tried.hypothesis;
     let task = ground.problem.task(until);
-    if !rough.is_promising(ground) {
-        return rough.best.simulated(false, task.train);
+    let mut all = rough(ground, task, tried);
+    let first = (0..all.len()).reduce(|a, b| if all[a].fit.ahead(&all[b].fit) > 0.0 { b } else { a });
+    let Some(best) = first.map(|k| all.swap_remove(k)) else { return rival };
+    let least = all.into_iter().min_by(|a, b| ground.gap(&a.fit).total_cmp(&ground.gap(&b.fit)));
+    let other = least.filter(|w| ground.gap(&w.fit) < (1.0 - DELTA) * ground.gap(&best.fit));
+    let as_it_is = rival.is_none().then(|| best.fit.clone());
+    let ends = [Some(best), other].into_iter().flatten().filter(|w| !w.is_known && ground.is_promising(&w.fit));
+    let found = ends.filter_map(|w| completed(before, task, w.fit));
+    let known = rival.as_ref().map(|r| r.model.fit.clone());
+    let found = known.into_iter().chain(found).reduce(Fit::better_of);
+    match (rival, found) {
+        (Some(rival), Some(fit)) if fit.x == rival.model.fit.x => Some(rival),
+        (_, Some(fit)) => Some(ground.rival(hypothesis, fit)),
+        (_, None) => Some(ground.rival(hypothesis, as_it_is?.simulated(false, task.train)?)),
     }
-    let completed = |f: Fit| no_worse(task, before, Candidate { is_rough: false, ..f.candidate }, f.x);
-    let other = rough.other.filter(|_| !until.is_over());
-    [Some(rough.best), other].into_iter().flatten().filter_map(completed).reduce(Fit::better_of)
+}
+
+/// A rough fit as it is judged, to the end.
+fn completed(before: &Fit, task: Task<'_>, Fit { candidate, x, .. }: Fit) -> Option<Fit> {
+    no_worse(task, before, Candidate { is_rough: false, ..candidate }, x)
 }
 
 /// A few iterations from every start, with the weights of the model before; those with the least cost and the least gap go on.
 /// Sizes are looked for over the decades where the linear model has not kept its promise. Where the model before is bent away
 /// from the data sheet, its weights may count little what the hypothesis explains: then also as if only the sensors' noise
 /// were left, which finds the size that the data ask for, and from there with parameters at the data sheet again.
-fn rough(ground: &Ground<'_>, task: Task<'_>, Tried { hypothesis, mut starts, fits: mut bent }: Tried) -> Vec<Fit> {
+fn rough(ground: &Ground<'_>, task: Task<'_>, Tried { hypothesis, mut starts, ways: mut bent }: Tried) -> Vec<Way> {
     let Ground { problem, sensors, before } = *ground;
     let costs = |a: &Fit, b: &Fit| a.cost().total_cmp(&b.cost());
-    let gap = |f: &Fit| total_gap(&f.mean_squares(), sensors);
-    let as_before = |s: &Start| begun(task, s, s.x.clone(), &before.weights);
+    let as_before = |s: &Start| begun(task, s, s.x.clone(), &before.weights, ROUGH).map(Way::from);
+    bent.iter_mut().for_each(|w| w.fit.descend(task, ROUGH - GLANCE));
     bent.extend(starts.iter().skip(if bent.is_empty() { 0 } else { TRIED }).filter_map(as_before));
-    let promised = starts.iter().map(Start::promises).fold(f64::INFINITY, f64::min);
-    if !bent.iter().any(|f| f.cost() <= (1.0 + DELTA) * promised) {
+    let gain = |cost: f64| before.cost() - cost;
+    let promised = starts.iter().map(|s| gain(s.promises())).fold(0.0, f64::max);
+    if !bent.iter().any(|w| gain(w.fit.cost()) >= KEPT * promised) {
         let sizes = starts.first().map(|s| ground.of_size(hypothesis, s)).unwrap_or_default();
         bent.extend(sizes.iter().filter_map(as_before));
         starts.extend(sizes);
     }
-    bent.sort_by(costs);
-    let open = (1..bent.len()).min_by(|&a, &b| gap(&bent[a]).total_cmp(&gap(&bent[b])));
-    let mut found: Vec<Fit> = open.map(|k| bent.swap_remove(k)).into_iter().chain(bent.into_iter().take(1)).collect();
-    found.iter_mut().for_each(|f| f.descend(task, ROUGH));
+    bent.sort_by(|a, b| costs(&a.fit, &b.fit));
+    let gap = |k: usize| ground.gap(&bent[k].fit);
+    let open = (1..bent.len()).min_by(|&a, &b| gap(a).total_cmp(&gap(b)));
+    let mut found: Vec<Way> = open.map(|k| bent.swap_remove(k)).into_iter().chain(bent.into_iter().take(1)).collect();
+    found.iter_mut().for_each(|w| w.fit.descend(task, ROUGH));
     if before.prior() > OTHER_WEIGHTING {
         let white = Weights::sensors(&sensors.noise, task.full_scale);
-        let unbent = |s: &Start| begun(task, s, at_nominal(problem, &s.candidate, &s.x), &white);
+        let unbent = |s: &Start| begun(task, s, at_nominal(problem, &s.candidate, &s.x), &white, ROUGH);
         let sized = starts.iter().filter_map(unbent).min_by(costs);
         found.extend(sized.and_then(|mut sized| {
             sized.descend(task, ROUGH);
             let x = at_nominal(problem, &sized.candidate, &sized.x);
             let mut fit = Fit::begun(sized.candidate, x, task, None)?;
             fit.descend(task, 2 * ROUGH);
-            Some(fit)
+            Some(Way::from(fit))
         }));
     }
     found

@@ -5,7 +5,7 @@ use super::super::clock::{Budget, Deadline};
 use super::super::data::Recording;
 use super::super::estimate::{Candidate, Fit};
 use super::super::hypotheses::Hypothesis;
-use super::super::policy::{EFFECTS, SEEN, SETTLING};
+use super::super::policy::{EFFECTS, SCREEN, SEEN, SETTLING, STEP};
 use super::super::problem::{Chosen, Problem, Tolerance};
 use super::choose::{Chooser, Taken, Trial};
 use super::compare::needed;
@@ -200,7 +200,7 @@ fn begun<'a>(
     let nominal = models::nominal(problem).map_err(Trouble::Model)?;
     let x = nominal.present();
     let ends = Deadline::of(budget, || drop(nominal.evaluate(&x, &problem.train)));
-    let until = ends.of_step();
+    let until = ends.part(STEP);
     let base = weighed(problem, &sensors, (nominal.clone(), x.clone()), until);
     let base = base.ok_or_else(|| stops(problem, &nominal, &x))?;
     let base = settled(problem, &sensors, base, until);
@@ -337,8 +337,8 @@ impl Search<'_> {
         let (problem, sensors) = (self.problem, &self.chooser.criteria.sensors);
         let rough = before.fit.simulated(true, &problem.train);
         let ground = Ground { problem, sensors, before: rough.as_ref().unwrap_or(&before.fit) };
-        let until = self.ends.of_step();
-        let screen = screened(&ground, open, until.of_step());
+        let until = self.ends.part(STEP);
+        let screen = screened(&ground, open, until.part(SCREEN));
         let seen = |visible: &[f64]| visible.iter().filter(|v| **v > SEEN).count() as f64 / visible.len().max(1) as f64;
         self.visible.get_or_insert(seen(&screen.visible));
         if watch.is_some_and(|w| w.begin(Stage::Fit(step)).is_none()) {

@@ -19,7 +19,7 @@ use super::{
 };
 use super::{alternative, ratio, spots};
 use rayon::prelude::*;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Litres a minute in a cubic metre a second.
 const LITRES_A_MINUTE: f64 = 60_000.0;
@@ -138,17 +138,14 @@ impl Conclusion<'_> {
         let (tolerated, full) = (total(tolerated), total(last));
         let taken = &self.found.taken;
         let flows = self.flows();
+        let gaps = self.gaps_with(taken.len());
         let effect = |(i, t): (usize, &Taken)| {
             let h = self.hypothesis(t);
             if h.is_recording_error() {
                 return None;
             }
-            let (alone, without) = if taken.len() == 1 {
-                (full, tolerated)
-            } else {
-                let rest: Vec<usize> = (0..taken.len()).filter(|k| *k != i).collect();
-                rayon::join(|| self.gap_with(&[i]), || self.gap_with(&rest))
-            };
+            let (alone, without) =
+                if taken.len() == 1 { (full, tolerated) } else { (gaps[&vec![i]], gaps[&without(i, taken.len())]) };
             Some(Effect {
                 effect: h.effect.clone(),
                 family: h.family.clone(),
@@ -163,7 +160,14 @@ impl Conclusion<'_> {
                 indistinguishable: t.set.iter().map(|(c, behind)| alternative(self.of(c), *behind)).collect(),
             })
         };
-        taken.iter().enumerate().collect::<Vec<_>>().into_par_iter().filter_map(effect).collect()
+        taken.iter().enumerate().filter_map(effect).collect()
+    }
+
+    /// The held gaps of the models with each of several effects alone, and with all but one.
+    fn gaps_with(&self, effects: usize) -> BTreeMap<Vec<usize>, Maybe> {
+        let several = if effects > 1 { effects } else { 0 };
+        let kept: BTreeSet<Vec<usize>> = (0..several).flat_map(|i| [vec![i], without(i, effects)]).collect();
+        kept.into_par_iter().map(|kept| (kept.clone(), self.gap_with(&kept))).collect()
     }
 
     /// What flows through each effect that is no signal and no parameter, by its number.
@@ -281,4 +285,9 @@ impl Conclusion<'_> {
 
 fn errors(candidate: &Candidate, x: &[f64], recordings: &[Recording], own: bool) -> Vec<Option<Errors>> {
     recordings.par_iter().enumerate().map(|(i, r)| candidate.errors(x, r, own.then_some(i))).collect()
+}
+
+/// All but one of so many effects.
+fn without(one: usize, effects: usize) -> Vec<usize> {
+    (0..effects).filter(|k| *k != one).collect()
 }
