@@ -6,15 +6,19 @@ import effects as library
 import shake
 from plant import disturbance_names
 
+# Disturbances of plants that lack nothing: also such as wander off.
+NULL_KINDS = ("filtered", "narrow", "jumps", "drift", "none")
 FILES = ["train_1", "train_2", "train_3", "held_1", "held_2"]
 
 
 class Case:
     """Everything that is drawn for one case but the sizes of its effects."""
 
-    def __init__(self, rng, circuit, visible=None):
+    def __init__(self, rng, circuit, visible=None, null=False):
         self.circuit = circuit
-        self.effects = library.draw(rng, circuit) if visible is None else [library.known(rng, circuit)]
+        self.null = null
+        known = lambda: library.draw(rng, circuit) if visible is None else [library.known(rng, circuit)]
+        self.effects = [] if null else known()
         self.parameters = {k: v * math.exp(clipped(rng) * sigma) for k, (v, sigma) in circuit.known().items()}
         level = rng.choice([0.002, 0.005, 0.01])
         self.sigma = {s.name: s.range * level * rng.uniform(0.6, 1.5) for s in circuit.signals}
@@ -36,8 +40,9 @@ class Recording:
         n = self.n = circuit.samples + self.skip
         self.commands = {i.name: i.trajectory(rng, n, dt, name) for i in circuit.inputs}
         slow = circuit.samples * dt / 10
+        kinds = dict(kinds=NULL_KINDS) if case.null else {}
         self.disturbances = {
-            d: shake.disturbance(rng, n, dt, node.through, slow)
+            d: shake.disturbance(rng, n, dt, node.through, slow, **kinds)
             for d, node in zip(disturbance_names(circuit), circuit.nodes)
         }
         if case.closed:
@@ -45,6 +50,7 @@ class Recording:
             self.reference = loop.trajectory(rng, n, dt, name)
             self.noise = [rng.gauss(0, case.sigma[loop.signal]) for _ in range(n)]
         self.seed = rng.random()
+        self.hum = shake.hum(rng, n, dt, slow) if case.null and rng.random() < 0.5 else [0.0] * n
 
 
 def clipped(rng):

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Makes blind cases: recordings with study and nominal model into OUT/data, the truth into OUT/truth.
 
-usage: generate.py BRAMAH OUT --seed S --cases N [--circuit NAME] [--visible SIGMAS]
+usage: generate.py BRAMAH OUT --seed S --cases N [--circuit NAME] [--visible SIGMAS | --null]
 
 With --visible each case has one effect of a library's kind that changes some signal by so many standard deviations of its
-noise, as far as the effect's limits allow.
+noise, as far as the effect's limits allow. With --null no case has one: parameters within their tolerances, disturbances
+that are coloured, resonant, drifting or jump, and in half of the recordings a hum that all sensors pick up.
 """
 
 import argparse
@@ -27,11 +28,11 @@ TRIES = 8
 ENOUGH = 30
 
 
-def make(binary, seed, index, circuit, out, visible=None):
+def make(binary, seed, index, circuit, out, visible=None, null=False):
     """One case; a plant that does not run is drawn again, which the truth says."""
     troubles = []
     for attempt in range(TRIES):
-        case = Case(random.Random(f"{seed}/{index}/{circuit.name}/{attempt}"), circuit, visible)
+        case = Case(random.Random(f"{seed}/{index}/{circuit.name}/{attempt}"), circuit, visible, null)
         with tempfile.TemporaryDirectory() as folder:
             bench = Bench(binary, folder, case)
             try:
@@ -60,7 +61,8 @@ def save(case, name, out, recordings, truth_told, plant):
     for f, signals in recordings.items():
         r = case.recordings[f]
         rng = random.Random(r.seed)
-        noisy = {s: shake.noisy(rng, v, case.sigma[s], case.quantum[s]) for s, v in signals.items()}
+        humming = {s: [v + case.sigma[s] * h for v, h in zip(values, r.hum)] for s, values in signals.items()}
+        noisy = {s: shake.noisy(rng, v, case.sigma[s], case.quantum[s]) for s, v in humming.items()}
         columns = {**r.commands, **noisy}
         n = circuit.samples
         table = dict(time=[k * circuit.step for k in range(n)], **{c: v[r.skip :] for c, v in columns.items()})
@@ -98,11 +100,12 @@ def main():
     parser.add_argument("--cases", type=int, default=8)
     parser.add_argument("--circuit")
     parser.add_argument("--visible", type=float, metavar="SIGMAS")
+    parser.add_argument("--null", action="store_true")
     options = parser.parse_args()
     offered = circuits(options.circuit)
     for index in range(options.cases):
         circuit = offered[index % len(offered)]
-        case, seen = make(options.binary, options.seed, index, circuit, options.out, options.visible)
+        case, seen = make(options.binary, options.seed, index, circuit, options.out, options.visible, options.null)
         what = [f"{e.name} ({max(v['visible'].values()):.1f} sigma, {v['nats']:.0f} nats)" for e, v in zip(case.effects, seen)] or ["nothing"]
         if os.environ.get("BLIND_SHOW"):
             print(f"{index:03d}_{circuit.name}: {' and '.join(what)}", flush=True)

@@ -5,10 +5,10 @@ import math
 FINE = 4
 
 
-def disturbance(rng, n, dt, scale, slow):
+def disturbance(rng, n, dt, scale, slow, kinds=("filtered", "filtered", "narrow", "jumps", "none")):
     """A disturbance of random kind, level and bandwidth; `slow` is a usual time of the circuit."""
     level = scale * math.exp(rng.uniform(math.log(1e-3), math.log(1.2e-2)))
-    kind = rng.choice(["filtered", "filtered", "narrow", "jumps", "none"])
+    kind = rng.choice(kinds)
     T = slow * math.exp(rng.uniform(math.log(0.02), math.log(2)))
     if kind == "none":
         return [0.0] * n
@@ -19,6 +19,8 @@ def disturbance(rng, n, dt, scale, slow):
                 value = rng.gauss(0, 1)
             values.append(value)
         return smooth([level * v for v in values], dt, 0.05 * T)
+    if kind == "drift":
+        return scaled(walk(rng, n), level)
     if kind == "narrow":
         return scaled(oscillation(rng, n, dt, 2 * math.pi / T), level)
     a = math.exp(-dt / T)
@@ -41,6 +43,14 @@ def oscillation(rng, n, dt, omega):
     return out[500:]
 
 
+def walk(rng, n):
+    """A random walk from zero."""
+    values = [0.0]
+    for _ in range(n - 1):
+        values.append(values[-1] + rng.gauss(0, 1))
+    return values
+
+
 def smooth(values, dt, T):
     a, out, value = math.exp(-dt / max(T, 1e-9)), [], values[0]
     for v in values:
@@ -52,6 +62,12 @@ def smooth(values, dt, T):
 def scaled(values, level):
     rms = math.sqrt(sum(v * v for v in values) / len(values))
     return [v * level / rms for v in values]
+
+
+def hum(rng, n, dt, slow):
+    """What several sensors pick up alike, of size 1."""
+    omega = 2 * math.pi / (slow * math.exp(rng.uniform(math.log(0.02), math.log(2))))
+    return scaled(oscillation(rng, n, dt, omega), 1.0)
 
 
 def noisy(rng, values, sigma, step):
