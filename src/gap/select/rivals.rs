@@ -20,7 +20,7 @@ pub struct Fitted {
     pub passed: Vec<usize>,
 }
 
-/// A hypothesis after a few iterations from its most promising starts, with the weights of the model before.
+/// A hypothesis after an iteration from its most promising starts, with the weights of the model before.
 struct Tried {
     hypothesis: usize,
     starts: Vec<Start>,
@@ -54,9 +54,10 @@ struct Followed {
     rival: Option<Rival>,
 }
 
-/// Fits hypotheses beside the model before until the time is over, in three stages: a few iterations from their first starts, the best of these to the end, and the same from all their starts. A stage
-/// goes on with those first that then leave least: a linear model promises much that is not kept. Then the front by both
-/// weightings while there is time. `before`: the model before as it was judged.
+/// Fits hypotheses beside the model before until the time is over, in three stages: an iteration from their first starts, the
+/// best of these to the end, and the best of all their starts to the end. A stage goes on with those first that then leave
+/// least: a linear model promises much that is not kept. Then the front by both weightings while there is time. `before`: the
+/// model before as it was judged.
 pub fn fitted(ground: &Ground<'_>, before: &Fit, order: Vec<Screened>, until: Deadline<'_>) -> Fitted {
     let Ground { problem, sensors, .. } = *ground;
     let cost = |t: &Tried| t.fits().map(Fit::cost).fold(f64::INFINITY, f64::min);
@@ -113,7 +114,7 @@ impl Ground<'_> {
     }
 }
 
-/// A few iterations from the most promising starts of a hypothesis.
+/// An iteration from each of the most promising starts of a hypothesis.
 fn tried(ground: &Ground<'_>, (hypothesis, starts): Screened, until: Deadline<'_>) -> Tried {
     let task = ground.problem.task(until);
     let one = |s: &Start| begun(task, s, s.x.clone(), &ground.before.weights, GLANCE).map(Way::from);
