@@ -50,8 +50,11 @@ pub const RUNS: u32 = 500;
 pub const STEP: f64 = 0.75;
 /// Part of that which the linear models of all hypotheses may take, ...
 pub const SCREEN: f64 = 0.4;
-/// ... and part of what they leave which the first iterations of their fits may take. The rest is for fits to the end.
+/// ... part of what they leave which the first iterations of their fits may take, ...
 pub const GLANCES: f64 = 0.25;
+/// ... and part of what is left then which fits to the end may take. The rest is for those from all starts: of the few that
+/// matter the optimum must be found.
+pub const FOLLOWED: f64 = 0.5;
 /// Hypotheses that every stage looks at, however little time is left.
 pub const FIRST: usize = 4;
 /// Decades up and down over which the size of an effect is looked for, at most: what its class calls usual may be a
