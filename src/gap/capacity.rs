@@ -43,7 +43,7 @@ fn capacities(problem: &Problem<'_>) -> Option<BTreeMap<Site, f64>> {
         plan: &model.plan,
         theta: &model.theta,
         sizes: &model.sizes,
-        correction: model.corrections.fine,
+        correction: model.correction,
         travel: &model.travel,
         units: &units,
         deviations: &problem.full_scale,

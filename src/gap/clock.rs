@@ -1,10 +1,9 @@
 //! The time that a search may take. Only the caller has a clock.
 
-use super::policy::{BUDGET, FIRST, RUNS};
+use super::policy::{BUDGET, ROUND, RUNS, SHARE};
 use rayon::prelude::*;
-use std::sync::{Mutex, PoisonError};
+use std::fmt;
 use std::time::Duration;
-use std::{fmt, iter};
 
 /// The time that a search may take, on the clock of whoever asks for it.
 #[derive(Clone, Copy)]
@@ -51,11 +50,11 @@ impl<'a> Deadline<'a> {
         Deadline(budget.map(due))
     }
 
-    /// That of one step, which may take a part of what is left.
-    pub fn part(self, share: f64) -> Self {
+    /// That of one step: a part of what is left.
+    pub fn of_step(self) -> Self {
         let step = |due: Due<'a>| {
             let now = (due.gone)();
-            Due { time: now + due.time.saturating_sub(now).mul_f64(share), ..due }
+            Due { time: now + due.time.saturating_sub(now).mul_f64(SHARE), ..due }
         };
         Deadline(self.0.map(step))
     }
@@ -65,21 +64,14 @@ impl<'a> Deadline<'a> {
         self.0.is_some_and(|due| (due.gone)() >= due.time)
     }
 
-    /// What comes of some things, begun one after the other on all cores until the time is over, but of the first ones at
-    /// least; and the others.
+    /// What comes of some things, a few at a time until the time is over, but of the first ones at least; and the others.
     pub fn rounds<T: Send, R: Send>(self, all: Vec<T>, one: impl Fn(T) -> R + Sync) -> (Vec<R>, Vec<T>) {
-        let count = all.len();
-        let queue = Mutex::new(all.into_iter().enumerate());
-        let next = || {
-            let mut rest = queue.lock().unwrap_or_else(PoisonError::into_inner);
-            let begun = count - rest.len();
-            if begun < FIRST || !self.is_over() { rest.next() } else { None }
-        };
-        let work = |_| iter::from_fn(|| next().map(|(number, thing)| (number, one(thing))));
-        let mut found: Vec<(usize, R)> =
-            (0..rayon::current_num_threads()).into_par_iter().flat_map_iter(work).collect();
-        found.sort_by_key(|f| f.0);
-        let rest = queue.into_inner().unwrap_or_else(PoisonError::into_inner);
-        (found.into_iter().map(|f| f.1).collect(), rest.map(|r| r.1).collect())
+        let mut rest = all.into_iter();
+        let mut found = Vec::new();
+        while rest.len() > 0 && (found.is_empty() || !self.is_over()) {
+            let round: Vec<T> = rest.by_ref().take(ROUND).collect();
+            found.par_extend(round.into_par_iter().map(&one));
+        }
+        (found, rest.collect())
     }
 }

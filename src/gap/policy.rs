@@ -45,18 +45,10 @@ pub const BUDGET: f64 = 60.0;
 /// On a slow model as long as so many simulations of all recordings take, one after another: the fits of the model within its
 /// tolerances and of some dozens of hypotheses. Halved: as above.
 pub const RUNS: u32 = 500;
-/// Part of the time that is left which the search for one effect may take: the first one matters most. The model within its
-/// tolerances takes as much before, at most.
-pub const STEP: f64 = 0.75;
-/// Part of that which the linear models of all hypotheses may take, ...
-pub const SCREEN: f64 = 0.4;
-/// ... part of what they leave which the first iterations of their fits may take, ...
-pub const GLANCES: f64 = 0.25;
-/// ... and part of what is left then which fits to the end may take. The rest is for those from all starts: of the few that
-/// matter the optimum must be found.
-pub const FOLLOWED: f64 = 0.5;
-/// Hypotheses that every stage looks at, however little time is left.
-pub const FIRST: usize = 4;
+/// Part of the time that is left which one step may take.
+pub const SHARE: f64 = 0.5;
+/// Hypotheses that are fitted between two looks at the clock.
+pub const ROUND: usize = 4;
 /// Decades up and down over which the size of an effect is looked for, at most: what its class calls usual may be a
 /// default in other units than the model's.
 pub const DECADES: i32 = 12;
@@ -69,11 +61,7 @@ pub const SIZES: usize = 2;
 /// A hypothesis goes on where its first fits lower the mean square of a signal by this part: a quarter of what is worth a
 /// name.
 pub const HOPED: f64 = 0.05;
-/// Part of what a linear model promises to gain that a first fit must keep, or sizes are looked for.
-pub const KEPT: f64 = 0.5;
-/// Iterations of a first fit from each start by which it is decided what is fitted first ...
-pub const GLANCE: usize = 1;
-/// ... and from which; the best goes on for as many.
+/// Iterations of a first fit from each start; the best goes on for as many.
 pub const ROUGH: usize = 2;
 /// Starts of a hypothesis that are tried before it is decided which ones are fitted first: by cost and by gap.
 pub const TRIED: usize = 2;

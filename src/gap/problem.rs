@@ -6,7 +6,7 @@ use super::circuit::Circuit;
 use super::clock::Deadline;
 use super::data::{Inputs, Recording};
 use super::estimate::Task;
-use super::estimate::simulation::{Corrections, from_start};
+use super::estimate::simulation::{correction, from_start};
 use super::hypotheses::{Hypothesis, Signal, Site};
 use crate::analysis::lift;
 use crate::analysis::local::{Local, Plan};
@@ -109,7 +109,7 @@ pub struct Assembled {
     /// Usual size of each state.
     pub sizes: Vec<f64>,
     /// What a step of a simulation may be corrected by, in parts of these sizes.
-    pub corrections: Corrections,
+    pub correction: f64,
     /// How far each state moves in the nominal model, SI; 0 where that is not known.
     pub travel: Vec<f64>,
     /// The Modelica text.
@@ -239,7 +239,7 @@ impl Problem<'_> {
         }
         let mut all = vec![Vec::new(); variables.len()];
         for r in &self.train {
-            let run = from_start(&model.plan, &model.theta, (&model.sizes, model.corrections.fine), r)?;
+            let run = from_start(&model.plan, &model.theta, (&model.sizes, model.correction), r)?;
             all.iter_mut().zip(run).for_each(|(a, v)| a.extend(v));
         }
         Some(all)
@@ -330,8 +330,8 @@ impl Problem<'_> {
                 *size = travel;
             }
         }
-        let corrections = Corrections::of(&self.noise_floor, &self.full_scale);
-        Ok(Assembled { plan, theta, free, sources, attached, own: Vec::new(), sizes, corrections, travel, augmented })
+        let correction = correction(&self.noise_floor, &self.full_scale);
+        Ok(Assembled { plan, theta, free, sources, attached, own: Vec::new(), sizes, correction, travel, augmented })
     }
 }
 

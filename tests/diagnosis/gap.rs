@@ -490,8 +490,7 @@ fn the_corrected_model_stands_alone_and_so_does_the_page() {
     let fit = &found.last.fit;
     let model = &fit.candidate.model;
     let fitted =
-        from_start(&model.plan, &fit.candidate.theta(&fit.x), (&model.sizes, model.corrections.fine), &held[0])
-            .unwrap();
+        from_start(&model.plan, &fit.candidate.theta(&fit.x), (&model.sizes, model.correction), &held[0]).unwrap();
     for (name, wanted) in ["s", "v"].into_iter().zip(&fitted) {
         let column = run.column(name).unwrap();
         let largest = wanted.iter().fold(0.0_f64, |m, v| m.max(v.abs()));

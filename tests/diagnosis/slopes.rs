@@ -132,8 +132,7 @@ fn does_not_depend_on_sampling(study: &str) {
         let split =
             |w: &[f64]| (0..COARSER).map(|k| w[0] + (w[1] - w[0]) * k as f64 / COARSER as f64).collect::<Vec<_>>();
         let fine = at_times(&coarse, coarse.times.windows(2).flat_map(split).collect());
-        let run =
-            |r: &Recording| from_start(&model.plan, &model.theta, (&model.sizes, model.corrections.fine), r).unwrap();
+        let run = |r: &Recording| from_start(&model.plan, &model.theta, (&model.sizes, model.correction), r).unwrap();
         let (coarse, fine) = (run(&coarse), run(&fine));
         for (i, signal) in problem.signals.iter().enumerate() {
             let off: Vec<f64> = fine[i].iter().step_by(COARSER).zip(&coarse[i]).map(|(a, b)| (a - b).powi(2)).collect();

@@ -85,8 +85,6 @@ pub struct Candidate {
     /// How far the first state of each train recording was from the model's own start where that was found last, in sizes;
     /// nothing where it was not.
     pub off: Vec<Vec<f64>>,
-    /// Whether it is simulated as accurately as a ranking asks for, not a judgement.
-    pub is_rough: bool,
 }
 
 /// What a model leaves of one recording: per signal measured minus simulated, of the samples behind the beginning; NaN
@@ -417,7 +415,6 @@ impl Candidate {
     ) -> Option<Vec<f64>> {
         let theta = self.theta_of(x, number);
         let model = &self.model;
-        let correction = if self.is_rough { model.corrections.rough } else { model.corrections.fine };
         let acts = |c: &Coordinate| !model.own.iter().any(|own| own.0 == c.parameter && Some(own.1) != number);
         let moved = |(c, x): (&Coordinate, &f64)| (c.parameter, if acts(c) { c.slope(*x) } else { 0.0 });
         let moves: Vec<(usize, f64)> = self.coordinates.iter().zip(x).map(moved).collect();
@@ -425,7 +422,7 @@ impl Candidate {
             plan: &model.plan,
             theta: &theta,
             sizes: &model.sizes,
-            correction,
+            correction: model.correction,
             travel: &model.travel,
             units: &self.units,
             deviations: &self.deviations,
@@ -438,7 +435,7 @@ impl Candidate {
             local: &mut begun.local,
             theta: &theta,
             sizes: &model.sizes,
-            correction,
+            correction: model.correction,
             state: begun.state,
             slopes: begun.slopes,
         };

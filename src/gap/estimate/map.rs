@@ -103,30 +103,9 @@ pub struct Fit {
 
 impl Fit {
     /// Fits a model from `x`: once for each of `rounds`, with weights that the round before left. `first` are those of the
-    /// first round, where they are not to be as the errors are at `x`. Rough simulations lead there, and fine ones the last
-    /// steps. `None` where the model does not reach the end of a recording.
+    /// first round, where they are not to be as the errors are at `x`. `None` where the model does not reach the end of a
+    /// recording.
     pub fn of(candidate: Candidate, x: Vec<f64>, task: Task<'_>, first: Option<Weights>, rounds: usize) -> Option<Fit> {
-        let is_rough = candidate.is_rough;
-        let rough = Candidate { is_rough: true, ..candidate.clone() };
-        let near = Fit::in_rounds(rough, x.clone(), task, first.clone(), rounds);
-        if is_rough {
-            return near;
-        }
-        let fine = near.and_then(|f| f.simulated(false, task.train)).map(|mut fit| {
-            fit.descend(task, ITERATIONS);
-            fit
-        });
-        // what the rough simulations of a model do not reach the end of is fitted by fine ones alone
-        fine.or_else(|| Fit::in_rounds(candidate, x, task, first, rounds))
-    }
-
-    fn in_rounds(
-        candidate: Candidate,
-        x: Vec<f64>,
-        task: Task<'_>,
-        first: Option<Weights>,
-        rounds: usize,
-    ) -> Option<Fit> {
         let begun = Fit::begun(candidate, x, task, first.as_ref())?;
         let mut fit = begun.clone();
         fit.descend(task, ITERATIONS);
@@ -153,17 +132,6 @@ impl Fit {
         let evaluated = candidate.evaluate(&x, task.train)?;
         let weights = weights.cloned().unwrap_or_else(|| Weights::of(&evaluated.errors, task.full_scale));
         Some(Fit::at(candidate, x, evaluated, weights))
-    }
-
-    /// The same fit simulated as accurately as a ranking asks for, or as a judgement does. `None` where the model does not
-    /// reach the end of a recording.
-    pub fn simulated(&self, roughly: bool, train: &[Recording]) -> Option<Fit> {
-        if self.candidate.is_rough == roughly {
-            return Some(self.clone());
-        }
-        let candidate = Candidate { is_rough: roughly, ..self.candidate.clone() };
-        let evaluated = candidate.evaluate(&self.x, train)?;
-        Some(Fit::at(candidate, self.x.clone(), evaluated, self.weights.clone()))
     }
 
     /// A model where it was evaluated.

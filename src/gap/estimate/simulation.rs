@@ -25,32 +25,17 @@ const CORRECTION: (f64, f64) = (5e-6, 1e-4);
 /// deviation, and 5000 samples that are each a hundredth of the noise off add up to that. Where the model is smooth, what is
 /// left after a correction is a tenth and less of it; at a corner (friction that changes sign) it is as much.
 const CORRECTED: f64 = 0.01;
-/// Where models are only ranked and fits only on their way, a correction as large as the noise is let pass: what is left after
-/// it counts less than what they leave.
-const ROUGHLY: (f64, f64) = (1e-4, 1e-3);
 /// Part of it below which the next step is twice as long: the correction grows with the cube.
 const LENGTHENED: f64 = 0.1;
 /// What the change of the linear model over a step may do to slopes, as part of the states, for it to be added to second order:
 /// the cube of it is left. Beyond, a step has the exponential of the mean of both its ends.
 const MISSED: f64 = 0.1;
 
-/// The correction of a step that is let pass, in parts of the states' sizes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Corrections {
-    /// Where models are judged.
-    pub fine: f64,
-    /// Where they are ranked, and fits on their way.
-    pub rough: f64,
-}
-
-impl Corrections {
-    /// Those beside sensors with this noise and full scale.
-    pub fn of(noise: &[f64], full_scale: &[f64]) -> Self {
-        let parts = noise.iter().zip(full_scale).map(|(n, f)| n / f).filter(|part| part.is_finite());
-        let finest = parts.fold(f64::INFINITY, f64::min);
-        let within = |(least, most): (f64, f64), part: f64| part.clamp(least, most);
-        Corrections { fine: within(CORRECTION, CORRECTED * finest), rough: within(ROUGHLY, finest) }
-    }
+/// The correction of a step that is let pass, in parts of the states' sizes, beside sensors with this noise and full scale.
+pub fn correction(noise: &[f64], full_scale: &[f64]) -> f64 {
+    let finest = noise.iter().zip(full_scale).map(|(n, f)| n / f).filter(|part| part.is_finite());
+    let (least, most) = CORRECTION;
+    (CORRECTED * finest.fold(f64::INFINITY, f64::min)).clamp(least, most)
 }
 
 /// How what a linearisation leaves out grows over a step: its weight beside phi_2, which belongs to growth in proportion.

@@ -77,7 +77,7 @@ pub fn attached(
     let deviations = problem.noise_floor.iter().zip(&problem.full_scale).map(deviation).collect();
     let units = problem.signals.iter().map(|s| problem.unit(s)).collect();
     let off = Vec::new();
-    Ok(Candidate { causes: causes.to_vec(), taken, model, coordinates, own, units, deviations, off, is_rough: false })
+    Ok(Candidate { causes: causes.to_vec(), taken, model, coordinates, own, units, deviations, off })
 }
 
 /// A share of a whole is not free: an effect is there or not.

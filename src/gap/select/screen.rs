@@ -28,7 +28,7 @@ pub struct Ground<'a> {
     pub problem: &'a Problem<'a>,
     /// The sensors.
     pub sensors: &'a Sensors,
-    /// The model, simulated as accurately as a ranking asks for.
+    /// The model.
     pub before: &'a Fit,
 }
 
@@ -227,7 +227,6 @@ impl Ground<'_> {
         causes.push(Chosen { hypothesis, values: values.first()?.clone() });
         let mut first = candidate(self.problem, &causes, Some(&tolerances), self.before.candidate.taken)?;
         first.begins_as(&self.before.candidate);
-        first.is_rough = self.before.candidate.is_rough;
         let with = |values: &Vec<f64>| {
             let mut candidate = first.clone();
             if let (Some(places), false) = (candidate.model.attached.last(), is_parameter) {
@@ -286,7 +285,6 @@ impl Ground<'_> {
         let taken = self.before.candidate.taken;
         let mut model = models::attached(self.problem, &causes, Some(&self.before.tolerances()), taken, shapes).ok()?;
         model.begins_as(&self.before.candidate);
-        model.is_rough = self.before.candidate.is_rough;
         let mut first = self.before.x.len();
         let group = |c: &Chosen| {
             let from = first;

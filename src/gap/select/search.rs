@@ -5,7 +5,7 @@ use super::super::clock::{Budget, Deadline};
 use super::super::data::Recording;
 use super::super::estimate::{Candidate, Fit};
 use super::super::hypotheses::Hypothesis;
-use super::super::policy::{EFFECTS, SCREEN, SEEN, SETTLING, STEP};
+use super::super::policy::{EFFECTS, SEEN, SETTLING};
 use super::super::problem::{Chosen, Problem, Tolerance};
 use super::choose::{Chooser, Taken, Trial};
 use super::compare::needed;
@@ -173,10 +173,9 @@ pub fn explained(
     let (search, base) = begun(problem, held, None, &mut watch)?;
     watch.begin(Stage::Fit(1)).ok_or(Trouble::Stopped)?;
     let sensors = &search.chooser.criteria.sensors;
-    let rough = base.fit.simulated(true, &problem.train);
-    let ground = Ground { problem, sensors, before: rough.as_ref().unwrap_or(&base.fit) };
+    let ground = Ground { problem, sensors, before: &base.fit };
     let screen = screened(&ground, &[hypothesis], Deadline::default());
-    let rivals = fitted(&ground, &base.fit, screen.order, Deadline::default()).rivals;
+    let rivals = fitted(&ground, screen.order, Deadline::default()).rivals;
     let Some(last) = rivals.first().map(|r| r.model.clone()) else { return Ok(None) };
     let closes = 1.0 - last.gap(sensors) / base.gap(sensors).max(f64::MIN_POSITIVE);
     let trials = search.chooser.choose(1, &base, rivals, Deadline::default()).trials;
@@ -200,7 +199,7 @@ fn begun<'a>(
     let nominal = models::nominal(problem).map_err(Trouble::Model)?;
     let x = nominal.present();
     let ends = Deadline::of(budget, || drop(nominal.evaluate(&x, &problem.train)));
-    let until = ends.part(STEP);
+    let until = ends.of_step();
     let base = weighed(problem, &sensors, (nominal.clone(), x.clone()), until);
     let base = base.ok_or_else(|| stops(problem, &nominal, &x))?;
     let base = settled(problem, &sensors, base, until);
@@ -335,16 +334,15 @@ impl Search<'_> {
             return Vec::new();
         }
         let (problem, sensors) = (self.problem, &self.chooser.criteria.sensors);
-        let rough = before.fit.simulated(true, &problem.train);
-        let ground = Ground { problem, sensors, before: rough.as_ref().unwrap_or(&before.fit) };
-        let until = self.ends.part(STEP);
-        let screen = screened(&ground, open, until.part(SCREEN));
+        let ground = Ground { problem, sensors, before: &before.fit };
+        let until = self.ends.of_step();
+        let screen = screened(&ground, open, until.of_step());
         let seen = |visible: &[f64]| visible.iter().filter(|v| **v > SEEN).count() as f64 / visible.len().max(1) as f64;
         self.visible.get_or_insert(seen(&screen.visible));
         if watch.is_some_and(|w| w.begin(Stage::Fit(step)).is_none()) {
             return Vec::new();
         }
-        let found = fitted(&ground, &before.fit, screen.order, until);
+        let found = fitted(&ground, screen.order, until);
         self.passed = found.passed.into_iter().chain(screen.passed).map(|i| passed(step, i)).collect();
         found.rivals
     }

@@ -79,14 +79,7 @@ pub fn widened(problem: &Problem<'_>, sensors: &Sensors, chosen: Weighed, until:
 pub fn as_in(problem: &Problem<'_>, sensors: &Sensors, before: &Weighed, rival: &Fit) -> Option<Weighed> {
     // the coordinates of the cause that it has beyond the model before stand last
     let x = rival.x[..before.fit.x.len()].to_vec();
-    let task = problem.task(Deadline::default());
-    // most of the time rough simulations show that this leads back
-    let rough = before.fit.simulated(true, task.train)?;
-    let near = as_they_are(task, rough.candidate.clone(), x)?;
-    if rough.ahead(&near) < -OTHER_WEIGHTING {
-        return None;
-    }
-    let other = Weighed::new(problem, as_they_are(task, before.fit.candidate.clone(), near.x)?);
+    let other = Weighed::new(problem, as_they_are(problem.task(Deadline::default()), before.fit.candidate.clone(), x)?);
     better(before, &other, sensors).then_some(other)
 }
 
