@@ -40,9 +40,9 @@ def right(label, effect):
     return effect["family"] in SENSORS.get(kind, []) and any(p["place"] == signal for p in effect["places"])
 
 
-def run(binary, study, folder):
+def run(binary, study, folder, *more):
     with tempfile.NamedTemporaryFile(suffix=".json") as out:
-        command = [binary, "gap", study, "--data", folder, "--output", out.name]
+        command = [binary, "gap", study, "--data", folder, "--output", out.name, *more]
         done = subprocess.run(command, capture_output=True, text=True)
         if done.returncode != 0:
             return None, done.stderr.strip().splitlines()[:1]
@@ -90,4 +90,5 @@ def main():
     print(f"effects {total[0]}: first {total[1]}, in the set {total[2]}; false claims {total[3]}")
 
 
-main()
+if __name__ == "__main__":
+    main()

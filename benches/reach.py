@@ -11,19 +11,12 @@ found the optimum. Labels are read here, after the diagnosis has ended; the diag
 
 import json
 import os
-import subprocess
 import sys
-import tempfile
+
+from gapbench import run
 
 # Part by which the search may leave more than the fit alone.
 NEAR = 1.02
-
-
-def verdict(binary, case, *more):
-    with tempfile.NamedTemporaryFile(suffix=".json") as out:
-        command = [binary, "gap", case["study"], "--data", case["data"], "--output", out.name, *more]
-        done = subprocess.run(command, capture_output=True, text=True)
-        return json.load(open(out.name)) if done.returncode == 0 and os.path.getsize(out.name) else None
 
 
 def realbench(shared):
@@ -76,15 +69,15 @@ def lost(case, found):
 
 
 def entry(binary, case):
-    found = verdict(binary, case)
+    found, trouble = run(binary, case["study"], case["data"])
     if found is None:
-        return {"case": case["name"], "where": "no verdict"}
+        return {"case": case["name"], "where": f"no verdict: {trouble}"}
     where, true = lost(case, found)
     result = {"case": case["name"], "where": where, "seconds": round(found["seconds"], 1)}
     if true is None:
         return result
     place = true["places"][0]["place"]
-    alone = verdict(binary, case, "--explain-rejected", f"{true['effect']}@{place}")
+    alone, _ = run(binary, case["study"], case["data"], "--explain-rejected", f"{true['effect']}@{place}")
     best = alone and next((w["gap"] for w in alone["weighed"] if w["gap"] is not None), None)
     result |= {"effect": true["effect"], "place": place, "gap": true["gap"], "gap alone": best}
     if best and true["gap"]:

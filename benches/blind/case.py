@@ -6,8 +6,6 @@ import effects as library
 import shake
 from plant import disturbance_names
 
-# Disturbances of plants that lack nothing: also such as wander off.
-NULL_KINDS = ("filtered", "narrow", "jumps", "drift", "none")
 FILES = ["train_1", "train_2", "train_3", "held_1", "held_2"]
 
 
@@ -17,8 +15,10 @@ class Case:
     def __init__(self, rng, circuit, visible=None, null=False):
         self.circuit = circuit
         self.null = null
-        known = lambda: library.draw(rng, circuit) if visible is None else [library.known(rng, circuit)]
-        self.effects = [] if null else known()
+        if null:
+            self.effects = []
+        else:
+            self.effects = library.draw(rng, circuit) if visible is None else [library.known(rng, circuit)]
         self.parameters = {k: v * math.exp(clipped(rng) * sigma) for k, (v, sigma) in circuit.known().items()}
         level = rng.choice([0.002, 0.005, 0.01])
         self.sigma = {s.name: s.range * level * rng.uniform(0.6, 1.5) for s in circuit.signals}
@@ -40,9 +40,9 @@ class Recording:
         n = self.n = circuit.samples + self.skip
         self.commands = {i.name: i.trajectory(rng, n, dt, name) for i in circuit.inputs}
         slow = circuit.samples * dt / 10
-        kinds = dict(kinds=NULL_KINDS) if case.null else {}
+        kinds = shake.NULL_KINDS if case.null else shake.KINDS
         self.disturbances = {
-            d: shake.disturbance(rng, n, dt, node.through, slow, **kinds)
+            d: shake.disturbance(rng, n, dt, node.through, slow, kinds)
             for d, node in zip(disturbance_names(circuit), circuit.nodes)
         }
         if case.closed:

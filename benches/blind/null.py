@@ -33,7 +33,9 @@ def interval(k, n):
 def claims(verdict):
     """What a verdict says is missing or wrong."""
     effects = [f"{e['family']} at {e['places'][0]['place']} ({e['evidence']:.1f} nats)" for e in verdict["effects"]]
-    return effects + [f"{r['error']} of {r['signal']}" for r in verdict["recording"]]
+    recording = [f"{r['error']} of {r['signal']}" for r in verdict["recording"]]
+    outside = ["an effect outside the library"] if verdict["verdict"] == "outside_library" else []
+    return effects + recording + outside
 
 
 def main():
@@ -42,7 +44,10 @@ def main():
     by_circuit = defaultdict(list)
     for name in sorted(n.removesuffix(".log") for n in os.listdir(folder) if n.endswith(".log")):
         path = os.path.join(folder, name + ".json")
-        found = claims(json.load(open(path))) if os.path.exists(path) else ["no verdict"]
+        if not os.path.exists(path):
+            print(f"{name:30} no verdict: it does not count")
+            continue
+        found = claims(json.load(open(path)))
         by_circuit[name.split("_", 1)[1]].append(bool(found))
         if found:
             print(f"{name:30} {'; '.join(found)}")

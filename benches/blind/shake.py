@@ -3,9 +3,12 @@
 import math
 
 FINE = 4
+# Disturbances of plants, and of plants that lack nothing: these may also wander off.
+KINDS = ("filtered", "filtered", "narrow", "jumps", "none")
+NULL_KINDS = ("filtered", "narrow", "jumps", "drift", "none")
 
 
-def disturbance(rng, n, dt, scale, slow, kinds=("filtered", "filtered", "narrow", "jumps", "none")):
+def disturbance(rng, n, dt, scale, slow, kinds):
     """A disturbance of random kind, level and bandwidth; `slow` is a usual time of the circuit."""
     level = scale * math.exp(rng.uniform(math.log(1e-3), math.log(1.2e-2)))
     kind = rng.choice(kinds)

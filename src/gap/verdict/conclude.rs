@@ -138,14 +138,13 @@ impl Conclusion<'_> {
         let (tolerated, full) = (total(tolerated), total(last));
         let taken = &self.found.taken;
         let flows = self.flows();
-        let gaps = self.gaps_with(taken.len());
+        let gaps = self.gaps_with(tolerated, full);
         let effect = |(i, t): (usize, &Taken)| {
             let h = self.hypothesis(t);
             if h.is_recording_error() {
                 return None;
             }
-            let (alone, without) =
-                if taken.len() == 1 { (full, tolerated) } else { (gaps[&vec![i]], gaps[&without(i, taken.len())]) };
+            let (alone, without) = (gaps[&vec![i]], gaps[&without(i, taken.len())]);
             Some(Effect {
                 effect: h.effect.clone(),
                 family: h.family.clone(),
@@ -163,11 +162,20 @@ impl Conclusion<'_> {
         taken.iter().enumerate().filter_map(effect).collect()
     }
 
-    /// The held gaps of the models with each of several effects alone, and with all but one.
-    fn gaps_with(&self, effects: usize) -> BTreeMap<Vec<usize>, Maybe> {
-        let several = if effects > 1 { effects } else { 0 };
-        let kept: BTreeSet<Vec<usize>> = (0..several).flat_map(|i| [vec![i], without(i, effects)]).collect();
-        kept.into_par_iter().map(|kept| (kept.clone(), self.gap_with(&kept))).collect()
+    /// The held gaps of the models with each effect alone, and with all others; nothing and everything are known.
+    fn gaps_with(&self, tolerated: Maybe, full: Maybe) -> BTreeMap<Vec<usize>, Maybe> {
+        let taken = &self.found.taken;
+        let effects = (0..taken.len()).filter(|&i| !self.hypothesis(&taken[i]).is_recording_error());
+        let kept: BTreeSet<Vec<usize>> = effects.flat_map(|i| [vec![i], without(i, taken.len())]).collect();
+        let gap = |kept: Vec<usize>| {
+            let gap = match kept.len() {
+                0 => tolerated,
+                all if all == taken.len() => full,
+                _ => self.gap_with(&kept),
+            };
+            (kept, gap)
+        };
+        kept.into_par_iter().map(gap).collect()
     }
 
     /// What flows through each effect that is no signal and no parameter, by its number.
