@@ -5,5 +5,5 @@ model InternalLeakGrowing "The gap of a leakage grows with the pressure"
   parameter SI.Pressure p_s(min = 1) = 1e5 "Width of the corner";
 equation
   q = G_p*Smooth.mag(dp, p_s)*dp;
-  annotation(__bramah(family = "internal_leak", id = "E31", coefficients = {"G_p"}, ends = "free"));
+  annotation(__bramah(family = "internal_leak", id = "E31", coefficients = {"G_p"}, shapes(p_s = {1e5}), ends = "free"));
 end InternalLeakGrowing;

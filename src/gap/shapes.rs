@@ -19,8 +19,12 @@ const LOOKED_FOR: f64 = 0.1;
 const QUANTILES: [f64; 5] = [0.2, 0.4, 0.6, 0.8, 0.95];
 /// Part of the speeds that are no jumps.
 const USUAL: f64 = 0.995;
-/// A corner of friction is at most so wide, in parts of the greatest speed: slow machines would never leave it.
+/// A corner is at most so wide, in parts of the greatest value at its place: what is smaller would never leave it.
 const CORNER: f64 = 0.02;
+/// Distances (play, deflection before a friction breaks loose) are looked for in decades between these parts of the travel.
+const DISTANCES: [f64; 2] = [1e-5, 0.3];
+/// A shaft that turns on and on has no longer travel than one turn, rad.
+const TURN: f64 = std::f64::consts::TAU;
 /// Friction that falls with speed falls over these parts of the greatest speed.
 const FALLS: [f64; 3] = [0.01, 0.05, 0.2];
 
@@ -74,11 +78,16 @@ pub fn fit(problem: &mut Problem<'_>) {
             } else if shape.unit == "s" {
                 time(shape, slower, longest);
             } else if let (true, Some(fastest)) = (is_speed(shape), fastest(&site, &potentials, &times)) {
-                if shape.grid.len() == 1 {
+                if is_corner(shape) {
                     shape.grid[0] = shape.grid[0].min(CORNER * fastest);
                 } else {
                     shape.grid = FALLS.iter().map(|part| part * fastest).collect();
                 }
+            } else if let (true, Some(most)) = (is_corner(shape), greatest(shape, &site, &potentials, &problem.circuit))
+            {
+                shape.grid[0] = shape.grid[0].min(CORNER * most);
+            } else if let (true, Some(travel)) = (is_distance(shape), travel(&site, &potentials)) {
+                distances(shape, travel);
             } else if let Some(occurs) = values(shape, &site, &potentials) {
                 shape.grid = QUANTILES.iter().map(|q| occurs[(q * (occurs.len() - 1) as f64) as usize]).collect();
                 shape.grid.retain(|x| *x > 0.0);
@@ -117,6 +126,17 @@ fn time(shape: &mut Shape, slower: f64, longest: f64) {
     shape.max = Some(shape.max.map_or(most, |m| m.min(most)));
 }
 
+/// Distances in decades from the effect's own, down to what no machine shows and up to what hinders every motion.
+fn distances(shape: &mut Shape, travel: f64) {
+    let [least, most] = DISTANCES.map(|part| part * travel);
+    let (low, high) = shape.grid.iter().fold((f64::INFINITY, 0.0_f64), |(l, h), x| (l.min(*x), h.max(*x)));
+    let below = std::iter::successors(Some(0.1 * low), |x| Some(0.1 * x)).take_while(|x| *x >= least);
+    let above = std::iter::successors(Some(10.0 * high), |x| Some(10.0 * x)).take_while(|x| *x <= most);
+    shape.grid.extend(below.chain(above));
+    shape.grid.retain(|x| *x <= travel);
+    shape.grid.sort_by(f64::total_cmp);
+}
+
 /// Ports at which an effect acts, where a potential of theirs counts.
 fn ports(site: &Site) -> Vec<usize> {
     match *site {
@@ -129,6 +149,36 @@ fn ports(site: &Site) -> Vec<usize> {
 /// Whether a shape is the speed over which a friction changes sign, or falls.
 fn is_speed(shape: &Shape) -> bool {
     ["rad/s", "m/s"].iter().any(|u| same_kind(&shape.unit, u))
+}
+
+/// Whether a shape is the width over which something changes sign: it has one value, in the unit of what changes it.
+fn is_corner(shape: &Shape) -> bool {
+    shape.grid.len() == 1 && !shape.relative && !shape.unit.is_empty()
+}
+
+/// Whether a shape is a distance of two bodies.
+fn is_distance(shape: &Shape) -> bool {
+    ["rad", "m"].iter().any(|u| same_kind(&shape.unit, u))
+}
+
+/// Greatest size of what a corner's effect depends on: the potential of its place, or what flows through it; nothing where
+/// the shape has another unit, or nothing happens.
+fn greatest(shape: &Shape, site: &Site, potentials: &Known, circuit: &Circuit) -> Option<f64> {
+    let (p, values) = match *site {
+        Site::Node(p) | Site::Across(p, _) => (&circuit.ports[p].potential, acting(site, potentials)?),
+        Site::Into(p) => (&circuit.ports[p].through, potentials.get(&(p, true))?.clone()),
+        _ => return None,
+    };
+    let sizes = values.into_iter().filter(|v| v.is_finite()).map(f64::abs);
+    Some(sizes.fold(0.0, f64::max)).filter(|most| *most > 0.0 && same_kind(&shape.unit, &p.unit))
+}
+
+/// How far a site travels, one side against the other where it has two; nothing where it stands still.
+fn travel(site: &Site, potentials: &Known) -> Option<f64> {
+    let values = acting(site, potentials)?;
+    let finite = || values.iter().copied().filter(|v| v.is_finite());
+    let (least, most) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
+    Some((most - least).min(TURN)).filter(|t| *t > 0.0)
 }
 
 /// Turns that a shaft makes in the nominal model.
@@ -155,9 +205,12 @@ fn acting(site: &Site, potentials: &Known) -> Option<Vec<f64>> {
 }
 
 fn compared(h: &Hypothesis) -> impl Iterator<Item = Variable> {
-    let compared = h.shapes.iter().any(|s| s.threshold || s.level || s.order || is_speed(s))
-        || h.attachments.iter().any(|a| surroundings(a).is_some());
-    ports(&h.attachments[0].site).into_iter().filter(move |_| compared).map(|p| (p, false))
+    let measured = |s: &Shape| s.threshold || s.level || s.order || is_speed(s) || is_corner(s) || is_distance(s);
+    let compared = h.shapes.iter().any(measured) || h.attachments.iter().any(|a| surroundings(a).is_some());
+    let site = &h.attachments[0].site;
+    let potentials = ports(site).into_iter().map(|p| (p, false));
+    let through = if let Site::Into(p) = site { Some((*p, true)) } else { None };
+    potentials.chain(through).filter(move |_| compared)
 }
 
 /// The parameter of an effect that is the pressure of the surroundings.

@@ -134,7 +134,8 @@ fn rough(ground: &Ground<'_>, task: Task<'_>, Tried { hypothesis, mut starts, fi
     let as_before = |s: &Start| begun(task, s, s.x.clone(), &before.weights);
     bent.extend(starts.iter().skip(if bent.is_empty() { 0 } else { TRIED }).filter_map(as_before));
     let promised = starts.iter().map(Start::promises).fold(f64::INFINITY, f64::min);
-    if !bent.iter().any(|f| f.cost() <= (1.0 + DELTA) * promised) {
+    let off = before.cost();
+    if !bent.iter().any(|f| off - f.cost() >= (1.0 - DELTA) * (off - promised)) {
         let sizes = starts.first().map(|s| ground.of_size(hypothesis, s)).unwrap_or_default();
         bent.extend(sizes.iter().filter_map(as_before));
         starts.extend(sizes);
