@@ -123,6 +123,33 @@ fn slopes_pass_corners() {
     assert!(off < 0.02, "{off:.1e} off");
 }
 
+/// A store that runs empty gives way within microseconds, until a valve opens: for that moment slopes grow as fast as they
+/// fall behind it. Sampled beside the snap, what grows must not be stretched over a step of 20 ms.
+#[test]
+fn slopes_pass_a_snap() {
+    let text = "model M parameter Real a = 1; Real x(start = 2, fixed = true); equation
+        (1e-4 + 0.5*(1 + tanh((x - 1)/0.01)))*der(x) = -a + 10*max(0.5 - x, 0); end M;";
+    let plan = plan(text, &["a"], &["x"]);
+    // before the store is empty x = 2 - a t; behind it the valve gives x = 0.5 - a/10
+    for shift in 0..20 {
+        let mut recording = recording(100, 0.02, &[], &[]);
+        let times = (0..100).map(|k| 0.02 * f64::from(k) + if k > 0 { 0.001 * f64::from(shift) } else { 0.0 });
+        recording.times = times.collect::<Vec<_>>().into();
+        let mut local = Local::start(plan.clone(), 0.0, &[1.0], &[]).expect("starts");
+        let slopes = Some(Slopes::new(DMatrix::zeros(1, 1), vec![Some((0, 1.0))], 1));
+        let mut run =
+            Run { local: &mut local, theta: &[1.0], sizes: &[1.0], correction: CORRECTION, state: vec![2.0], slopes };
+        run.along(&recording, 0..recording.len(), |k, _, slopes| {
+            let (t, slope) = (recording.times[k], slopes.expect("slopes")[(0, 0)]);
+            let exact = if t < 0.9 { -t } else { -0.1 };
+            let settled = t < 0.9 || t > 1.1;
+            assert!(!settled || (slope - exact).abs() < 1e-2, "{slope} for {exact} at {t} s, shifted by {shift} ms");
+            std::ops::ControlFlow::Continue(())
+        })
+        .expect("a trajectory");
+    }
+}
+
 fn valued<'a>(
     plan: &'a Arc<Plan>,
     theta: &'a [f64],
