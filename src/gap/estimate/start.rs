@@ -10,8 +10,8 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-/// How far states that nothing measures may be from the model's start when a recording begins, as part of their size, and
-/// how far one step may lead them.
+/// How far states that nothing measures may be from the model's start when a recording begins, as part of their value there or
+/// of their size, whichever is less, and how far one step may lead them.
 pub const UNMEASURED: f64 = 0.2;
 /// The same for measured ones, whose steps the data hold.
 const MEASURED: f64 = 1.0;
@@ -68,19 +68,18 @@ impl Valued<'_> {
         let own = local.state();
         local.linearize(recording.times[0], &own, self.theta, &u).ok()?;
         let shown: Vec<Option<usize>> = (0..own.len()).map(|i| self.shows(&local, i)).collect();
-        let loose = self.looseness(&local, recording, &shown);
+        let loose = self.looseness(&local, recording, &own, &shown);
         let shown_start = self.shown_start(&local, recording, &shown);
         let moved = moves.unwrap_or(&[]);
         let mut first = guess.filter(|g| g.len() == own.len()).and_then(|g| {
             let x = DVector::from_column_slice(g);
-            Some((self.through(recording, &mut local, &own, &loose, &x, moved)?, x, moved))
+            Some((self.through(recording, &mut local, &own, &x, moved)?, x, moved))
         });
         if first.is_none() {
             // a first reading may be false: the model's own start may be nearer
-            let begin =
-                |x: DVector<f64>| self.through(recording, &mut local, &own, &loose, &x, &[]).map(|b| (b, x, &[][..]));
+            let begin = |x: DVector<f64>| self.through(recording, &mut local, &own, &x, &[]).map(|b| (b, x, &[][..]));
             let both = [shown_start, DVector::zeros(own.len())].map(begin);
-            first = both.into_iter().flatten().reduce(|a, b| if b.0.cost < a.0.cost { b } else { a });
+            first = both.into_iter().flatten().reduce(|a, b| if b.0.data < a.0.data { b } else { a });
         }
         let (mut best, mut x, mut known) = first?;
         for _ in 0..ROUNDS {
@@ -92,8 +91,10 @@ impl Valued<'_> {
             }
             let mut found = None;
             for _ in 0..HALVINGS {
-                let tried = self.through(recording, &mut local, &own, &loose, &(&x + &step), &[]);
-                found = tried.filter(|t| t.cost <= best.cost);
+                let to = &x + &step;
+                let tried = self.through(recording, &mut local, &own, &to, &[]);
+                let scale = best.scale();
+                found = tried.filter(|t| t.cost(&to, &loose, scale) <= best.cost(&x, &loose, scale));
                 if found.is_some() {
                     break;
                 }
@@ -106,7 +107,7 @@ impl Valued<'_> {
         let off = x.as_slice().to_vec();
         let Some(moves) = moves else { return Some(Begun { local, off, state: best.state, slopes: None }) };
         if known.len() < moves.len() {
-            best = self.through(recording, &mut local, &own, &loose, &x, moves)?;
+            best = self.through(recording, &mut local, &own, &x, moves)?;
         }
         Some(Begun {
             local,
@@ -119,20 +120,24 @@ impl Valued<'_> {
     /// Deviations of the states from the model's own start, in their sizes. What the model fixes and no sensor shows by
     /// itself begins where the model says, for a wrong law would find any other start for it; but not in a recording that
     /// begins elsewhere with what is shown.
-    fn looseness(&self, local: &Local, recording: &Recording, shown: &[Option<usize>]) -> DVector<f64> {
+    fn looseness(&self, local: &Local, recording: &Recording, own: &[f64], shown: &[Option<usize>]) -> DVector<f64> {
         let c = &local.linear.c;
         let begins_elsewhere = |y: usize| {
             let first = recording.first_value(y);
             first.is_some_and(|v| (v - local.outputs[y]).abs() > SURE * self.deviations[y])
         };
         let elsewhere = shown.iter().flatten().any(|&y| begins_elsewhere(y));
+        let unmeasured = |i: usize| match own[i].abs() / self.sizes[i] {
+            value if value > 0.0 => UNMEASURED * value.min(1.0),
+            _ => UNMEASURED,
+        };
         DVector::from_fn(self.sizes.len(), |i, _| {
             let measured = c.column(i).iter().any(|c| *c != 0.0);
             match self.plan.state_unit(i) {
                 _ if self.plan.state_is_fixed(i) && !elsewhere && shown[i].is_none() => HELD,
                 Some("K") => KELVIN / self.sizes[i],
                 _ if measured => MEASURED,
-                _ => UNMEASURED.max(TRAVEL * self.travel[i] / self.sizes[i]),
+                _ => unmeasured(i).max(TRAVEL * self.travel[i] / self.sizes[i]),
             }
         })
     }
@@ -163,7 +168,6 @@ impl Valued<'_> {
         recording: &Recording,
         local: &mut Local,
         own: &[f64],
-        loose: &DVector<f64>,
         x: &DVector<f64>,
         moves: &[(usize, f64)],
     ) -> Option<Beginning> {
@@ -176,7 +180,7 @@ impl Valued<'_> {
         let slopes = Some(Slopes::new(slopes, choices, self.deviations.len()));
         let mut gram = DMatrix::zeros(n, width + 1);
         let mut row = vec![0.0; width + 1];
-        let mut cost = x.component_div(loose).norm_squared();
+        let (mut data, mut count) = (0.0, 0.0);
         let mut run = Run { local, theta: self.theta, sizes: self.sizes, correction: self.correction, state, slopes };
         run.along(recording, 0..recording.settled() + 1, |k, local, slopes| {
             let Some(slopes) = slopes else { return ControlFlow::Continue(()) };
@@ -185,7 +189,8 @@ impl Valued<'_> {
                 if !error.is_finite() {
                     continue;
                 }
-                cost += error * error;
+                data += error * error;
+                count += 1.0;
                 row.iter_mut().zip(slopes.column(i).iter()).for_each(|(to, s)| *to = s / deviation);
                 row[width] = error;
                 exponential::add_outer(&mut gram, 1.0, &row[..n], &row);
@@ -193,7 +198,7 @@ impl Valued<'_> {
             ControlFlow::Continue(())
         })?;
         let (state, slopes) = (run.state, run.slopes?.states);
-        cost.is_finite().then_some(Beginning { state, slopes, gram, cost })
+        data.is_finite().then_some(Beginning { state, slopes, gram, data, count })
     }
 }
 
@@ -205,14 +210,27 @@ struct Beginning {
     slopes: DMatrix<f64>,
     /// Products of the first state's columns with all columns and with the errors.
     gram: DMatrix<f64>,
-    cost: f64,
+    /// Squared errors, in squared deviations, and of how many samples.
+    data: f64,
+    count: f64,
 }
 
 impl Beginning {
+    /// What a squared deviation counts: errors are as large as they are, where they are larger than deviations. What nothing
+    /// measures does not make up for a model that is wrong.
+    fn scale(&self) -> f64 {
+        (self.data / self.count).max(1.0)
+    }
+
+    /// What it costs to begin so many sizes off the model's own start, where squared deviations count by `scale`.
+    fn cost(&self, x: &DVector<f64>, loose: &DVector<f64>, scale: f64) -> f64 {
+        self.data / scale + x.component_div(loose).norm_squared()
+    }
+
     /// Products of the first state's columns and the pull to the model's own start.
     fn information(&self, loose: &DVector<f64>) -> Option<Cholesky<f64, nalgebra::Dyn>> {
         let n = loose.len();
-        let mut information = self.gram.view((0, 0), (n, n)).into_owned();
+        let mut information = self.gram.view((0, 0), (n, n)) / self.scale();
         (0..n).for_each(|i| information[(i, i)] += loose[i].powi(-2));
         information.cholesky()
     }
@@ -226,7 +244,7 @@ impl Beginning {
     fn step(&self, x: &DVector<f64>, loose: &DVector<f64>) -> Option<DVector<f64>> {
         let pull = DVector::from_fn(x.len(), |i, _| x[i] * loose[i].powi(-2));
         let last = self.gram.ncols() - 1;
-        let step = self.information(loose)?.solve(&(self.gram.column(last) - pull));
+        let step = self.information(loose)?.solve(&(self.gram.column(last) / self.scale() - pull));
         // what nothing measures is led there by the linear model alone, which may end where the model has no sense
         let far =
             |(step, loose): (&f64, &f64)| if *loose < MEASURED { step.abs() / loose.max(UNMEASURED) } else { 0.0 };
@@ -240,7 +258,7 @@ impl Beginning {
         let direct = self.slopes.columns(n, m);
         let states = match self.information(loose) {
             Some(information) => {
-                let first = information.solve(&self.gram.view((0, n), (n, m)).into_owned());
+                let first = information.solve(&(self.gram.view((0, n), (n, m)) / self.scale()));
                 direct - self.slopes.columns(0, n) * first
             }
             None => direct.into_owned(),
