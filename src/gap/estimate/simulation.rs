@@ -25,6 +25,10 @@ const CORRECTION: (f64, f64) = (5e-6, 1e-4);
 /// deviation, and 5000 samples that are each a hundredth of the noise off add up to that. Where the model is smooth, what is
 /// left after a correction is a tenth and less of it; at a corner (friction that changes sign) it is as much.
 const CORRECTED: f64 = 0.01;
+/// A correction in parts of the states' sizes with which not even a shortest step is let pass, for so many steps of a
+/// recording: at a snap within microseconds the states would be thrown anywhere.
+const WILD: f64 = 1e-2;
+const SHORTER: usize = 1000;
 /// Part of it below which the next step is twice as long: the correction grows with the cube.
 const LENGTHENED: f64 = 0.1;
 /// What the change of the linear model over a step may do to slopes, as part of the states, for it to be added to second order:
@@ -178,6 +182,7 @@ impl Run<'_> {
                 Some(_) => self.local.linearize(t, &self.state, self.theta, &stepper.u),
                 None => self.local.evaluate(t, &self.state, self.theta, &stepper.u),
             }
+            .map_err(|e| eprintln!("DBG sample {k} {e:?} {:?}", self.state))
             .ok()?;
             if let Some(slopes) = &mut self.slopes {
                 slopes.look(self.local, self.sizes);
@@ -190,7 +195,17 @@ impl Run<'_> {
                 break;
             }
             stepper.inputs.enter(recording, k);
-            stepper.advance(self, t, recording.times[k + 1] - t)?;
+            if stepper.advance(self, t, recording.times[k + 1] - t).is_none() {
+                eprintln!(
+                    "DBG none k={k} t={t} depth={} spare={} slopes={} state={:?} next={:?}",
+                    stepper.depth,
+                    stepper.spare,
+                    self.slopes.is_some(),
+                    self.state,
+                    stepper.next
+                );
+                return None;
+            }
             if self.state.iter().any(|v| !v.is_finite()) {
                 return None;
             }
@@ -247,9 +262,10 @@ struct Stepper {
     mean: Exponential,
     /// Per length the step that the linearisation served last; 0 where it did not.
     lengths: [f64; DEEPEST as usize + 1],
-    /// Halvings of the last step, and steps until only the first ones are allowed.
+    /// Halvings of the last step, steps until only the first ones are allowed, and steps that may be shorter than the shortest.
     depth: u32,
     spare: usize,
+    shorter: usize,
     /// x' in sizes where the step begins, a change over the step, and what the linear model leaves out of x' at its end.
     rate: DVector<f64>,
     change: DVector<f64>,
@@ -275,6 +291,7 @@ impl Stepper {
             lengths: [0.0; DEEPEST as usize + 1],
             depth: 0,
             spare: MANY.max(recording.len() << DEEP),
+            shorter: SHORTER,
             rate: zeros(),
             change: zeros(),
             remainder: zeros(),
@@ -295,6 +312,7 @@ impl Stepper {
         while gone < WHOLE {
             let deepest = if self.spare > 0 { to_shortest } else { DEEP };
             self.spare = self.spare.saturating_sub(1);
+            self.shorter = self.shorter.saturating_sub(usize::from(self.depth > deepest));
             // a longer step begins where it would have begun
             while self.depth > deepest && gone.is_multiple_of(2 * (WHOLE >> self.depth)) {
                 self.depth -= 1;
@@ -312,7 +330,10 @@ impl Stepper {
             if off > run.correction {
                 if !linear_here {
                     self.inputs.at(after, &mut self.u);
-                    run.local.linearize(t + after, &run.state, run.theta, &self.u).ok()?;
+                    run.local
+                        .linearize(t + after, &run.state, run.theta, &self.u)
+                        .map_err(|e| eprintln!("DBG lin1 {e:?}"))
+                        .ok()?;
                     linear_here = true;
                 }
                 self.linear(run, length);
@@ -321,7 +342,8 @@ impl Stepper {
                 }
                 off = self.step(run, t, after, length, Remainder::Square);
             }
-            if off > run.correction && self.depth < deepest {
+            let shorter = off > WILD && self.depth < DEEPEST && self.shorter > 0;
+            if off > run.correction && self.depth < deepest || shorter {
                 self.deepen();
                 continue;
             }
@@ -332,13 +354,19 @@ impl Stepper {
             gone += part;
             linear_here = run.slopes.is_some();
             if linear_here {
-                run.local.linearize(t + fraction(gone), &run.state, run.theta, &self.u).ok()?;
+                run.local
+                    .linearize(t + fraction(gone), &run.state, run.theta, &self.u)
+                    .map_err(|e| eprintln!("DBG lin2 {e:?} {:?}", run.state))
+                    .ok()?;
                 self.take_slopes(run, length);
             }
             // at the next sample the model is looked at anyway
             if gone < WHOLE {
                 if !linear_here {
-                    run.local.evaluate(t + fraction(gone), &run.state, run.theta, &self.u).ok()?;
+                    run.local
+                        .evaluate(t + fraction(gone), &run.state, run.theta, &self.u)
+                        .map_err(|e| eprintln!("DBG ev {e:?} {:?}", run.state))
+                        .ok()?;
                 }
                 self.take_rates(run);
             }

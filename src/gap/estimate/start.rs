@@ -3,6 +3,8 @@
 
 use super::super::data::{Inputs, Recording};
 use super::super::policy::SURE;
+use super::candidate::Errors;
+use super::correlation;
 use super::exponential;
 use super::simulation::{Run, Slopes};
 use crate::analysis::local::{Local, Plan};
@@ -13,7 +15,7 @@ use std::sync::Arc;
 /// How far states that nothing measures may be from the model's start when a recording begins, as part of their value there or
 /// of their size, whichever is less, and how far one step may lead them.
 pub const UNMEASURED: f64 = 0.2;
-/// The same for measured ones, whose steps the data hold.
+/// The same for measured ones, whose steps the data hold: by what the others may be off, some signal changes surely.
 const MEASURED: f64 = 1.0;
 /// Or as part of how far they usually move.
 pub const TRAVEL: f64 = 0.5;
@@ -23,7 +25,7 @@ pub const KELVIN: f64 = 10.0;
 const HELD: f64 = 1e-6;
 /// Gauss-Newton steps at most, and halvings of one that leads nowhere.
 const ROUNDS: usize = 12;
-const HALVINGS: usize = 3;
+const HALVINGS: usize = 6;
 /// A step of the first state, in its sizes, that the linear model takes along: what it leaves out grows with the square.
 const SMALL: f64 = 1e-2;
 
@@ -68,8 +70,14 @@ impl Valued<'_> {
         let own = local.state();
         local.linearize(recording.times[0], &own, self.theta, &u).ok()?;
         let shown: Vec<Option<usize>> = (0..own.len()).map(|i| self.shows(&local, i)).collect();
-        let loose = self.looseness(&local, recording, &own, &shown);
+        let elsewhere = self.begins_elsewhere(&local, recording, &shown);
         let shown_start = self.shown_start(&local, recording, &shown);
+        // what measures a state is seen where the recording begins: at rest a flow depends on every pressure
+        let there: Vec<f64> = (0..own.len()).map(|i| own[i] + shown_start[i] * self.sizes[i]).collect();
+        if local.linearize(recording.times[0], &there, self.theta, &u).is_err() {
+            local.linearize(recording.times[0], &own, self.theta, &u).ok()?;
+        }
+        let loose = self.looseness(&local, &own, &shown, elsewhere);
         let moved = moves.unwrap_or(&[]);
         let mut first = guess.filter(|g| g.len() == own.len()).and_then(|g| {
             let x = DVector::from_column_slice(g);
@@ -79,7 +87,7 @@ impl Valued<'_> {
             // a first reading may be false: the model's own start may be nearer
             let begin = |x: DVector<f64>| self.through(recording, &mut local, &own, &x, &[]).map(|b| (b, x, &[][..]));
             let both = [shown_start, DVector::zeros(own.len())].map(begin);
-            first = both.into_iter().flatten().reduce(|a, b| if b.0.data < a.0.data { b } else { a });
+            first = both.into_iter().flatten().reduce(|a, b| if b.0.data() < a.0.data() { b } else { a });
         }
         let (mut best, mut x, mut known) = first?;
         for _ in 0..ROUNDS {
@@ -117,27 +125,30 @@ impl Valued<'_> {
         })
     }
 
+    /// Whether what is shown begins elsewhere than the model does.
+    fn begins_elsewhere(&self, local: &Local, recording: &Recording, shown: &[Option<usize>]) -> bool {
+        let off = |y: usize, first: f64| (first - local.outputs[y]).abs() > SURE * self.deviations[y];
+        shown.iter().flatten().any(|&y| recording.first_value(y).is_some_and(|first| off(y, first)))
+    }
+
     /// Deviations of the states from the model's own start, in their sizes. What the model fixes and no sensor shows by
     /// itself begins where the model says, for a wrong law would find any other start for it; but not in a recording that
     /// begins elsewhere with what is shown.
-    fn looseness(&self, local: &Local, recording: &Recording, own: &[f64], shown: &[Option<usize>]) -> DVector<f64> {
+    fn looseness(&self, local: &Local, own: &[f64], shown: &[Option<usize>], elsewhere: bool) -> DVector<f64> {
         let c = &local.linear.c;
-        let begins_elsewhere = |y: usize| {
-            let first = recording.first_value(y);
-            first.is_some_and(|v| (v - local.outputs[y]).abs() > SURE * self.deviations[y])
-        };
-        let elsewhere = shown.iter().flatten().any(|&y| begins_elsewhere(y));
         let unmeasured = |i: usize| match own[i].abs() / self.sizes[i] {
             value if value > 0.0 => UNMEASURED * value.min(1.0),
             _ => UNMEASURED,
         };
         DVector::from_fn(self.sizes.len(), |i, _| {
-            let measured = c.column(i).iter().any(|c| *c != 0.0);
+            let loose = unmeasured(i).max(TRAVEL * self.travel[i] / self.sizes[i]);
+            let moves = |(c, deviation): (&f64, &f64)| (c * loose * self.sizes[i]).abs() > SURE * deviation;
+            let measured = shown[i].is_some() || c.column(i).iter().zip(self.deviations).any(moves);
             match self.plan.state_unit(i) {
                 _ if self.plan.state_is_fixed(i) && !elsewhere && shown[i].is_none() => HELD,
                 Some("K") => KELVIN / self.sizes[i],
                 _ if measured => MEASURED,
-                _ => unmeasured(i).max(TRAVEL * self.travel[i] / self.sizes[i]),
+                _ => loose,
             }
         })
     }
@@ -180,7 +191,7 @@ impl Valued<'_> {
         let slopes = Some(Slopes::new(slopes, choices, self.deviations.len()));
         let mut gram = DMatrix::zeros(n, width + 1);
         let mut row = vec![0.0; width + 1];
-        let (mut data, mut count) = (0.0, 0.0);
+        let mut errors: Errors = vec![Vec::with_capacity(recording.settled() + 1); self.deviations.len()];
         let mut run = Run { local, theta: self.theta, sizes: self.sizes, correction: self.correction, state, slopes };
         run.along(recording, 0..recording.settled() + 1, |k, local, slopes| {
             let Some(slopes) = slopes else { return ControlFlow::Continue(()) };
@@ -189,8 +200,7 @@ impl Valued<'_> {
                 if !error.is_finite() {
                     continue;
                 }
-                data += error * error;
-                count += 1.0;
+                errors[i].push(error);
                 row.iter_mut().zip(slopes.column(i).iter()).for_each(|(to, s)| *to = s / deviation);
                 row[width] = error;
                 exponential::add_outer(&mut gram, 1.0, &row[..n], &row);
@@ -198,7 +208,8 @@ impl Valued<'_> {
             ControlFlow::Continue(())
         })?;
         let (state, slopes) = (run.state, run.slopes?.states);
-        data.is_finite().then_some(Beginning { state, slopes, gram, data, count })
+        let beginning = Beginning { state, slopes, gram, errors };
+        beginning.data().is_finite().then_some(beginning)
     }
 }
 
@@ -210,21 +221,27 @@ struct Beginning {
     slopes: DMatrix<f64>,
     /// Products of the first state's columns with all columns and with the errors.
     gram: DMatrix<f64>,
-    /// Squared errors, in squared deviations, and of how many samples.
-    data: f64,
-    count: f64,
+    /// Errors by signal, in deviations.
+    errors: Errors,
 }
 
 impl Beginning {
-    /// What a squared deviation counts: errors are as large as they are, where they are larger than deviations. What nothing
-    /// measures does not make up for a model that is wrong.
+    /// Squared errors.
+    fn data(&self) -> f64 {
+        self.errors.iter().flatten().map(|e| e * e).sum()
+    }
+
+    /// What a squared deviation counts: errors are as large and as correlated as they are, where that is more than noise. What
+    /// nothing measures does not make up for a model that is wrong.
     fn scale(&self) -> f64 {
-        (self.data / self.count).max(1.0)
+        let count = self.errors.iter().map(Vec::len).sum::<usize>() as f64;
+        let correlated = |e: &Vec<f64>| correlation::time(e) * e.iter().map(|e| e * e).sum::<f64>();
+        (self.errors.iter().map(correlated).sum::<f64>() / count).max(1.0)
     }
 
     /// What it costs to begin so many sizes off the model's own start, where squared deviations count by `scale`.
     fn cost(&self, x: &DVector<f64>, loose: &DVector<f64>, scale: f64) -> f64 {
-        self.data / scale + x.component_div(loose).norm_squared()
+        self.data() / scale + x.component_div(loose).norm_squared()
     }
 
     /// Products of the first state's columns and the pull to the model's own start.
