@@ -182,7 +182,6 @@ impl Run<'_> {
                 Some(_) => self.local.linearize(t, &self.state, self.theta, &stepper.u),
                 None => self.local.evaluate(t, &self.state, self.theta, &stepper.u),
             }
-            .map_err(|e| eprintln!("DBG sample {k} {e:?} {:?}", self.state))
             .ok()?;
             if let Some(slopes) = &mut self.slopes {
                 slopes.look(self.local, self.sizes);
@@ -195,17 +194,7 @@ impl Run<'_> {
                 break;
             }
             stepper.inputs.enter(recording, k);
-            if stepper.advance(self, t, recording.times[k + 1] - t).is_none() {
-                eprintln!(
-                    "DBG none k={k} t={t} depth={} spare={} slopes={} state={:?} next={:?}",
-                    stepper.depth,
-                    stepper.spare,
-                    self.slopes.is_some(),
-                    self.state,
-                    stepper.next
-                );
-                return None;
-            }
+            stepper.advance(self, t, recording.times[k + 1] - t)?;
             if self.state.iter().any(|v| !v.is_finite()) {
                 return None;
             }
@@ -330,10 +319,7 @@ impl Stepper {
             if off > run.correction {
                 if !linear_here {
                     self.inputs.at(after, &mut self.u);
-                    run.local
-                        .linearize(t + after, &run.state, run.theta, &self.u)
-                        .map_err(|e| eprintln!("DBG lin1 {e:?}"))
-                        .ok()?;
+                    run.local.linearize(t + after, &run.state, run.theta, &self.u).ok()?;
                     linear_here = true;
                 }
                 self.linear(run, length);
@@ -354,19 +340,13 @@ impl Stepper {
             gone += part;
             linear_here = run.slopes.is_some();
             if linear_here {
-                run.local
-                    .linearize(t + fraction(gone), &run.state, run.theta, &self.u)
-                    .map_err(|e| eprintln!("DBG lin2 {e:?} {:?}", run.state))
-                    .ok()?;
+                run.local.linearize(t + fraction(gone), &run.state, run.theta, &self.u).ok()?;
                 self.take_slopes(run, length);
             }
             // at the next sample the model is looked at anyway
             if gone < WHOLE {
                 if !linear_here {
-                    run.local
-                        .evaluate(t + fraction(gone), &run.state, run.theta, &self.u)
-                        .map_err(|e| eprintln!("DBG ev {e:?} {:?}", run.state))
-                        .ok()?;
+                    run.local.evaluate(t + fraction(gone), &run.state, run.theta, &self.u).ok()?;
                 }
                 self.take_rates(run);
             }

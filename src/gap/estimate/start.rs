@@ -77,7 +77,9 @@ impl Valued<'_> {
         if local.linearize(recording.times[0], &there, self.theta, &u).is_err() {
             local.linearize(recording.times[0], &own, self.theta, &u).ok()?;
         }
-        let loose = self.looseness(&local, &own, &shown, elsewhere);
+        let mut loose = self.looseness(&local, &own, &shown, elsewhere);
+        // what is shown may be as far from the model's start as it is shown
+        loose.iter_mut().zip(shown_start.iter()).for_each(|(loose, off)| *loose = loose.max(off.abs()));
         let moved = moves.unwrap_or(&[]);
         let mut first = guess.filter(|g| g.len() == own.len()).and_then(|g| {
             let x = DVector::from_column_slice(g);
