@@ -83,48 +83,61 @@ impl Valued<'_> {
         let moved = moves.unwrap_or(&[]);
         let mut first = guess.filter(|g| g.len() == own.len()).and_then(|g| {
             let x = DVector::from_column_slice(g);
-            Some((self.through(recording, &mut local, &own, &x, moved)?, x, moved))
+            Some(Tried { beginning: self.through(recording, &mut local, &own, &x, moved)?, x, slopes: true })
         });
+        let setting = Setting { recording, own: &own, loose: &loose };
         if first.is_none() {
             // a first reading may be false: the model's own start may be nearer
-            let begin = |x: DVector<f64>| self.through(recording, &mut local, &own, &x, &[]).map(|b| (b, x, &[][..]));
+            let begin = |x: DVector<f64>| {
+                let beginning = self.through(recording, &mut local, &own, &x, &[])?;
+                Some(Tried { beginning, x, slopes: false })
+            };
             let both = [shown_start, DVector::zeros(own.len())].map(begin);
-            first = both.into_iter().flatten().reduce(|a, b| if b.0.data() < a.0.data() { b } else { a });
+            let nearer = |a: Tried, b: Tried| if b.beginning.data() < a.beginning.data() { b } else { a };
+            first = both.into_iter().flatten().reduce(nearer);
+            // first as near to the data as the model gets, from there with errors as they are left
+            first = first.map(|tried| self.descended(&setting, &mut local, tried, 1.0));
         }
-        let (mut best, mut x, mut known) = first?;
-        for _ in 0..ROUNDS {
-            let Some(mut step) = best.step(&x, &loose) else { break };
-            if step.amax() < SMALL {
-                best.take_along(&step, self.sizes);
-                x += &step;
-                break;
-            }
-            let mut found = None;
-            for _ in 0..HALVINGS {
-                let to = &x + &step;
-                let tried = self.through(recording, &mut local, &own, &to, &[]);
-                let scale = best.scale();
-                found = tried.filter(|t| t.cost(&to, &loose, scale) <= best.cost(&x, &loose, scale));
-                if found.is_some() {
-                    break;
-                }
-                step *= 0.5;
-            }
-            let Some(found) = found else { break };
-            x += &step;
-            (best, known) = (found, &[]);
-        }
+        let scale = first.as_ref()?.beginning.scale();
+        let Tried { beginning: mut best, x, slopes } = self.descended(&setting, &mut local, first?, scale);
         let off = x.as_slice().to_vec();
         let Some(moves) = moves else { return Some(Begun { local, off, state: best.state, slopes: None }) };
-        if known.len() < moves.len() {
+        if !slopes {
             best = self.through(recording, &mut local, &own, &x, moves)?;
         }
         Some(Begun {
             local,
             off,
-            slopes: Some(best.slopes_of_choices(&loose, moves, self.units.len())),
+            slopes: Some(best.slopes_of_choices(&loose, scale, moves, self.units.len())),
             state: best.state,
         })
+    }
+
+    /// Gauss-Newton steps of the first state, where squared deviations count by `scale`.
+    fn descended(&self, setting: &Setting<'_>, local: &mut Local, mut best: Tried, scale: f64) -> Tried {
+        let Setting { recording, own, loose } = *setting;
+        for _ in 0..ROUNDS {
+            let Some(mut step) = best.beginning.step(&best.x, loose, scale) else { break };
+            if step.amax() < SMALL {
+                best.beginning.take_along(&step, self.sizes);
+                best.x += &step;
+                break;
+            }
+            let costs = best.beginning.cost(&best.x, loose, scale);
+            let mut found = None;
+            for _ in 0..HALVINGS {
+                let to = &best.x + &step;
+                let tried = self.through(recording, local, own, &to, &[]);
+                found = tried.filter(|t| t.cost(&to, loose, scale) <= costs);
+                if found.is_some() {
+                    break;
+                }
+                step *= 0.5;
+            }
+            let Some(beginning) = found else { break };
+            best = Tried { beginning, x: best.x + step, slopes: false };
+        }
+        best
     }
 
     /// Whether what is shown begins elsewhere than the model does.
@@ -215,6 +228,21 @@ impl Valued<'_> {
     }
 }
 
+/// A recording, the model's own start, and how far states may be from it, in their sizes.
+#[derive(Clone, Copy)]
+struct Setting<'a> {
+    recording: &'a Recording,
+    own: &'a [f64],
+    loose: &'a DVector<f64>,
+}
+
+/// A start that was tried, so many sizes off the model's own one; with the slopes that are wanted or without.
+struct Tried {
+    beginning: Beginning,
+    x: DVector<f64>,
+    slopes: bool,
+}
+
 /// What one passage through the beginning gave.
 struct Beginning {
     /// State at its last sample.
@@ -247,9 +275,9 @@ impl Beginning {
     }
 
     /// Products of the first state's columns and the pull to the model's own start.
-    fn information(&self, loose: &DVector<f64>) -> Option<Cholesky<f64, nalgebra::Dyn>> {
+    fn information(&self, loose: &DVector<f64>, scale: f64) -> Option<Cholesky<f64, nalgebra::Dyn>> {
         let n = loose.len();
-        let mut information = self.gram.view((0, 0), (n, n)) / self.scale();
+        let mut information = self.gram.view((0, 0), (n, n)) / scale;
         (0..n).for_each(|i| information[(i, i)] += loose[i].powi(-2));
         information.cholesky()
     }
@@ -260,10 +288,10 @@ impl Beginning {
         self.state.iter_mut().zip(moved.iter().zip(sizes)).for_each(|(s, (m, size))| *s += m * size);
     }
 
-    fn step(&self, x: &DVector<f64>, loose: &DVector<f64>) -> Option<DVector<f64>> {
+    fn step(&self, x: &DVector<f64>, loose: &DVector<f64>, scale: f64) -> Option<DVector<f64>> {
         let pull = DVector::from_fn(x.len(), |i, _| x[i] * loose[i].powi(-2));
         let last = self.gram.ncols() - 1;
-        let step = self.information(loose)?.solve(&(self.gram.column(last) / self.scale() - pull));
+        let step = self.information(loose, scale)?.solve(&(self.gram.column(last) / scale - pull));
         // what nothing measures is led there by the linear model alone, which may end where the model has no sense
         let far =
             |(step, loose): (&f64, &f64)| if *loose < MEASURED { step.abs() / loose.max(UNMEASURED) } else { 0.0 };
@@ -272,12 +300,12 @@ impl Beginning {
     }
 
     /// How the state depends on the parameters, the first state found anew for each: by the implicit function theorem.
-    fn slopes_of_choices(&self, loose: &DVector<f64>, moves: &[(usize, f64)], signals: usize) -> Slopes {
+    fn slopes_of_choices(&self, loose: &DVector<f64>, scale: f64, moves: &[(usize, f64)], signals: usize) -> Slopes {
         let (n, m) = (loose.len(), moves.len());
         let direct = self.slopes.columns(n, m);
-        let states = match self.information(loose) {
+        let states = match self.information(loose, scale) {
             Some(information) => {
-                let first = information.solve(&(self.gram.view((0, n), (n, m)) / self.scale()));
+                let first = information.solve(&(self.gram.view((0, n), (n, m)) / scale));
                 direct - self.slopes.columns(0, n) * first
             }
             None => direct.into_owned(),
