@@ -34,10 +34,10 @@ const LENGTHENED: f64 = 0.1;
 /// What the change of the linear model over a step may do to slopes, as part of the states, for it to be added to second order:
 /// the cube of it is left. Beyond, a step has the exponential of the mean of both its ends.
 const MISSED: f64 = 0.1;
-/// Times that this mean may make more of the states than the step itself did. Where it makes more, the step ends within a snap
-/// (a store that runs empty gives way within microseconds): stretched over the step, what grows for a moment would grow for
-/// all of it. Behind a snap the states follow others at once, and forget what they were.
-const SNAP: f64 = 10.0;
+/// Times that this mean may make more of the states than the step itself did: as many as a store gives way when it runs empty.
+/// Where it makes more, the step ends within such a snap, which takes microseconds: stretched over the step, what grows for a
+/// moment would grow for all of it. Behind a snap the states follow others at once, and forget what they were.
+const SNAP: f64 = 1e3;
 
 /// The correction of a step that is let pass, in parts of the states' sizes, beside sensors with this noise and full scale.
 pub fn correction(noise: &[f64], full_scale: &[f64]) -> f64 {

@@ -262,11 +262,11 @@ impl Beginning {
     }
 
     /// What a squared deviation counts: errors are as large and as correlated as they are, where that is more than noise. What
-    /// nothing measures does not make up for a model that is wrong.
+    /// nothing measures does not make up for a model that is wrong. To a power of two: it does not go along with parameters.
     fn scale(&self) -> f64 {
         let count = self.errors.iter().map(Vec::len).sum::<usize>() as f64;
         let correlated = |e: &Vec<f64>| correlation::time(e) * e.iter().map(|e| e * e).sum::<f64>();
-        (self.errors.iter().map(correlated).sum::<f64>() / count).max(1.0)
+        (self.errors.iter().map(correlated).sum::<f64>() / count).max(1.0).log2().round().exp2()
     }
 
     /// What it costs to begin so many sizes off the model's own start, where squared deviations count by `scale`.
