@@ -142,7 +142,7 @@ fn slopes_pass_a_snap() {
         run.along(&recording, 0..recording.len(), |k, _, slopes| {
             let (t, slope) = (recording.times[k], slopes.expect("slopes")[(0, 0)]);
             let exact = if t < 0.9 { -t } else { -0.1 };
-            let settled = t < 0.9 || t > 1.1;
+            let settled = !(0.9..=1.1).contains(&t);
             assert!(!settled || (slope - exact).abs() < 1e-2, "{slope} for {exact} at {t} s, shifted by {shift} ms");
             std::ops::ControlFlow::Continue(())
         })
