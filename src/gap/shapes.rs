@@ -19,11 +19,12 @@ const LOOKED_FOR: f64 = 0.1;
 const QUANTILES: [f64; 5] = [0.2, 0.4, 0.6, 0.8, 0.95];
 /// Part of the speeds that are no jumps.
 const USUAL: f64 = 0.995;
-/// A corner is at most so wide, in parts of the greatest value at its place: what is smaller would never leave it.
+/// A corner is at most so wide, in parts of the greatest value at its place: what moves less would never leave it.
 const CORNER: f64 = 0.02;
-/// Distances (play, deflection before a friction breaks loose) are looked for in decades between these parts of the travel.
+/// Distances (play, deflection before a friction breaks loose) are looked for in decades between these parts of the travel: the
+/// resolution of a fine position sensor, and a play that takes a third of the motion.
 const DISTANCES: [f64; 2] = [1e-5, 0.3];
-/// A shaft that turns on and on has no longer travel than one turn, rad.
+/// One turn, rad: a shaft that turns on and on has no longer travel.
 const TURN: f64 = std::f64::consts::TAU;
 /// Friction that falls with speed falls over these parts of the greatest speed.
 const FALLS: [f64; 3] = [0.01, 0.05, 0.2];
@@ -129,7 +130,7 @@ fn time(shape: &mut Shape, slower: f64, longest: f64) {
 /// Distances in decades from the effect's own, down to what no machine shows and up to what hinders every motion.
 fn distances(shape: &mut Shape, travel: f64) {
     let [least, most] = DISTANCES.map(|part| part * travel);
-    let (low, high) = shape.grid.iter().fold((f64::INFINITY, 0.0_f64), |(l, h), x| (l.min(*x), h.max(*x)));
+    let Some((low, high)) = extent(&shape.grid) else { return };
     let below = std::iter::successors(Some(0.1 * low), |x| Some(0.1 * x)).take_while(|x| *x >= least);
     let above = std::iter::successors(Some(10.0 * high), |x| Some(10.0 * x)).take_while(|x| *x <= most);
     shape.grid.extend(below.chain(above));
@@ -169,24 +170,28 @@ fn greatest(shape: &Shape, site: &Site, potentials: &Known, circuit: &Circuit) -
         Site::Into(p) => (&circuit.ports[p].through, potentials.get(&(p, true))?.clone()),
         _ => return None,
     };
-    let sizes = values.into_iter().filter(|v| v.is_finite()).map(f64::abs);
-    Some(sizes.fold(0.0, f64::max)).filter(|most| *most > 0.0 && same_kind(&shape.unit, &p.unit))
+    let (least, most) = extent(&values)?;
+    Some(most.max(-least)).filter(|most| *most > 0.0 && same_kind(&shape.unit, &p.unit))
 }
 
 /// How far a site travels, one side against the other where it has two; nothing where it stands still.
 fn travel(site: &Site, potentials: &Known) -> Option<f64> {
-    let values = acting(site, potentials)?;
-    let finite = || values.iter().copied().filter(|v| v.is_finite());
-    let (least, most) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
+    let (least, most) = extent(&acting(site, potentials)?)?;
     Some((most - least).min(TURN)).filter(|t| *t > 0.0)
+}
+
+/// Least and greatest of some values; nothing where none is finite.
+fn extent(values: &[f64]) -> Option<(f64, f64)> {
+    let finite = values.iter().copied().filter(|v| v.is_finite());
+    finite.fold(None, |known: Option<(f64, f64)>, v| Some(known.map_or((v, v), |(l, m)| (l.min(v), m.max(v)))))
 }
 
 /// Turns that a shaft makes in the nominal model.
 fn turned(site: &Site, potentials: &Known, circuit: &Circuit) -> Option<f64> {
     let (Site::Node(p) | Site::Across(p, _)) = site else { return None };
     let angle = acting(site, potentials).filter(|_| same_kind(&circuit.ports[*p].potential.unit, "rad"))?;
-    let (least, most) = angle.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, m), v| (l.min(*v), m.max(*v)));
-    Some((most - least) / std::f64::consts::TAU).filter(|t| t.is_finite())
+    let (least, most) = extent(&angle)?;
+    Some((most - least) / TURN)
 }
 
 /// Greatest speed at a site, of one side against the other where it has two; nothing where it stands still.
@@ -249,8 +254,7 @@ fn range(a: &Attachment, potentials: &Known, times: &[&[f64]]) -> Option<Vec<(St
     let names = a.effect.as_ref()?.range.as_ref()?;
     let potential = ranged(a).and_then(|p| potentials.get(&p)).map_or(&[][..], Vec::as_slice);
     let values = if names.rate { speeds(potential, times) } else { potential.to_vec() };
-    let finite = || values.iter().copied().filter(|v| v.is_finite());
-    let (least, most) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
+    let Some((least, most)) = extent(&values) else { return Some(Vec::new()) };
     let moves = most - least > 1e-9 * most.abs().max(least.abs());
     let value = |name: &String, x: f64| (name.clone(), format!("{x:e}"));
     Some(if moves { vec![value(&names.least, least), value(&names.most, most)] } else { Vec::new() })

@@ -26,7 +26,8 @@ const CORRECTION: (f64, f64) = (5e-6, 1e-4);
 /// left after a correction is a tenth and less of it; at a corner (friction that changes sign) it is as much.
 const CORRECTED: f64 = 0.01;
 /// A correction in parts of the states' sizes with which not even a shortest step is let pass, for so many steps of a
-/// recording: at a snap within microseconds the states would be thrown anywhere.
+/// recording: at a snap within microseconds the states would be thrown anywhere. A snap takes some tens of steps, so that some
+/// tens of snaps are passed.
 const WILD: f64 = 1e-2;
 const SHORTER: usize = 1000;
 /// Part of it below which the next step is twice as long: the correction grows with the cube.
