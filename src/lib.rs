@@ -136,6 +136,9 @@ pub mod circuit;
 pub mod fmi;
 
 #[cfg(feature = "analysis")]
+mod estimate;
+
+#[cfg(feature = "analysis")]
 #[doc(hidden)]
 pub mod analysis;
 

@@ -1,6 +1,5 @@
 //! What is asked of a model beyond one run: derivatives of its right-hand side, and all that stands on them.
 
-pub mod autoregression;
 pub mod balance;
 pub mod grid;
 pub mod identify;

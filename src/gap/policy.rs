@@ -20,8 +20,6 @@ pub const PIECES: usize = 6;
 pub const BLOCKS: usize = 24;
 /// Fewest recordings that are also left out as a whole, one at a time: with two, one half predicts the other.
 pub const WHOLE_RECORDINGS: usize = 3;
-/// Autocorrelation below which errors count as independent; the sum over larger lags would be noise.
-pub const UNCORRELATED: f64 = 0.05;
 /// Left-out evidence by which the fit at the sensors' noise must beat the fit at the errors as they are, nats.
 pub const OTHER_WEIGHTING: f64 = 3.0;
 /// Tolerances beyond which a parameter is off: as much as one in four hundred parameters that are within theirs.

@@ -49,12 +49,14 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("fmi", &["circuit", "compile", "instance", "plot", "results", "units", "world"]),
     ("experiment", &["diag", "results", "units"]),
     ("study", &["compile", "diag", "expr", "flat", "results", "solve", "units", "world"]),
+    ("estimate", &[]),
     (
         "analysis",
         &[
             "circuit",
             "compile",
             "diag",
+            "estimate",
             "experiment",
             "expr",
             "flat",
@@ -75,6 +77,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "analysis",
             "compile",
             "diag",
+            "estimate",
             "expr",
             "flat",
             "instance",

@@ -1,13 +1,13 @@
 //! What a fit found: values, their uncertainty, and how well the signals are met.
 
 use super::chance::student;
-use super::colour::{Spread, spread};
 use super::inverse::InverseModel;
 use super::least_squares::Minimum;
 use super::residuals::inputs_beside;
 use super::separate::{separate, without_rest};
-use super::weights::{self, Weights};
+use super::weights::Weights;
 use super::{Identification, Joints, Method, Problem, ResidualTest, Residuals, Starts};
+use crate::estimate::{Linearised, spread};
 use crate::study::Recording;
 use nalgebra::DMatrix;
 
@@ -115,7 +115,9 @@ impl Identification<'_> {
         trajectories: Vec<Trajectory>,
     ) -> Fit {
         let p = self.problem.free.len();
-        let Spread { mut covariance, plain, degrees } = spread(model.weights(), minimum);
+        let series = &model.weights().series.clone();
+        let spread = spread(Linearised { jacobian: &minimum.jacobian, residual: &minimum.residual, series });
+        let (mut covariance, plain, degrees) = (spread.covariance.clone(), &spread.plain, spread.degrees());
         // what nothing is known about has no finite deviation
         let distinct = separate(&without_rest(&minimum.jacobian.tr_mul(&minimum.jacobian), p));
         let hidden = distinct.blind.iter().filter(|b| b.deviation.is_infinite());
@@ -182,8 +184,7 @@ pub(super) fn signal_fits(
         let values: Vec<f64> = recordings.iter().flat_map(|r| &r.signals[k]).copied().filter(|v| !v.is_nan()).collect();
         let mean = values.iter().sum::<f64>() / values.len() as f64;
         let spread = (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt();
-        let of_signal = weights.series.iter().filter(|s| s.signal == k);
-        let correlation = of_signal.map(|s| weights::correlation_time(&residual[s.rows.clone()])).fold(1.0, f64::max);
+        let correlation = weights.correlation_time(k, residual);
         let (name, unit) = (signal.name.clone(), signal.unit.clone());
         Some(SignalFit { name, unit, rmse, relative: rmse / spread, correlation })
     };

@@ -7,10 +7,11 @@
 
 use super::filter::{LowPass, derivative, filled};
 use super::least_squares::LeastSquares;
-use super::weights::{Series, Weights};
+use super::weights::Weights;
 use super::{Problem, Residuals, Trajectory};
 use crate::analysis::local::Plan;
 use crate::analysis::{Local, lift};
+use crate::estimate::Series;
 use crate::expr::VarId;
 use crate::study::Recording;
 use crate::units::{Dimension, Unit};

@@ -1,7 +1,6 @@
 //! Parameters from recordings: what can be found at all, the fit, its uncertainty, and how it does on held recordings.
 
 mod chance;
-mod colour;
 mod doubts;
 mod exact;
 mod filter;
@@ -13,7 +12,6 @@ mod output_error;
 mod picture;
 mod pieces;
 mod profile;
-mod quasi_newton;
 mod report;
 mod residuals;
 pub mod runs;

@@ -134,8 +134,8 @@ fn dependence(name: &str, errors: &[&[f64]], input: &[Vec<f64>], lags: usize) ->
 
 #[cfg(test)]
 mod tests {
-    use super::super::weights::Series;
     use super::*;
+    use crate::estimate::Series;
 
     /// Numbers of mean 0 from a congruential generator.
     fn noise(seed: u64, count: usize) -> Vec<f64> {

@@ -1,17 +1,6 @@
 //! Weights of residuals: one standard deviation a signal, widened where neighbouring residuals resemble each other.
 
-use std::ops::Range;
-
-/// The residuals of one signal along one recording.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Series {
-    /// Index of the recording.
-    pub recording: usize,
-    /// Index of the signal.
-    pub signal: usize,
-    /// Rows of the residual vector, in the order of time.
-    pub rows: Range<usize>,
-}
+use crate::estimate::{Series, correlation};
 
 /// How the rows of a residual are weighed.
 #[derive(Clone, Debug)]
@@ -53,15 +42,19 @@ impl Weights {
         (count > 0).then(|| self.sigma[signal] * (sum / count as f64).sqrt())
     }
 
+    /// Over how many samples a signal's errors resemble each other.
+    pub fn correlation_time(&self, signal: usize, residual: &[f64]) -> f64 {
+        let of_signal = self.series.iter().filter(|s| s.signal == signal);
+        correlation::mean_time(of_signal.map(|s| &residual[s.rows.clone()]))
+    }
+
     /// Takes the standard deviations from a residual; never below `floor`, in the signals' units. Returns the largest
     /// relative change.
     pub fn learn(&mut self, residual: &[f64], floor: &[f64]) -> f64 {
         let mut change = 0.0f64;
         for k in 0..self.sigma.len() {
             let Some(rms) = self.rms(k, residual) else { continue };
-            let times =
-                self.series.iter().filter(|s| s.signal == k).map(|s| correlation_time(&residual[s.rows.clone()]));
-            self.correlation[k] = times.fold(1.0, f64::max);
+            self.correlation[k] = self.correlation_time(k, residual);
             self.deviation[k] = rms.max(floor[k]).max(f64::MIN_POSITIVE);
             let sigma = self.deviation[k] * self.correlation[k].sqrt();
             change = change.max((sigma / self.sigma[k]).ln().abs());
@@ -69,25 +62,6 @@ impl Weights {
         }
         change
     }
-}
-
-/// Over how many samples errors resemble each other: 1 plus twice the sum of the autocorrelation up to its first
-/// negative value.
-pub fn correlation_time(values: &[f64]) -> f64 {
-    let n = values.len();
-    let power: f64 = values.iter().map(|v| v * v).sum();
-    if power <= 0.0 {
-        return 1.0;
-    }
-    let mut time = 1.0;
-    for lag in 1..n / 2 {
-        let product: f64 = values.iter().zip(&values[lag..]).map(|(a, b)| a * b).sum();
-        if product <= 0.0 {
-            break;
-        }
-        time += 2.0 * product / power;
-    }
-    time
 }
 
 #[cfg(test)]
@@ -105,12 +79,5 @@ mod tests {
         assert!(weights.learn(&errors, &[0.0]) < 1e-12);
         weights.learn(&errors, &[5.0]);
         assert_eq!(weights.sigma, [5.0]);
-    }
-
-    #[test]
-    fn correlation_times() {
-        assert_eq!(correlation_time(&[1.0, -1.0, 1.0, -1.0]), 1.0);
-        let slow: Vec<f64> = (0..400).map(|k| if k / 10 % 2 == 0 { 1.0 } else { -1.0 }).collect();
-        assert!(correlation_time(&slow) > 5.0);
     }
 }

@@ -7,7 +7,7 @@ use super::super::data::Recording;
 use super::super::policy::{DOUBLINGS, ITERATIONS, LEAST, SETTLED, SETTLED_PART, SETTLED_SQUARE, TRIALS};
 use super::super::problem::Chosen;
 use super::candidate::{Candidate, Coordinate, Errors, Evaluated, Products};
-use super::correlation;
+use crate::estimate::correlation;
 use nalgebra::{DMatrix, DVector};
 
 /// First damping, what divides it after a step that was taken, and what multiplies it, at least, after one that was not.
@@ -60,8 +60,7 @@ impl Weights {
 
 /// How many samples of a signal in a row say the same.
 fn tau(errors: &[Errors], signal: usize) -> f64 {
-    let weighed = |e: &Errors| finite(&e[signal]) * correlation::time(&e[signal]);
-    (errors.iter().map(weighed).sum::<f64>() / samples(errors, signal).max(1.0)).max(1.0)
+    correlation::mean_time(errors.iter().map(|e| e[signal].as_slice()))
 }
 
 fn samples(errors: &[Errors], signal: usize) -> f64 {
@@ -314,7 +313,7 @@ impl System {
     }
 
     /// Coordinates that are free to go where the gradient leads, and seen at all.
-    fn free(&self, coordinates: &[Coordinate], x: &[f64]) -> Vec<usize> {
+    pub fn free(&self, coordinates: &[Coordinate], x: &[f64]) -> Vec<usize> {
         let held = |i: usize| {
             let c = &coordinates[i];
             x[i] <= c.low && self.towards[i] < 0.0 || x[i] >= c.high && self.towards[i] > 0.0

@@ -2,13 +2,13 @@
 //! tolerances, with errors as correlated as they are.
 
 pub mod candidate;
-pub mod correlation;
 pub mod exponential;
 pub mod map;
 pub mod simulation;
 pub mod start;
 #[cfg(test)]
 mod tests;
+pub mod uncertainty;
 
 pub use candidate::{Candidate, Coordinate};
 pub use map::{Fit, System, Task, Weights};

@@ -4,10 +4,10 @@
 use super::super::data::{Inputs, Recording};
 use super::super::policy::SURE;
 use super::candidate::Errors;
-use super::correlation;
 use super::exponential;
 use super::simulation::{Run, Slopes};
 use crate::analysis::local::{Local, Plan};
+use crate::estimate::correlation;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use std::ops::ControlFlow;
 use std::sync::Arc;

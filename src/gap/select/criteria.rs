@@ -55,6 +55,9 @@ pub enum Reason {
     /// It leaves as small a gap as the best, but left-out data and the prior prefer that one, by so many nats.
     #[error("as small a gap, but {0:.1} nats behind the best")]
     NatsBehind(f64),
+    /// It was chosen at first, but with two effects it does not stand.
+    #[error("chosen at first, but another explanation with a second effect leaves less, or needs no second one")]
+    Reconsidered,
     /// In the set of what was taken.
     #[error("indistinguishable from an accepted effect that is simpler or more common")]
     Alike,

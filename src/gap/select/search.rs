@@ -16,8 +16,11 @@ use super::rivals::fitted;
 use super::screen::{Ground, screened};
 use super::weighed::{Weighed, ahead, as_in, left_by, settled, weighed, widened};
 use crate::diag::Diagnostic;
+use partners::Explanation;
 use std::fmt;
 use std::ops::ControlFlow;
+
+mod partners;
 
 /// A stage of the diagnosis, for progress bars.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -136,11 +139,16 @@ pub fn search<'a>(
             shape = Some(effect);
             break;
         }
-        let sensors = &search.chooser.criteria.sensors;
-        last = settled(problem, sensors, widened(problem, sensors, chosen, search.ends), search.ends);
+        last = search.freed(chosen);
         taken.push(effect);
         search.drop_needless(&mut last, &mut taken);
-        if search.is_recording_error(&taken) {
+        let reconsiders = step == 2 && taken.len() == 2;
+        if reconsiders {
+            let stands = search.reconsidered(&base, Explanation { model: last, taken });
+            (last, taken) = (stands.model, stands.taken);
+        }
+        // what stands alone has been asked for a second effect
+        if search.is_recording_error(&taken) || reconsiders && taken.len() < 2 {
             break;
         }
     }
@@ -345,6 +353,12 @@ impl Search<'_> {
         let found = fitted(&ground, screen.order, until);
         self.passed = found.passed.into_iter().chain(screen.passed).map(|i| passed(step, i)).collect();
         found.rivals
+    }
+
+    /// The model of a step that is taken: with its widths free, at its optimum.
+    fn freed(&self, chosen: Weighed) -> Weighed {
+        let (problem, sensors) = (self.problem, &self.chooser.criteria.sensors);
+        settled(problem, sensors, widened(problem, sensors, chosen, self.ends), self.ends)
     }
 
     /// A model fitted from where it is.

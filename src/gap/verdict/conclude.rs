@@ -26,8 +26,14 @@ const LITRES_A_MINUTE: f64 = 60_000.0;
 
 /// The verdict; without held recordings the train ones stand in.
 pub fn conclude(problem: &Problem<'_>, found: &Found, held: &[Recording], seconds: f64) -> Verdict {
-    let conclusion =
-        Conclusion { problem, found, held: if held.is_empty() { &problem.train } else { held }, own: held.is_empty() };
+    let last = &found.last.fit;
+    let conclusion = Conclusion {
+        problem,
+        found,
+        held: if held.is_empty() { &problem.train } else { held },
+        own: held.is_empty(),
+        deviations: last.uncertainty(&problem.train).unwrap_or_else(|| last.deviations()),
+    };
     conclusion.verdict(seconds)
 }
 
@@ -37,6 +43,8 @@ struct Conclusion<'a> {
     held: &'a [Recording],
     /// There are no held recordings: these are the train ones.
     own: bool,
+    /// Standard deviation of each coordinate of the model that is named.
+    deviations: Vec<f64>,
 }
 
 impl Conclusion<'_> {
@@ -222,7 +230,6 @@ impl Conclusion<'_> {
     fn estimates(&self, i: usize, h: &Hypothesis) -> BTreeMap<String, Estimate> {
         let fit = &self.found.last.fit;
         let theta = fit.candidate.theta(&fit.x);
-        let deviations = fit.deviations();
         // what counts in the unit of a signal is shown in that of its column
         let sensor = match &h.attachments[0].site {
             Site::Sensor(name) => self.problem.signals.iter().position(|s| s.name == *name),
@@ -237,7 +244,7 @@ impl Conclusion<'_> {
         let names = coefficients.chain(h.shapes.iter().map(|s| (&s.name, of_signal(s.relative, &s.unit))));
         let estimate = |(&place, (name, (unit, shown))): (&usize, (&String, (String, Option<Shown>)))| {
             let free = fit.candidate.coordinates.iter().position(|c| c.parameter == place);
-            let std = free.map_or(0.0, |k| deviations[k] * fit.candidate.coordinates[k].slope(fit.x[k]));
+            let std = free.map_or(0.0, |k| self.deviations[k] * fit.candidate.coordinates[k].slope(fit.x[k]));
             (name.clone(), Estimate { value: theta[place], std, unit, shown })
         };
         fit.candidate.model.attached[i].iter().zip(names).map(estimate).collect()
@@ -245,12 +252,12 @@ impl Conclusion<'_> {
 
     fn drifts(&self) -> Vec<Drift> {
         let fit = &self.found.last.fit;
-        let (theta, deviations) = (fit.candidate.theta(&fit.x), fit.deviations());
+        let theta = fit.candidate.theta(&fit.x);
         let drift = |(i, t): (usize, &Tolerance)| Drift {
             parameter: t.name.clone(),
             nominal: t.nominal,
             value: theta[i],
-            std: deviations[i] * t.sigma,
+            std: self.deviations[i] * t.sigma,
             tolerances: (!t.free).then(|| (theta[i] - t.nominal) / t.sigma),
         };
         self.problem.tolerances.iter().enumerate().map(drift).collect()

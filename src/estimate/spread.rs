@@ -5,21 +5,65 @@
 //! parameter could have taken. Sources: H. D. Patterson, R. Thompson, Biometrika 58 (1971) 545; the order by G. Schwarz,
 //! Annals of Statistics 6 (1978) 461; degrees of freedom by F. E. Satterthwaite, Biometrics Bulletin 2 (1946) 110.
 
-use super::super::autoregression::{self, longer};
-use super::least_squares::Minimum;
+use super::autoregression::{self, longer};
 use super::quasi_newton::{bend, descend, slopes};
-use super::weights::{Series, Weights};
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
+/// The residuals of one signal along one recording.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Series {
+    /// Index of the recording.
+    pub recording: usize,
+    /// Index of the signal.
+    pub signal: usize,
+    /// Rows of the residual vector, in the order of time.
+    pub rows: Range<usize>,
+}
+
+/// An estimate by weighed least squares with its sensitivities.
+#[derive(Clone, Copy, Debug)]
+pub struct Linearised<'a> {
+    /// Derivatives of the residual by the unknowns. Rows of data come first, then what is known beforehand.
+    pub jacobian: &'a DMatrix<f64>,
+    /// The residual: model minus measurement over the deviation by which it counts.
+    pub residual: &'a DVector<f64>,
+    /// The rows of data.
+    pub series: &'a [Series],
+}
+
+impl Linearised<'_> {
+    /// Rows of data.
+    fn data(&self) -> usize {
+        self.series.iter().map(|s| s.rows.end).max().unwrap_or(0)
+    }
+}
+
 /// What the errors say about the unknowns of a fit.
-pub struct Spread {
-    /// Covariance of the unknowns in z.
+pub struct Spread<'a> {
+    /// Covariance of the unknowns.
     pub covariance: DMatrix<f64>,
     /// What it would be if the errors were white and as large as they are weighed.
     pub plain: DMatrix<f64>,
+    /// The models of the errors; nothing where no model can be found.
+    models: Option<Models<'a>>,
+}
+
+/// Models of the errors at their likeliest.
+struct Models<'a> {
+    colour: Colour<'a>,
+    at: Vec<f64>,
+    /// What keeps the information solvable.
+    small: f64,
+}
+
+impl Spread<'_> {
     /// Per unknown the degrees of freedom of its variance: a white series has as many as samples, nearly.
-    pub degrees: Vec<f64>,
+    pub fn degrees(&self) -> Vec<f64> {
+        let Some(Models { colour, at, small }) = &self.models else { return vec![f64::INFINITY; self.plain.nrows()] };
+        let variances = |at: &[f64]| (&self.plain * colour.scores(at) * &self.plain).diagonal();
+        colour.degrees(at, *small, variances)
+    }
 }
 
 /// Highest order of a model.
@@ -35,35 +79,32 @@ const STEP: f64 = 1e-3;
 
 /// The covariance of an estimate by weighed least squares whose errors are coloured: the spread that the models of the
 /// errors say, between two inverses of the information.
-pub fn spread(weights: &Weights, minimum: &Minimum) -> Spread {
-    let (jacobian, unknowns) = (&minimum.jacobian, minimum.z.len());
+pub fn spread(estimate: Linearised<'_>) -> Spread<'_> {
+    let (jacobian, unknowns) = (estimate.jacobian, estimate.jacobian.ncols());
     let mut information = jacobian.tr_mul(jacobian);
     // the rows of data alone: conditions between pieces weigh much more
-    let data = weights.series.iter().map(|s| s.rows.end).max().unwrap_or(0);
+    let data = estimate.data();
     let largest = jacobian.rows(0, data).column_iter().map(|c| c.norm_squared()).fold(f64::MIN_POSITIVE, f64::max);
     let small = 1e-12 * largest;
     (0..unknowns).for_each(|j| information[(j, j)] += small);
     let nothing = || DMatrix::from_element(unknowns, unknowns, f64::INFINITY);
-    let degrees = vec![f64::INFINITY; unknowns];
     let Some(plain) = information.cholesky().map(|c| c.inverse()) else {
-        return Spread { covariance: nothing(), plain: nothing(), degrees };
+        return Spread { covariance: nothing(), plain: nothing(), models: None };
     };
     // how many samples the unknowns alone can meet: with no more of them nothing tells how large their errors are
     let met = jacobian.rows(0, data).row_iter().map(|row| (row * &plain).dot(&row)).sum::<f64>();
     if data as f64 - met < LEFT_OVER {
-        return Spread { covariance: nothing(), plain, degrees };
+        return Spread { covariance: nothing(), plain, models: None };
     }
-    let colour = Colour::new(weights, minimum);
+    let colour = Colour::new(estimate);
     let at = colour.found(small);
-    let covariance = |at: &[f64]| &plain * colour.scores(at) * &plain;
-    let found = covariance(&at);
-    let degrees = colour.degrees(&at, small, &found, |at| covariance(at).diagonal());
-    Spread { covariance: found, plain, degrees }
+    let covariance = &plain * colour.scores(&at) * &plain;
+    Spread { covariance, plain, models: Some(Models { colour, at, small }) }
 }
 
 /// The errors of all signals with the sensitivities beside them.
 struct Colour<'a> {
-    minimum: &'a Minimum,
+    estimate: Linearised<'a>,
     signals: Vec<Signal>,
     /// The rows that are known beforehand, squared: sensitivities and their residuals.
     known: DMatrix<f64>,
@@ -87,13 +128,14 @@ struct Signal {
 }
 
 impl<'a> Colour<'a> {
-    fn new(weights: &Weights, minimum: &'a Minimum) -> Colour<'a> {
-        let data = weights.series.iter().map(|s| s.rows.end).max().unwrap_or(0);
-        let with_errors = beside(minimum, data..minimum.jacobian.nrows());
-        let own = minimum.jacobian.rows(data, minimum.jacobian.nrows() - data);
-        let of = |k: usize| weights.series.iter().filter(move |s| s.signal == k && !s.rows.is_empty());
-        let signals = (0..weights.sigma.len()).filter_map(|k| Signal::new(of(k), minimum));
-        Colour { signals: signals.collect(), known: with_errors.tr_mul(&with_errors), sure: own.tr_mul(&own), minimum }
+    fn new(estimate: Linearised<'a>) -> Colour<'a> {
+        let (data, rows) = (estimate.data(), estimate.jacobian.nrows());
+        let with_errors = beside(estimate, data..rows);
+        let own = estimate.jacobian.rows(data, rows - data);
+        let of = |k: usize| estimate.series.iter().filter(move |s| s.signal == k && !s.rows.is_empty());
+        let count = estimate.series.iter().map(|s| s.signal + 1).max().unwrap_or(0);
+        let signals = (0..count).filter_map(|k| Signal::new(of(k), estimate));
+        Colour { signals: signals.collect(), known: with_errors.tr_mul(&with_errors), sure: own.tr_mul(&own), estimate }
     }
 
     /// Each signal with its part of the models' parameters.
@@ -108,7 +150,7 @@ impl<'a> Colour<'a> {
 
     /// The restricted likelihood's negative logarithm, but for a constant; infinite where a model is none.
     fn badness(&self, at: &[f64], small: f64) -> f64 {
-        let n = self.minimum.z.len();
+        let n = self.estimate.jacobian.ncols();
         let mut squares = self.known.clone();
         let mut size = 0.0;
         for (signal, at) in self.each(at) {
@@ -136,7 +178,7 @@ impl<'a> Colour<'a> {
         for (signal, at) in self.each(at) {
             let Some(filter) = Filter::new(at, signal.longest) else { continue };
             for range in &signal.ranges {
-                let rows = filter.backwards(self.minimum.jacobian.rows(range.start, range.len()).into_owned());
+                let rows = filter.backwards(self.estimate.jacobian.rows(range.start, range.len()).into_owned());
                 spread += rows.tr_mul(&rows);
             }
         }
@@ -144,14 +186,8 @@ impl<'a> Colour<'a> {
     }
 
     /// Twice the square of a variance over the variance of its own, which the uncertainty of the models brings.
-    fn degrees(
-        &self,
-        at: &[f64],
-        small: f64,
-        found: &DMatrix<f64>,
-        mut variances: impl FnMut(&[f64]) -> DVector<f64>,
-    ) -> Vec<f64> {
-        let endless = vec![f64::INFINITY; found.nrows()];
+    fn degrees(&self, at: &[f64], small: f64, mut variances: impl FnMut(&[f64]) -> DVector<f64>) -> Vec<f64> {
+        let endless = vec![f64::INFINITY; self.estimate.jacobian.ncols()];
         let Some(curvature) = bend(&mut |at| self.badness(at, small), at, STEP).cholesky() else { return endless };
         let logarithms = slopes(&mut |at| variances(at).map(|v| v.max(f64::MIN_POSITIVE).ln()), at, STEP);
         let one = |row: nalgebra::RowDVector<f64>| {
@@ -163,29 +199,29 @@ impl<'a> Colour<'a> {
 }
 
 /// Sensitivities and residual of some rows side by side.
-fn beside(minimum: &Minimum, rows: Range<usize>) -> DMatrix<f64> {
-    let n = minimum.z.len();
+fn beside(estimate: Linearised<'_>, rows: Range<usize>) -> DMatrix<f64> {
+    let n = estimate.jacobian.ncols();
     DMatrix::from_fn(rows.len(), n + 1, |t, j| {
         let row = rows.start + t;
-        if j < n { minimum.jacobian[(row, j)] } else { minimum.residual[row] }
+        if j < n { estimate.jacobian[(row, j)] } else { estimate.residual[row] }
     })
 }
 
 impl Signal {
     /// `None` where there is nothing to learn a model from.
-    fn new<'s>(series: impl Iterator<Item = &'s Series>, minimum: &Minimum) -> Option<Signal> {
+    fn new<'s>(series: impl Iterator<Item = &'s Series>, estimate: Linearised<'_>) -> Option<Signal> {
         let ranges: Vec<Range<usize>> = series.map(|s| s.rows.clone()).collect();
         let rows: usize = ranges.iter().map(ExactSizeIterator::len).sum();
         let shortest = ranges.iter().map(ExactSizeIterator::len).min()?;
-        let errors: Vec<&[f64]> = ranges.iter().map(|r| &minimum.residual.as_slice()[r.clone()]).collect();
+        let errors: Vec<&[f64]> = ranges.iter().map(|r| &estimate.residual.as_slice()[r.clone()]).collect();
         let guess = chosen(&errors, ORDER.min(shortest / 8))?;
         let order = guess.len() - 1;
-        let columns = minimum.z.len() + 1;
+        let columns = estimate.jacobian.ncols() + 1;
         let mut lagged: Vec<Vec<DMatrix<f64>>> =
             (0..=order).map(|i| vec![DMatrix::zeros(columns, columns); order + 1 - i]).collect();
         let mut heads = Vec::new();
         for range in &ranges {
-            let x = beside(minimum, range.clone());
+            let x = beside(estimate, range.clone());
             let later = x.nrows() - order;
             for (i, row) in lagged.iter_mut().enumerate() {
                 for (k, sum) in row.iter_mut().enumerate() {

@@ -1,10 +1,11 @@
 //! How many samples in a row say the same.
 
-use super::super::policy::UNCORRELATED;
+/// Autocorrelation below which errors count as independent; the sum over larger lags would be noise.
+const UNCORRELATED: f64 = 0.05;
 
 /// Integrated autocorrelation time in samples, at least 1: 1 + 2 sum rho_k up to the first rho_k below
 /// [`UNCORRELATED`] (Sokal, Monte Carlo methods in statistical mechanics, 1997, 3). N samples count as N over this many
-/// independent ones. The mean is not taken out: a constant error is an error.
+/// independent ones. The mean is not taken out: a constant error is an error. Samples without a value are left out.
 pub fn time(errors: &[f64]) -> f64 {
     let known: Vec<f64> = errors.iter().copied().filter(|e| e.is_finite()).collect();
     let power: f64 = known.iter().map(|e| e * e).sum();
@@ -14,6 +15,17 @@ pub fn time(errors: &[f64]) -> f64 {
     let product = |lag: usize| known.iter().zip(&known[lag..]).map(|(a, b)| a * b).sum::<f64>() / power;
     let correlated = (1..known.len()).map(product).take_while(|rho| *rho >= UNCORRELATED);
     1.0 + 2.0 * correlated.sum::<f64>()
+}
+
+/// The same of a signal along several recordings: the mean over its samples.
+pub fn mean_time<'a>(recordings: impl Iterator<Item = &'a [f64]>) -> f64 {
+    let (mut sum, mut samples) = (0.0, 0.0);
+    for errors in recordings {
+        let count = errors.iter().filter(|e| e.is_finite()).count() as f64;
+        sum += count * time(errors);
+        samples += count;
+    }
+    if samples > 0.0 { sum / samples } else { 1.0 }
 }
 
 #[cfg(test)]
