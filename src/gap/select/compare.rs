@@ -108,6 +108,7 @@ mod tests {
             squares: squares.iter().map(|s| vec![*s]).collect(),
             samples: squares.iter().map(|_| vec![10.0]).collect(),
             errors: Vec::new(),
+            dampings: Vec::new(),
         }
     }
 
@@ -150,6 +151,7 @@ mod tests {
             squares: l.squares.iter().map(|s| vec![s[0] * 1e10]).collect(),
             samples: l.samples.clone(),
             errors: Vec::new(),
+            dampings: Vec::new(),
         };
         let in_other = Sensors { noise: vec![0.0], full_scale: vec![1e5] };
         let other = differences(&scaled(&worse), &scaled(&better), &in_other);

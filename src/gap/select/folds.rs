@@ -16,6 +16,9 @@ pub struct LeftOut {
     pub samples: Vec<Vec<f64>>,
     /// The errors themselves, by recording.
     pub errors: Vec<Errors>,
+    /// Per fold how much the step that left it out was damped; nothing where the fit to all data stands. Empty where there are
+    /// no folds.
+    pub dampings: Vec<Option<f64>>,
 }
 
 impl LeftOut {
@@ -34,7 +37,7 @@ impl LeftOut {
     /// Errors of recordings, cut into blocks of about equal length.
     pub fn of(errors: Vec<Errors>) -> Self {
         let lengths: Vec<usize> = errors.iter().map(|e| e.first().map_or(0, Vec::len)).collect();
-        let mut left = LeftOut { squares: Vec::new(), samples: Vec::new(), errors: Vec::new() };
+        let mut left = LeftOut { squares: Vec::new(), samples: Vec::new(), errors: Vec::new(), dampings: Vec::new() };
         for (e, blocks) in errors.iter().zip(blocks(&lengths)) {
             for range in blocks {
                 let one = |signal: &Vec<f64>| {
@@ -96,16 +99,21 @@ pub fn schemes(recordings: usize) -> Vec<Scheme> {
 
 /// What a fit leaves of left-out data, by every scheme.
 pub fn left_out(fit: &Fit, train: &[Recording]) -> Vec<LeftOut> {
-    schemes(train.len()).into_iter().map(|scheme| LeftOut::of(errors(fit, train, scheme))).collect()
+    schemes(train.len()).into_iter().map(|scheme| by_scheme(fit, train, scheme)).collect()
 }
 
-fn errors(fit: &Fit, train: &[Recording], scheme: Scheme) -> Vec<Errors> {
+fn by_scheme(fit: &Fit, train: &[Recording], scheme: Scheme) -> LeftOut {
+    let folds = scheme.folds(train.len());
     // a run without slopes takes other steps than one with them: only runs of one kind are compared
-    let Some(complete) = fit.candidate.all_errors(&fit.x, train) else { return infinite(&fit.evaluated.errors) };
+    let Some(complete) = fit.candidate.all_errors(&fit.x, train) else {
+        return LeftOut { dampings: vec![None; folds], ..LeftOut::of(infinite(&fit.evaluated.errors)) };
+    };
     let mut all = complete.clone();
-    for k in 0..scheme.folds(train.len()) {
+    let mut dampings = Vec::new();
+    for k in 0..folds {
         let fold = Fold { fit, complete: &complete, train, scheme, k };
-        let found = fold.found();
+        let (found, damping) = fold.found();
+        dampings.push(damping);
         for (number, own) in all.iter_mut().enumerate() {
             let samples = own.first().map_or(0, Vec::len);
             for (i, signal) in own.iter_mut().enumerate() {
@@ -117,7 +125,7 @@ fn errors(fit: &Fit, train: &[Recording], scheme: Scheme) -> Vec<Errors> {
             }
         }
     }
-    all
+    LeftOut { dampings, ..LeftOut::of(all) }
 }
 
 /// Where no simulation gets there.
@@ -145,21 +153,23 @@ impl Fold<'_> {
 
     /// Errors of all recordings with parameters that were fitted without the fold: where the kept data cost least, of the
     /// Gauss-Newton steps from the fit to all data, more and more damped until the kept data cost as little as the linear
-    /// model promised. A step that leads onto a plateau costs little, but more than a shorter one.
-    fn found(&self) -> Vec<Errors> {
+    /// model promised. A step that leads onto a plateau costs little, but more than a shorter one; one that is cut off at bounds
+    /// may promise that they cost more. Beside them the damping; nothing where the fit to all data stands.
+    fn found(&self) -> (Vec<Errors>, Option<f64>) {
         let Fit { candidate, x: from, .. } = self.fit;
         let system = self.fit.system(|recording, piece| self.scheme.fold(recording, piece) != self.k);
         let before = self.kept(self.complete) + candidate.prior(from);
         // the fit to all data has seen the fold: it stands only where every step costs more
-        let (mut least, mut found) = (before + SETTLED, self.complete.to_vec());
+        let (mut least, mut found) = (before + SETTLED, (self.complete.to_vec(), None));
         for damping in DAMPINGS {
             let x = system.step(&candidate.coordinates, from, damping);
             let Some(errors) = candidate.all_errors(&x, self.train) else { continue };
             let cost = self.kept(&errors) + candidate.prior(&x);
             if cost < least {
-                (least, found) = (cost, errors);
+                (least, found) = (cost, (errors, Some(damping)));
             }
-            if cost <= before - system.promised(from, &x) + SETTLED {
+            let promised = system.promised(from, &x);
+            if promised >= -SETTLED && cost <= before - promised + SETTLED {
                 break;
             }
         }

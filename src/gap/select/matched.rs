@@ -184,13 +184,15 @@ impl<'a> Movable<'a> {
     }
 
     /// Where a step leads from the fit when each signal counts so much, and when it counts as in the fit: the difference, for
-    /// the data without a fold or, where there is none, for all.
-    fn change(&self, scheme: Scheme, without: Option<usize>, weights: &Weights) -> DVector<f64> {
+    /// the data without a fold or, where there is none, for all. The step is damped as much as it must be to lead where the
+    /// linear model says; where none does, the fit stays.
+    fn change(&self, scheme: Scheme, without: Option<usize>, damping: Option<f64>, weights: &Weights) -> DVector<f64> {
         let Fit { candidate, x, evaluated, weights: own, .. } = &self.model.fit;
+        let Some(damping) = damping else { return DVector::zeros(x.len()) };
         let step = |weights: &Weights| {
             let kept = |number, piece| Some(scheme.fold(number, piece)) != without;
             let sum = evaluated.sums(x.len(), weights, kept);
-            System::of(sum, &candidate.coordinates, x).step(&candidate.coordinates, x, 0.0)
+            System::of(sum, &candidate.coordinates, x).step(&candidate.coordinates, x, damping)
         };
         let (new, old) = (step(weights), step(own));
         DVector::from_fn(x.len(), |i, _| new[i] - old[i])
@@ -198,10 +200,10 @@ impl<'a> Movable<'a> {
 
     /// Left-out errors with these weights, and the prior there, nats.
     fn moved(&self, scheme: Scheme, at: usize, weights: &Weights, full_scale: &[f64]) -> (Vec<Errors>, f64) {
-        let Fit { candidate, x, evaluated, .. } = &self.model.fit;
-        let recordings = evaluated.errors.len();
-        let changes: Vec<DVector<f64>> =
-            (0..scheme.folds(recordings)).map(|k| self.change(scheme, Some(k), weights)).collect();
+        let Fit { candidate, x, .. } = &self.model.fit;
+        let dampings = &self.model.left[at].dampings;
+        let fold = |(k, damping): (usize, &Option<f64>)| self.change(scheme, Some(k), *damping, weights);
+        let changes: Vec<DVector<f64>> = dampings.iter().enumerate().map(fold).collect();
         let mut left = self.left[at].clone();
         for (number, (errors, slopes)) in left.iter_mut().zip(&self.slopes).enumerate() {
             let (signals, samples) = (errors.len(), errors.first().map_or(0, Vec::len));
@@ -214,7 +216,9 @@ impl<'a> Movable<'a> {
                 }
             }
         }
-        let all = self.change(scheme, None, weights);
+        // the step for all data is damped as the most damped fold is
+        let most = dampings.iter().copied().reduce(|a, b| Some(a?.max(b?))).flatten();
+        let all = self.change(scheme, None, most, weights);
         let x: Vec<f64> = x.iter().zip(all.iter()).map(|(x, c)| x + c).collect();
         (left, 0.5 * candidate.prior(&x))
     }
