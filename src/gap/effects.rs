@@ -98,6 +98,8 @@ pub struct Shape {
     pub min: Option<f64>,
     /// Greatest value that the effect allows.
     pub max: Option<f64>,
+    /// Greatest value that occurs where a corner is: one as wide rounds all of the law.
+    pub occurs: Option<f64>,
     /// Counts in the unit of the signal, `grid` in its full scales.
     pub relative: bool,
     /// Compared with the potential of the site, or with the difference of its two: values beyond the range that occurs
@@ -549,7 +551,8 @@ fn shapes(
         let (threshold, level, limit) = (listed("threshold"), listed("level"), listed("limit"));
         let (line, order) = (listed("line"), listed("order"));
         let relative = relative.contains(&name);
-        Ok(Shape { unit: unit.to_string(), grid, min, max, relative, threshold, level, limit, line, order, name })
+        let unit = unit.to_string();
+        Ok(Shape { unit, grid, min, max, occurs: None, relative, threshold, level, limit, line, order, name })
     };
     list.arguments.iter().map(one).collect()
 }

@@ -80,13 +80,13 @@ pub fn fit(problem: &mut Problem<'_>) {
                 time(shape, slower, longest);
             } else if let (true, Some(fastest)) = (is_speed(shape), fastest(&site, &potentials, &times)) {
                 if is_corner(shape) {
-                    shape.grid[0] = shape.grid[0].min(CORNER * fastest);
+                    corner(shape, fastest);
                 } else {
                     shape.grid = FALLS.iter().map(|part| part * fastest).collect();
                 }
             } else if let (true, Some(most)) = (is_corner(shape), greatest(shape, &site, &potentials, &problem.circuit))
             {
-                shape.grid[0] = shape.grid[0].min(CORNER * most);
+                corner(shape, most);
             } else if let (true, Some(travel)) = (is_distance(shape), travel(&site, &potentials)) {
                 distances(shape, travel);
             } else if let Some(occurs) = values(shape, &site, &potentials) {
@@ -114,6 +114,12 @@ fn each_its_own(coefficients: &mut Vec<Coefficient>, recordings: usize) {
     let numbered = |k: usize| own.iter().map(move |c| Coefficient { recording: Some(k), ..c.clone() });
     all.extend((0..recordings).flat_map(numbered));
     *coefficients = all;
+}
+
+/// A corner that is left by most of what occurs, and may be as wide as all of it.
+fn corner(shape: &mut Shape, most: f64) {
+    shape.grid[0] = shape.grid[0].min(CORNER * most);
+    shape.occurs = Some(most);
 }
 
 /// A time within what the recordings show: what takes longer than a part of them to fade is not seen to fade at all.

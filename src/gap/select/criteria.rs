@@ -19,8 +19,8 @@ pub struct Rival {
     pub places: usize,
     /// By how many of its standard deviations its largest coefficient differs from nothing; infinite where none is free.
     pub size: f64,
-    /// A parameter: it has to be out of its tolerance, whatever it gains.
-    pub is_parameter: bool,
+    /// For a parameter, by how many of its tolerances it is off: it has to be out of them, whatever it gains.
+    pub tolerances: Option<f64>,
     /// The model with it.
     pub model: Weighed,
 }
@@ -156,7 +156,7 @@ impl Criteria {
                 (0..schemes).map(by).fold(f64::NEG_INFINITY, f64::max) + saved(before, model)
             });
             judged.sure = judged.evidence > needed + (schemes as f64).ln();
-            judged.plain = judged.sure && !rival.is_parameter;
+            judged.plain = judged.sure && rival.tolerances.is_none_or(|off| off > SURE);
             judged
         };
         rivals.par_iter().map(one).collect()

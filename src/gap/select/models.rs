@@ -97,7 +97,8 @@ fn shape(s: &Shape, parameter: usize, is_taken: bool) -> Option<Coordinate> {
     if s.grid.len() < 2 {
         let free = is_taken && least > 0.0;
         return free.then(|| {
-            let width = Coordinate::by_logarithm(parameter, min.max(least / WIDER), max.min(most * WIDER));
+            let widest = s.occurs.unwrap_or(0.0).max(most * WIDER);
+            let width = Coordinate::by_logarithm(parameter, min.max(least / WIDER), max.min(widest));
             Coordinate { prior: Some((least.ln(), WIDER.ln())), ..width }
         });
     }

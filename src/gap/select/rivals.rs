@@ -62,8 +62,8 @@ pub fn fitted(ground: &Ground<'_>, order: Vec<Screened>, until: Deadline<'_>) ->
     found.extend(cut.into_iter().map(|r| (r.hypothesis, Some(r.best))));
     let rival = |(hypothesis, fit): (usize, Option<Fit>)| {
         let h = &problem.hypotheses[hypothesis];
-        let (places, is_parameter) = (h.attachments.len(), h.family == "parameter");
-        Some(Rival { hypothesis, places, size: 0.0, is_parameter, model: Weighed::new(problem, fit?) })
+        let model = Weighed::new(problem, fit?);
+        Some(Rival { hypothesis, places: h.attachments.len(), size: 0.0, tolerances: None, model })
     };
     let mut rivals: Vec<Rival> = found.into_par_iter().filter_map(rival).collect();
     rivals.sort_by(|a, b| a.model.gap(sensors).total_cmp(&b.model.gap(sensors)));
@@ -78,7 +78,11 @@ pub fn fitted(ground: &Ground<'_>, order: Vec<Screened>, until: Deadline<'_>) ->
             }
         }
     });
-    rivals.par_iter_mut().for_each(|r| r.size = size(problem, &problem.hypotheses[r.hypothesis], &r.model.fit));
+    rivals.par_iter_mut().for_each(|r| {
+        let h = &problem.hypotheses[r.hypothesis];
+        r.tolerances = tolerances(problem, h, &r.model.fit);
+        r.size = size(h, &r.model.fit, r.tolerances);
+    });
     Fitted { rivals, passed: passed.into_iter().map(|t| t.hypothesis).collect() }
 }
 
@@ -159,14 +163,20 @@ fn rough(ground: &Ground<'_>, task: Task<'_>, Tried { hypothesis, mut starts, fi
     found
 }
 
+/// By how many of its tolerances a parameter is off its data sheet; nothing for effects.
+fn tolerances(problem: &Problem<'_>, h: &Hypothesis, fit: &Fit) -> Option<f64> {
+    let &k = fit.candidate.model.attached.last().filter(|_| h.family == "parameter")?.first()?;
+    let t = &problem.tolerances[k];
+    Some((fit.x[k] - t.nominal / t.sigma).abs())
+}
+
 /// By how many of its standard deviations the largest free coefficient of a model's last cause differs from nothing; a
-/// parameter that is said to be out of tolerance from its data sheet, what is known of both counted.
-fn size(problem: &Problem<'_>, h: &Hypothesis, fit: &Fit) -> f64 {
+/// parameter that is off by so many tolerances from its data sheet, what is known of both counted.
+fn size(h: &Hypothesis, fit: &Fit, tolerances: Option<f64>) -> f64 {
     let Some(places) = fit.candidate.model.attached.last().filter(|_| !h.is_shape()) else { return f64::INFINITY };
     let deviations = fit.deviations();
-    if let ("parameter", Some(&k)) = (h.family.as_str(), places.first()) {
-        let t = &problem.tolerances[k];
-        return (fit.x[k] - t.nominal / t.sigma).abs() / deviations[k].hypot(1.0);
+    if let (Some(off), Some(&k)) = (tolerances, places.first()) {
+        return off / deviations[k].hypot(1.0);
     }
     let coordinates = &fit.candidate.coordinates;
     let one = |(c, &place): (&Coefficient, &usize)| {

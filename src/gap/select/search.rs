@@ -311,7 +311,9 @@ impl Search<'_> {
         }
         self.undecided.clear();
         let (model, shape) = self.beside(2, &mut base.clone(), &self.shapes(), watch)?;
-        self.chooser.criteria.worse(&model, last).map(|_| shape)
+        let Criteria { sensors, .. } = &self.chooser.criteria;
+        let leaves_less = model.gap(sensors) < last.gap(sensors) && self.chooser.criteria.worse(&model, last).is_some();
+        leaves_less.then_some(shape)
     }
 
     /// Hypotheses with a name that may be tried beside what was taken.
