@@ -52,6 +52,9 @@ pub const ROUND: usize = 4;
 pub const DECADES: i32 = 12;
 /// Sizes count that leave less than so many times what the model without the effect leaves.
 pub const SCANNED: f64 = 100.0;
+/// Sizes count with which a simulation takes at most so many times the steps that it takes without the effect: with others the
+/// model chatters, or is too stiff for the time that a search has.
+pub const SLOWER: usize = 16;
 /// Part by which costs differ that are the same: there an effect is gone, or as strong as can be.
 pub const UNCHANGED: f64 = 1e-3;
 /// Sizes from which an effect is fitted.

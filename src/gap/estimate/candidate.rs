@@ -85,6 +85,8 @@ pub struct Candidate {
     /// How far the first state of each train recording was from the model's own start where that was found last, in sizes;
     /// nothing where it was not.
     pub off: Vec<Vec<f64>>,
+    /// Steps that a simulation of each train recording may take; any number where nothing is said.
+    pub allowed: Vec<usize>,
 }
 
 /// What a model leaves of one recording: per signal measured minus simulated, of the samples behind the beginning; NaN
@@ -174,6 +176,24 @@ pub struct Evaluated {
     pub products: Vec<Vec<Vec<Products>>>,
     /// Per recording how far its first state is from the model's own start, in sizes.
     pub off: Vec<Vec<f64>>,
+    /// Per recording the steps that the simulation took.
+    pub steps: Vec<usize>,
+}
+
+/// What came of one recording.
+struct OfRecording {
+    errors: Errors,
+    /// Per piece and signal.
+    products: Vec<Vec<Products>>,
+    gone: Gone,
+}
+
+/// A run that came to its end.
+struct Gone {
+    /// How far its first state is from the model's own start, in sizes.
+    off: Vec<f64>,
+    /// Steps that it took.
+    steps: usize,
 }
 
 impl Evaluated {
@@ -253,7 +273,7 @@ impl Candidate {
         let own: Vec<usize> = (0..x.len()).filter(|&i| is_own(&self.coordinates[i])).collect();
         let mut without = x.to_vec();
         own.iter().for_each(|&i| without[i] = self.coordinates[i].of(0.0));
-        let (mut errors, products, _) = self.evaluate_one(&without, recording, 0, None)?;
+        let OfRecording { mut errors, products, .. } = self.evaluate_one(&without, recording, 0, None)?;
         let samples = errors.first().map_or(0, Vec::len);
         for k in 0..PIECES {
             let others = products.iter().enumerate().filter(|(piece, _)| *piece != k).map(|(_, signals)| signals);
@@ -348,29 +368,30 @@ impl Candidate {
     fn evaluated(&self, x: &[f64], train: &[Recording], limit: Option<&Limit>) -> Option<Evaluated> {
         let one = |(i, r): (usize, &Recording)| self.evaluate_one(x, r, i, limit);
         let all: Option<Vec<_>> = train.par_iter().enumerate().map(one).collect();
-        let mut found = Evaluated { errors: Vec::new(), products: Vec::new(), off: Vec::new() };
-        for (errors, products, off) in all? {
+        let mut found = Evaluated { errors: Vec::new(), products: Vec::new(), off: Vec::new(), steps: Vec::new() };
+        for OfRecording { errors, products, gone } in all? {
             found.errors.push(errors);
             found.products.push(products);
-            found.off.push(off);
+            found.off.push(gone.off);
+            found.steps.push(gone.steps);
         }
         Some(found)
     }
 
-    /// Errors of the `number`-th train recording, the sums of its pieces and signals, and where it begins.
+    /// What the model leaves of the `number`-th train recording.
     fn evaluate_one(
         &self,
         x: &[f64],
         recording: &Recording,
         number: usize,
         limit: Option<&Limit>,
-    ) -> Option<(Errors, Vec<Vec<Products>>, Vec<f64>)> {
+    ) -> Option<OfRecording> {
         let (signals, width) = (self.deviations.len(), self.coordinates.len());
         let samples = recording.len() - recording.settled() - 1;
         let mut errors = vec![Vec::with_capacity(samples); signals];
         let mut sums = vec![vec![Products::none(width); signals]; PIECES];
         let (mut sample, mut cost) = (0, 0.0);
-        let off = self.run(x, recording, Some(number), true, |errors_of, slopes| {
+        let gone = self.run(x, recording, Some(number), true, |errors_of, slopes| {
             let into = &mut sums[piece(sample, samples)];
             sample += 1;
             for (i, e) in errors_of.iter().enumerate() {
@@ -384,7 +405,7 @@ impl Candidate {
         if let Some(limit) = limit {
             limit.add(cost);
         }
-        Some((errors, sums, off))
+        Some(OfRecording { errors, products: sums, gone })
     }
 
     /// Groups of coordinates that are tried one at a time beside those in front of them all: of each the sums with these,
@@ -404,7 +425,7 @@ impl Candidate {
         Some(groups.iter().enumerate().map(|(k, group)| sums.iter().map(|s| s.of(k, group)).collect()).collect())
     }
 
-    /// Goes through a recording; gives how far its first state is from the model's own start.
+    /// Goes through a recording.
     fn run(
         &self,
         x: &[f64],
@@ -412,7 +433,7 @@ impl Candidate {
         number: Option<usize>,
         slopes: bool,
         mut at: impl FnMut(&[f64], Option<&DMatrix<f64>>) -> ControlFlow<()>,
-    ) -> Option<Vec<f64>> {
+    ) -> Option<Gone> {
         let theta = self.theta_of(x, number);
         let model = &self.model;
         let acts = |c: &Coordinate| !model.own.iter().any(|own| own.0 == c.parameter && Some(own.1) != number);
@@ -431,6 +452,7 @@ impl Candidate {
         let mut begun = valued.begin(recording, guess.map(Vec::as_slice), slopes.then_some(&moves[..]))?;
         let from = recording.settled();
         let mut errors = vec![0.0; self.deviations.len()];
+        let allowed = number.and_then(|k| self.allowed.get(k)).copied().unwrap_or(usize::MAX);
         let mut run = Run {
             local: &mut begun.local,
             theta: &theta,
@@ -438,6 +460,7 @@ impl Candidate {
             correction: model.correction,
             state: begun.state,
             slopes: begun.slopes,
+            left: allowed,
         };
         run.along(recording, from..recording.len(), |k, local, slopes| {
             // the sample at which the run begins is known
@@ -448,7 +471,7 @@ impl Candidate {
             errors.iter_mut().zip(signals).for_each(|(e, (y, simulated))| *e = y[k] - simulated);
             at(&errors, slopes)
         })?;
-        Some(begun.off)
+        Some(Gone { off: begun.off, steps: allowed - run.left })
     }
 }
 

@@ -162,12 +162,14 @@ pub struct Run<'a> {
     pub state: Vec<f64>,
     /// Slopes, where they are wanted.
     pub slopes: Option<Slopes>,
+    /// Steps that it may still take.
+    pub left: usize,
 }
 
 impl Run<'_> {
     /// Goes through samples of a recording; `at` sees the model at each of them, and how its signals depend on the choices
-    /// (choices by signals), and may end it there. It ends at the last one. `None` where the model has no value on the way, or
-    /// `at` ended it.
+    /// (choices by signals), and may end it there. It ends at the last one. `None` where the model has no value on the way, it
+    /// takes more steps than it may, or `at` ended it.
     pub fn along(
         &mut self,
         recording: &Recording,
@@ -230,7 +232,7 @@ pub fn from_start(
     let mut local = Local::start(plan.clone(), recording.times[0], theta, &u).ok()?;
     let mut outputs = vec![Vec::with_capacity(recording.len()); plan.outputs()];
     let state = local.state();
-    let mut run = Run { local: &mut local, theta, sizes, correction, state, slopes: None };
+    let mut run = Run { local: &mut local, theta, sizes, correction, state, slopes: None, left: usize::MAX };
     run.along(recording, 0..recording.len(), |_, local, _| {
         outputs.iter_mut().zip(&local.outputs).for_each(|(all, y)| all.push(*y));
         ControlFlow::Continue(())
@@ -300,6 +302,7 @@ impl Stepper {
         let to_shortest = ((h / SHORTEST).log2().ceil() as u32).clamp(DEEP, DEEPEST);
         self.take_rates(run);
         while gone < WHOLE {
+            run.left = run.left.checked_sub(1)?;
             let deepest = if self.spare > 0 { to_shortest } else { DEEP };
             self.spare = self.spare.saturating_sub(1);
             self.shorter = self.shorter.saturating_sub(usize::from(self.depth > deepest));

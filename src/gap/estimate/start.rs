@@ -207,7 +207,8 @@ impl Valued<'_> {
         let mut gram = DMatrix::zeros(n, width + 1);
         let mut row = vec![0.0; width + 1];
         let mut errors: Errors = vec![Vec::with_capacity(recording.settled() + 1); self.deviations.len()];
-        let mut run = Run { local, theta: self.theta, sizes: self.sizes, correction: self.correction, state, slopes };
+        let (theta, sizes, correction) = (self.theta, self.sizes, self.correction);
+        let mut run = Run { local, theta, sizes, correction, state, slopes, left: usize::MAX };
         run.along(recording, 0..recording.settled() + 1, |k, local, slopes| {
             let Some(slopes) = slopes else { return ControlFlow::Continue(()) };
             for (i, deviation) in self.deviations.iter().enumerate() {

@@ -79,8 +79,15 @@ fn slopes_go_along() {
     let recording = recording(101, 0.02, &[], &[]);
     let mut local = Local::start(plan.clone(), 0.0, &[1.0], &[]).expect("starts");
     let slopes = Some(Slopes::new(DMatrix::zeros(1, 1), vec![Some((0, 1.0))], 1));
-    let mut run =
-        Run { local: &mut local, theta: &[1.0], sizes: &[1.0], correction: CORRECTION, state: vec![1.0], slopes };
+    let mut run = Run {
+        local: &mut local,
+        theta: &[1.0],
+        sizes: &[1.0],
+        correction: CORRECTION,
+        state: vec![1.0],
+        slopes,
+        left: usize::MAX,
+    };
     let mut off = 0.0_f64;
     run.along(&recording, 0..recording.len(), |k, _, slopes| {
         let t = recording.times[k];
@@ -109,6 +116,7 @@ fn slopes_pass_corners() {
         correction: CORRECTION,
         state: vec![1.0, 0.0],
         slopes,
+        left: usize::MAX,
     };
     let (mut off, mut bounces, mut fell) = (0.0_f64, 0, false);
     run.along(&recording, 0..recording.len(), |_, local, slopes| {
@@ -137,8 +145,15 @@ fn slopes_pass_a_snap() {
         recording.times = times.collect::<Vec<_>>().into();
         let mut local = Local::start(plan.clone(), 0.0, &[1.0], &[]).expect("starts");
         let slopes = Some(Slopes::new(DMatrix::zeros(1, 1), vec![Some((0, 1.0))], 1));
-        let mut run =
-            Run { local: &mut local, theta: &[1.0], sizes: &[1.0], correction: CORRECTION, state: vec![2.0], slopes };
+        let mut run = Run {
+            local: &mut local,
+            theta: &[1.0],
+            sizes: &[1.0],
+            correction: CORRECTION,
+            state: vec![2.0],
+            slopes,
+            left: usize::MAX,
+        };
         run.along(&recording, 0..recording.len(), |k, _, slopes| {
             let (t, slope) = (recording.times[k], slopes.expect("slopes")[(0, 0)]);
             let exact = if t < 0.9 { -t } else { -0.1 };

@@ -76,8 +76,8 @@ pub fn attached(
     let deviation = |(n, f): (&f64, &f64)| n.max(ACCURACY * f);
     let deviations = problem.noise_floor.iter().zip(&problem.full_scale).map(deviation).collect();
     let units = problem.signals.iter().map(|s| problem.unit(s)).collect();
-    let off = Vec::new();
-    Ok(Candidate { causes: causes.to_vec(), taken, model, coordinates, own, units, deviations, off })
+    let (off, allowed) = (Vec::new(), Vec::new());
+    Ok(Candidate { causes: causes.to_vec(), taken, model, coordinates, own, units, deviations, off, allowed })
 }
 
 /// A share of a whole is not free: an effect is there or not.

@@ -140,7 +140,7 @@ fn rough(ground: &Ground<'_>, task: Task<'_>, Tried { hypothesis, mut starts, fi
     let promised = starts.iter().map(Start::promises).fold(f64::INFINITY, f64::min);
     let off = before.cost();
     if !bent.iter().any(|f| off - f.cost() >= (1.0 - DELTA) * (off - promised)) {
-        let sizes = starts.first().map(|s| ground.of_size(hypothesis, s)).unwrap_or_default();
+        let sizes = starts.first().map(|s| ground.of_size(hypothesis, s, task.until)).unwrap_or_default();
         bent.extend(sizes.iter().filter_map(as_before));
         starts.extend(sizes);
     }

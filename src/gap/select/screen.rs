@@ -8,7 +8,7 @@ use super::super::estimate::candidate::{Errors, Products};
 use super::super::estimate::map::squares;
 use super::super::estimate::{Candidate, Fit, System};
 use super::super::hypotheses::Hypothesis;
-use super::super::policy::{DECADES, OTHER_WEIGHTING, SCANNED, SIZES, STARTS, UNCHANGED};
+use super::super::policy::{DECADES, OTHER_WEIGHTING, SCANNED, SIZES, SLOWER, STARTS, UNCHANGED};
 use super::super::problem::{Chosen, Problem};
 use super::compare::{Sensors, total_gap};
 use super::models::{self, beginnings, candidate};
@@ -90,7 +90,7 @@ pub fn screened(ground: &Ground<'_>, open: &[usize], until: Deadline<'_>) -> Scr
     }
     // a scan takes many runs of stiff models: what needs none comes first
     others.sort_by_key(|(i, models)| ground.is_scanned(*i, &models[0]));
-    let (alone, passed) = until.rounds(others, |(i, models)| (i, ground.alone(i, models)));
+    let (alone, passed) = until.rounds(others, |(i, models)| (i, ground.alone(i, models, until)));
     all.extend(alone);
     all.sort_by_key(|b| b.0);
     all.retain(|(_, models)| !models.is_empty());
@@ -299,9 +299,10 @@ impl Ground<'_> {
     }
 
     /// A hypothesis that does not vanish where it begins.
-    fn alone(&self, hypothesis: usize, models: Vec<Candidate>) -> Vec<Start> {
-        let of_size =
-            |m: Candidate| if self.is_scanned(hypothesis, &m) { self.scanned(&m, &m.model.theta) } else { vec![m] };
+    fn alone(&self, hypothesis: usize, models: Vec<Candidate>, until: Deadline<'_>) -> Vec<Start> {
+        let of_size = |m: Candidate| {
+            if self.is_scanned(hypothesis, &m) { self.scanned(&m, &m.model.theta, until) } else { vec![m] }
+        };
         models.into_iter().flat_map(of_size).filter_map(|m| self.on_its_own(m)).collect()
     }
 
@@ -312,7 +313,7 @@ impl Ground<'_> {
 
     /// Starts at the sizes of a hypothesis that vanishes where it begins, looked for where the linear model leads: beyond the
     /// first gain a step may end where the model does not come back from. None for others.
-    pub fn of_size(&self, hypothesis: usize, begun: &Start) -> Vec<Start> {
+    pub fn of_size(&self, hypothesis: usize, begun: &Start, until: Deadline<'_>) -> Vec<Start> {
         if !vanishes(self.h(hypothesis), &begun.candidate, self.before) {
             return Vec::new();
         }
@@ -324,7 +325,7 @@ impl Ground<'_> {
         if sized.iter().all(|&i| to[i] == 0.0) {
             return Vec::new();
         }
-        self.scanned(model, &theta).into_iter().filter_map(|m| self.on_its_own(m)).collect()
+        self.scanned(model, &theta, until).into_iter().filter_map(|m| self.on_its_own(m)).collect()
     }
 
     /// The coordinates of a model's last cause that may be of any size above nothing.
@@ -337,8 +338,8 @@ impl Ground<'_> {
     }
 
     /// A model with its last cause of the sizes at which it comes nearest to the recordings as it stands: decades up from
-    /// `usual` until nothing changes any more, and down until the effect is gone.
-    fn scanned(&self, model: &Candidate, usual: &[f64]) -> Vec<Candidate> {
+    /// `usual` until nothing changes any more, and down until the effect is gone. Once the time is over, of those looked at.
+    fn scanned(&self, model: &Candidate, usual: &[f64], until: Deadline<'_>) -> Vec<Candidate> {
         let places: Vec<usize> = self.sized(model).iter().map(|&i| model.coordinates[i].parameter).collect();
         let at = |half_decades: i32| {
             let mut model = model.clone();
@@ -347,7 +348,11 @@ impl Ground<'_> {
         };
         let off = self.before.cost();
         let cost = |half_decades: i32| {
-            let model = at(half_decades);
+            if until.is_over() {
+                return f64::INFINITY;
+            }
+            let mut model = at(half_decades);
+            model.allowed = self.before.evaluated.steps.iter().map(|steps| SLOWER * steps).collect();
             let found = model.cost_within(&model.present(), &self.problem.train, &self.before.weights, SCANNED * off);
             found.unwrap_or(f64::INFINITY)
         };
