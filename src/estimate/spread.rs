@@ -8,6 +8,7 @@
 use super::autoregression::{self, longer};
 use super::quasi_newton::{bend, descend, slopes};
 use nalgebra::{DMatrix, DVector};
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// The residuals of one signal along one recording.
@@ -98,8 +99,41 @@ pub fn spread(estimate: Linearised<'_>) -> Spread<'_> {
     }
     let colour = Colour::new(estimate);
     let at = colour.found(small);
-    let covariance = &plain * colour.scores(&at) * &plain;
+    let mut covariance = &plain * colour.scores(&at) * &plain;
+    widen(&mut covariance, &between_recordings(estimate, &plain));
     Spread { covariance, plain, models: Some(Models { colour, at, small }) }
+}
+
+/// Variances of the unknowns by how far recordings contradict each other, which no model of the errors within one says: the
+/// spread of their scores (Liang, Zeger, Biometrika 73, 1986). None where there is one recording.
+fn between_recordings(estimate: Linearised<'_>, plain: &DMatrix<f64>) -> DVector<f64> {
+    let mut scores: BTreeMap<usize, DVector<f64>> = BTreeMap::new();
+    for s in estimate.series {
+        let (rows, errors) = (&s.rows, estimate.residual.rows(s.rows.start, s.rows.len()));
+        let score = estimate.jacobian.rows(rows.start, rows.len()).tr_mul(&errors);
+        *scores.entry(s.recording).or_insert_with(|| DVector::zeros(plain.nrows())) += score;
+    }
+    let mut variances = DVector::zeros(plain.nrows());
+    if scores.len() < 2 {
+        return variances;
+    }
+    let count = scores.len() as f64;
+    let mean = scores.values().fold(DVector::zeros(plain.nrows()), |sum, s| sum + s) / count;
+    for score in scores.values() {
+        let moved = plain * (score - &mean);
+        variances += moved.component_mul(&moved) * (count / (count - 1.0));
+    }
+    variances
+}
+
+/// Widens a covariance so that no variance is below another one of the same unknown; correlations stay.
+fn widen(covariance: &mut DMatrix<f64>, variances: &DVector<f64>) {
+    let factor = |i: usize| (variances[i] / covariance[(i, i)].max(f64::MIN_POSITIVE)).sqrt().max(1.0);
+    let factors: Vec<f64> = (0..variances.len()).map(factor).collect();
+    for (i, f) in factors.iter().enumerate().filter(|(_, f)| **f > 1.0) {
+        covariance.row_mut(i).scale_mut(*f);
+        covariance.column_mut(i).scale_mut(*f);
+    }
 }
 
 /// The errors of all signals with the sensitivities beside them.
