@@ -274,6 +274,8 @@ pub struct Instance<'a, 'l> {
     bare: FxHashMap<(ClassId, View), ScopeId>,
     /// Classes whose bases are being looked up, innermost last.
     gathering: Vec<(ClassId, View)>,
+    /// Redeclared classes whose constraints are being looked up, innermost last.
+    constrained: Vec<ClassId>,
     /// Bases gathered since the outermost of these.
     gathered: usize,
     /// These go in circles many times over.

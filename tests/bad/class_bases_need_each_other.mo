@@ -1,6 +1,6 @@
 //! E010 at 10: "`C` has no class `A`"
 //! E010 at 10: "`C.A` has no class `A`"
-//! E014 at 11: "look for their bases inside each other: T.B.A"
+//! E014 at 11: "look for them inside each other: T.B.A"
 //! E010 at 28: "`B.A` has no class `A`"
 //! E027 at 27: "a model cannot extend a package"
 //! model T.M

@@ -1,4 +1,4 @@
-//! How far the coordinates of a fit may be off, by the rule of all estimates ([`crate::estimate`]).
+//! How far the coordinates of a fit may be off, by the rule of all estimates (`crate::estimate`).
 
 use super::super::data::Recording;
 use super::map::Fit;

@@ -48,6 +48,7 @@ pub fn instantiate<'a, 'l>(library: &'l mut Library<'a>, request: &ModelRequest)
         packages: FxHashMap::default(),
         bare: FxHashMap::default(),
         gathering: Vec::new(),
+        constrained: Vec::new(),
         gathered: 0,
         tangled: false,
         dynamic_packages: Vec::new(),

@@ -2,7 +2,7 @@
 
 use crate::diag::{Code, Diagnostic, Span};
 use crate::instance::modifiers::{Arg, ArgKind, Reached};
-use crate::instance::template::{Base, Element, Kind, Source, Template, What};
+use crate::instance::template::{Base, DEEPEST, Element, Kind, Source, Template, What};
 use crate::instance::{ClassRef, ElementState, Enumeration, Inherited, Instance, NodeId, ROOT, Scope, ScopeId, View};
 use crate::resolve::ClassId;
 use crate::syntax::ast::{self, ClassBody, Import};
@@ -221,13 +221,18 @@ impl<'a> Instance<'a, '_> {
             (None, ClassBody::Short { base, .. }) => Some(base),
             _ => None,
         };
+        let class = self.library.enter(declared, Some(textual));
+        if self.constrained.len() >= DEEPEST {
+            self.endless_lookup("constraining", class, &self.constrained.clone());
+            return true;
+        }
+        // the lookup may meet other redeclared classes, whose constraints are looked up first
+        self.constrained.push(class);
         let (constraint, place) = match path {
             Some(path) => (self.lookup_path(own, path).ok(), path.span),
-            None => {
-                let class = self.library.enter(declared, Some(textual));
-                (Some(Found::Class(ClassRef { class, parent: own, args: Rc::from([]) })), declared.name.span)
-            }
+            None => (Some(Found::Class(ClassRef { class, parent: own, args: Rc::from([]) })), declared.name.span),
         };
+        self.constrained.pop();
         constraint.is_none_or(|c| self.check_subtype(&c, &Found::Class(found.clone()), at, place))
     }
 

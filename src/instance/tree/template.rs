@@ -155,8 +155,8 @@ pub enum What<'a> {
     Class(&'a ast::Class),
 }
 
-/// The longest chain of `extends`, and the most classes whose bases are being looked up inside each other.
-const DEEPEST: usize = 100;
+/// The longest chain of `extends`, and the most classes whose bases or constraints are being looked up inside each other.
+pub(super) const DEEPEST: usize = 100;
 
 /// The most bases that are gathered for one class, those found on the way to them included: a class of a large library
 /// has some hundreds. What goes in circles many times over would take for ever before it is [`DEEPEST`].
@@ -178,7 +178,7 @@ impl<'a> Instance<'a, '_> {
             self.gather(&mut t, class, parent, &mut Vec::new());
             self.gathering.pop();
         } else {
-            self.endless_lookup(class);
+            self.endless_lookup("base", class, &self.gathered_now());
             t.broken = true;
             t.bases.push(Base::of(class, ast, parent));
         }
@@ -187,10 +187,14 @@ impl<'a> Instance<'a, '_> {
         t
     }
 
-    /// A base class whose own lookup asks for further bases without end.
-    fn endless_lookup(&mut self, class: ClassId) {
+    fn gathered_now(&self) -> Vec<ClassId> {
+        self.gathering.iter().map(|&(class, _)| class).collect()
+    }
+
+    /// A class whose own lookup asks for further ones without end: those being looked up, innermost last.
+    pub(super) fn endless_lookup(&mut self, what: &str, class: ClassId, around: &[ClassId]) {
         let mut circle: Vec<String> = Vec::new();
-        for &(c, _) in self.gathering.iter().rev() {
+        for &c in around.iter().rev() {
             let name = self.library.full_name(c);
             if circle.contains(&name) {
                 break;
@@ -200,10 +204,10 @@ impl<'a> Instance<'a, '_> {
         circle.reverse();
         let (span, name) = (self.library.class(class).name.span, self.library.full_name(class));
         self.report(
-            Diagnostic::new(Code::CyclicExtends, format!("the base classes of `{name}` need each other to be found"))
-                .at(span, "found again while its own bases are being looked up")
+            Diagnostic::new(Code::CyclicExtends, format!("the {what} classes of `{name}` need each other to be found"))
+                .at(span, "found again while its own are being looked up")
                 .class(name)
-                .help(format!("these look for their bases inside each other: {}", circle.join(", "))),
+                .help(format!("these look for them inside each other: {}", circle.join(", "))),
         );
     }
 
@@ -234,7 +238,7 @@ impl<'a> Instance<'a, '_> {
         let most = if self.tangled { DEEPEST } else { MOST_BASES };
         if self.gathered > most {
             if !self.tangled {
-                self.endless_lookup(class);
+                self.endless_lookup("base", class, &self.gathered_now());
             }
             self.tangled = true;
             t.broken = true;
