@@ -115,6 +115,7 @@ codes! {
     Interrupted = "E507", Error, "the run was interrupted";
     CallbackPanicked = "E508", Error, "a callback panicked";
     ImpulseLost = "E509", Error, "what is differentiated jumps";
+    SharedLoad = "W510", Warning, "parts share a load in no unique way";
     // 6xx data
     BadData = "E601", Error, "a data file cannot be used";
     BadExperiment = "E602", Error, "an experiment file cannot be used";

@@ -77,6 +77,12 @@ impl Algebraic {
         Self::where_needed(system, nominal, tolerance, needed)
     }
 
+    /// Whether what the equations leave open may keep its value ([`Lu::may_keep`]).
+    pub fn may_keep(&mut self, allowed: bool) {
+        self.factored &= allowed == self.lu.may_be_kept();
+        self.lu.may_keep(allowed);
+    }
+
     /// The same, also where there are derivatives only.
     pub fn with_rates(system: &System, nominal: &[f64], tolerance: f64) -> Self {
         Self::where_needed(system, nominal, tolerance, !system.columns.is_empty())

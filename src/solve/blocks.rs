@@ -62,12 +62,22 @@ struct MixedWork {
     modes: Vec<usize>,
     /// What a singular matrix left undetermined in a search.
     undetermined: Option<Unknown>,
+    /// Whether the last solution left it as it was.
+    keeps: bool,
 }
 
 impl Blocks {
     /// Work space for these blocks.
     pub fn new(code: &[BlockCode], scales: &Scales, modes: &Modes) -> Self {
         Blocks { work: code.iter().map(|b| Work::new(b, scales, modes)).collect() }
+    }
+
+    /// What the equations left open in the last solution, and what switched there.
+    pub fn kept(&self) -> Option<(&[VarId], Unknown)> {
+        self.work.iter().find_map(|work| match work {
+            Work::Mixed(mixed) if mixed.keeps => Some((mixed.targets.as_slice(), mixed.undetermined?)),
+            _ => None,
+        })
     }
 
     /// Solves all blocks in order.
@@ -169,20 +179,51 @@ impl MixedWork {
             modes: (0..ids.len()).filter(|&i| modes.crossing(ids[i]).is_some()).collect(),
             targets: ids,
             undetermined: None,
+            keeps: false,
         }
+    }
+
+    fn may_keep(&mut self, allowed: bool) {
+        for work in &mut self.continuous {
+            if let Work::Loop(newton) = work {
+                newton.may_keep(allowed);
+            }
+        }
+    }
+
+    /// Where no modes determine everything, what they leave open keeps its value, as long as the equations that are left
+    /// over hold: two dry frictions hold one shaft, and each goes on with the load that it has.
+    fn run(&mut self, code: &MixedCode, setting: &Setting<'_>, values: &mut [f64]) -> Result<(), BlockFailure> {
+        let start = self.read(values);
+        self.undetermined = None;
+        self.keeps = false;
+        let end = self.determine(code, setting, values, &start);
+        if end.is_ok() || self.undetermined.is_none() {
+            return end;
+        }
+        self.write(&start, values);
+        self.may_keep(true);
+        let kept = self.determine(code, setting, values, &start);
+        self.keeps = kept.is_ok() && self.continuous.iter().any(|w| matches!(w, Work::Loop(newton) if newton.keeps()));
+        self.may_keep(false);
+        kept.or(end)
     }
 
     /// With what the integrator saw cross; when that contradicts itself, without: the crossing was seen within the error
     /// of the solution but too early, and will be seen again.
-    fn run(&mut self, code: &MixedCode, setting: &Setting<'_>, values: &mut [f64]) -> Result<(), BlockFailure> {
-        let start = self.read(values);
-        self.undetermined = None;
-        match self.search(code, setting, values, &start) {
+    fn determine(
+        &mut self,
+        code: &MixedCode,
+        setting: &Setting<'_>,
+        values: &mut [f64],
+        start: &[f64],
+    ) -> Result<(), BlockFailure> {
+        match self.search(code, setting, values, start) {
             Err(BlockFailure::Mixed(..)) if setting.modes.forces() => {
-                self.write(&start, values);
+                self.write(start, values);
                 let mut modes = setting.modes.clone();
                 modes.release();
-                self.search(code, &Setting { modes: &modes, ..*setting }, values, &start)
+                self.search(code, &Setting { modes: &modes, ..*setting }, values, start)
             }
             end => end,
         }

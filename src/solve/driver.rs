@@ -468,7 +468,8 @@ impl<'a> Driver<'a, '_> {
             absolute: nominal.iter().map(|n| n * self.settings.tolerance).collect(),
             share: if still { vec![1.0] } else { self.shares() },
         };
-        let lu = Lu::new(&pattern, nominal);
+        let mut lu = Lu::new(&pattern, nominal);
+        lu.may_keep(self.events.kept().is_some());
         self.restart.gather(system, &mut model.values);
         let roots = model.roots.len();
         let start = (self.t, self.restart.y(), self.restart.yp());

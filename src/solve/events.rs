@@ -8,7 +8,7 @@ use super::report::message_text;
 use super::stale::Stale;
 use crate::expr::VarId;
 use crate::lower::System;
-use crate::structure::ActionKind;
+use crate::structure::{ActionKind, Unknown};
 
 /// Passes before the iteration counts as endless.
 const PASSES: usize = 200;
@@ -83,6 +83,11 @@ impl Events {
                 stale.touch(before);
             }
         }
+    }
+
+    /// What the last iteration left open, and what switched there ([`Blocks::kept`]).
+    pub fn kept(&self) -> Option<(&[VarId], Unknown)> {
+        self.blocks.kept()
     }
 
     /// Raises the mode of a `sample`; the iteration lowers it again.

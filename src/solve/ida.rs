@@ -219,6 +219,12 @@ impl<E: Equations> Ida<E> {
         unsafe { &mut (*self.context).equations }
     }
 
+    /// Whether what the equations leave open may keep its value ([`Lu::may_keep`]).
+    pub fn may_keep(&mut self, allowed: bool) {
+        // SAFETY: the context is ours; no callback runs while `self` is borrowed here
+        unsafe { (*self.context).lu.may_keep(allowed) }
+    }
+
     /// The same, to look at.
     pub fn watch(&self) -> &E {
         // SAFETY: the context is ours; it is only changed through `&mut self`

@@ -22,6 +22,10 @@ pub struct Singular {
 #[derive(Debug)]
 pub struct Lu {
     kind: Kind,
+    /// Factors that keep what the equations do not determine; made when they are first needed.
+    keeping: Option<Box<SparseLu>>,
+    /// Whether they are used.
+    may_keep: bool,
     /// Factorisations done so far.
     pub factorizations: u64,
     /// Factorisations that searched for pivots.
@@ -45,7 +49,23 @@ impl Lu {
             }
             _ => Kind::Sparse(Box::new(SparseLu::new(pattern, column_scale))),
         };
-        Lu { kind, factorizations: 0, pivot_searches: 0 }
+        Lu { kind, keeping: None, may_keep: false, factorizations: 0, pivot_searches: 0 }
+    }
+
+    /// Whether unknowns without a usable pivot keep their value: the solution is 0 there as long as the right-hand side
+    /// lets the equations that are left over hold, and not small otherwise.
+    pub fn may_keep(&mut self, allowed: bool) {
+        self.may_keep = allowed;
+    }
+
+    /// Whether they may.
+    pub fn may_be_kept(&self) -> bool {
+        self.may_keep
+    }
+
+    /// Whether the last factorisation left unknowns as they are.
+    pub fn keeps(&self) -> bool {
+        self.may_keep && self.keeping.as_ref().is_some_and(|lu| lu.kept() > 0)
     }
 
     /// Dense pays while the matrix is tiny, or small and well filled (measured: see `benches/`).
@@ -59,6 +79,15 @@ impl Lu {
     /// [`Singular`] when there is no usable pivot; the factors must not be used then.
     pub fn factor(&mut self, val: &[f64]) -> Result<(), Singular> {
         self.factorizations += 1;
+        if self.may_keep {
+            if self.keeping.is_none() {
+                self.keeping = self.kind.shape().map(|(pattern, scale)| Box::new(SparseLu::keeping(pattern, scale)));
+            }
+            if let Some(lu) = &mut self.keeping {
+                self.pivot_searches += u64::from(lu.factor(val)?);
+            }
+            return Ok(());
+        }
         match &mut self.kind {
             Kind::Empty => Ok(()),
             Kind::Dense(lu) => {
@@ -75,10 +104,24 @@ impl Lu {
 
     /// Replaces `b` by the solution; false when it is not finite.
     pub fn solve(&mut self, b: &mut [f64]) -> bool {
+        if let (true, Some(keeping)) = (self.may_keep, &mut self.keeping) {
+            return keeping.solve(b);
+        }
         match &mut self.kind {
             Kind::Empty => true,
             Kind::Dense(lu) => lu.solve(b),
             Kind::Sparse(lu) => lu.solve(b),
+        }
+    }
+}
+
+impl Kind {
+    /// Pattern of the matrix and sizes of its unknowns.
+    fn shape(&self) -> Option<(&Pattern, &[f64])> {
+        match self {
+            Kind::Empty => None,
+            Kind::Dense(lu) => Some(lu.shape()),
+            Kind::Sparse(lu) => Some(lu.shape()),
         }
     }
 }

@@ -158,17 +158,24 @@ impl Accumulation {
 pub struct Reported {
     asserts: Vec<bool>,
     actions: Vec<bool>,
+    shared: bool,
 }
 
 impl Reported {
     /// None reported yet.
     pub fn new(system: &System) -> Self {
-        Reported { asserts: vec![false; system.dae.asserts.len()], actions: vec![false; system.dae.actions.len()] }
+        let (asserts, actions) = (system.dae.asserts.len(), system.dae.actions.len());
+        Reported { asserts: vec![false; asserts], actions: vec![false; actions], shared: false }
     }
 
     /// True the first time an `assert` outside `when` is reported.
     pub fn first(&mut self, assert: usize) -> bool {
         !std::mem::replace(&mut self.asserts[assert], true)
+    }
+
+    /// True the first time that a load is shared in no unique way.
+    pub fn first_shared(&mut self) -> bool {
+        !std::mem::replace(&mut self.shared, true)
     }
 
     /// True the first time an action's `assert` is reported.

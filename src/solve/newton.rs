@@ -119,6 +119,16 @@ impl Newton {
         }
     }
 
+    /// Whether unknowns that the equations leave open may keep their value ([`Lu::may_keep`]).
+    pub fn may_keep(&mut self, allowed: bool) {
+        self.lu.may_keep(allowed);
+    }
+
+    /// Whether some did in the last solution.
+    pub fn keeps(&self) -> bool {
+        self.lu.keeps()
+    }
+
     /// Solves the loop from the values in the slots of its unknowns; inner variables are up to date afterwards.
     ///
     /// # Errors
@@ -129,7 +139,7 @@ impl Newton {
         }
         self.guess.copy_from_slice(&self.x);
         self.iterations = 0;
-        let result = if code.linear { self.linear(code, values) } else { self.iterate(code, scales, values) };
+        let result = if code.linear { self.linear(code, scales, values) } else { self.iterate(code, scales, values) };
         let reason = match result {
             Ok(()) => return Ok(()),
             Err(reason) => reason,
@@ -152,7 +162,7 @@ impl Newton {
 
     /// One step, and further ones as long as round-off of the first guess is seen: signs of values that are tiny beside
     /// the guess decide about modes.
-    fn linear(&mut self, code: &LoopCode, values: &mut [f64]) -> Result<(), Reason> {
+    fn linear(&mut self, code: &LoopCode, scales: &Scales, values: &mut [f64]) -> Result<(), Reason> {
         self.iterations = 1;
         if !evaluate(code, &self.x, values) {
             self.x.fill(0.0);
@@ -177,6 +187,10 @@ impl Newton {
             if !moved {
                 break;
             }
+        }
+        // an equation that is left over and contradicts the others goes on pulling
+        if self.lu.keeps() && self.length(code, scales, &self.step) > TOLERANCE {
+            return Err(Reason::NoConvergence);
         }
         Ok(())
     }

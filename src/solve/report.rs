@@ -310,9 +310,8 @@ fn no_pressure_level(dae: &Dae, l: &Loop) -> Option<Diagnostic> {
     )
 }
 
-/// Discrete values without which something is undetermined, as the shares of two dry frictions that hold one shaft.
-fn shared(system: &System, code: Code, variables: &[VarId], unknown: Unknown, when: &str) -> Diagnostic {
-    let dae = &system.dae;
+/// Components in which these variables switch.
+fn switching<'a>(dae: &'a Dae, variables: &[VarId]) -> Vec<&'a str> {
     let mut components: Vec<&str> = Vec::new();
     for v in variables {
         if let Some((instance, _)) = component(dae, dae.variables[v.index()].origin)
@@ -321,6 +320,30 @@ fn shared(system: &System, code: Code, variables: &[VarId], unknown: Unknown, wh
             components.push(instance);
         }
     }
+    components
+}
+
+/// Parts hold a load together, and the equations do not say how much each of them carries.
+pub fn shared_load(system: &System, variables: &[VarId], unknown: Unknown, t: f64) -> Diagnostic {
+    let dae = &system.dae;
+    let names: Vec<String> = switching(dae, variables).iter().take(ROWS).map(|c| format!("`{c}`")).collect();
+    let text = format!("{} hold one load together, and nothing says how they share it", names.join(", "));
+    let made = match variables.first() {
+        Some(v) => at_origin(dae, Code::SharedLoad, text, dae.variables[v.index()].origin, "switches here"),
+        None => Diagnostic::new(Code::SharedLoad, text),
+    };
+    made.note(format!(
+        "since time {} s; `{}` stays as it was, the others carry the rest. Motion and the sum of the loads do not depend on it",
+        number(t),
+        name(dae, unknown)
+    ))
+    .help("put what is elastic in reality between the parts where the share of each of them matters")
+}
+
+/// Discrete values without which something is undetermined, as the shares of two dry frictions that hold one shaft.
+fn shared(system: &System, code: Code, variables: &[VarId], unknown: Unknown, when: &str) -> Diagnostic {
+    let dae = &system.dae;
+    let components = switching(dae, variables);
     let names: Vec<String> = components.iter().take(ROWS).map(|c| format!("`{c}`")).collect();
     let text = format!("`{}` is not determined {when} while {} hold", name(dae, unknown), names.join(", "));
     let diagnostic = match variables.first() {

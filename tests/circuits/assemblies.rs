@@ -371,3 +371,38 @@ fn what_no_machine_stands_is_said() {
     assert_eq!(accumulator("60e5"), "");
     assert!(accumulator("10e5").contains("empty at the start"));
 }
+
+/// A brake and a bearing, beside each other or behind each other, hold one shaft: the sum of what they carry is the
+/// load, and the shaft breaks loose at the sum of what they can hold, in both directions.
+#[test]
+fn two_frictions_hold_one_shaft() {
+    let joints = [
+        "connect(shaft.flange_b, brake.flange_a); connect(shaft.flange_b, bearing.flange_a);",
+        "connect(shaft.flange_b, bearing.flange_a); connect(bearing.flange_b, brake.flange_a);",
+    ];
+    for (joint, direction) in joints.iter().flat_map(|joint| [(joint, 1.0), (joint, -1.0)]) {
+        let mut simulation = circuit(
+            "Signal.Ramp load(height = 40, duration = 4);
+             Signal.Constant engaged(k = 1);
+             Mechanical.Rotational.Torque drive;
+             Mechanical.Rotational.Inertia shaft(J = 0.1, w(start = 0, fixed = true), phi(start = 0, fixed = true));
+             Mechanical.Rotational.Brake brake(fn_max = 50);
+             Mechanical.Rotational.BearingFriction bearing(tau_c = 5, tau_s = 5, d = 0);",
+            &format!(
+                "connect(load.y, drive.tau); connect(engaged.y, brake.f_normalized);
+                 connect(drive.flange, shaft.flange_a); {joint}"
+            ),
+        );
+        simulation.set("load.height", 40.0 * direction).expect("it is a parameter");
+        let t = run(simulation.stop_time(4.0));
+        for time in [0.0, 0.3, 1.0, 2.0, 2.49] {
+            let (brake, bearing) = (at(&t, "brake.tau", time), at(&t, "bearing.tau", time));
+            assert!((brake + bearing - 10.0 * time * direction).abs() < 1e-6, "{brake} + {bearing} N.m at {time} s");
+            assert!(brake.abs() <= 20.0 + 1e-6 && bearing.abs() <= 5.0 + 1e-6, "{brake}, {bearing} N.m at {time} s");
+            assert_eq!(at(&t, "shaft.w", time), 0.0);
+        }
+        // J dw/dt = 10 t - 25 from 2.5 s on
+        let w = direction * (10.0 * 1.5 * 1.5 / 2.0) / 0.1;
+        assert!((at(&t, "shaft.w", 4.0) - w).abs() < 1e-4 * w.abs(), "{} rad/s, not {w}", at(&t, "shaft.w", 4.0));
+    }
+}

@@ -98,10 +98,10 @@ time = \"t\"
 ";
 
 /// Numbers of a normal distribution, the same for the same seed.
-struct Normal(Numbers);
+pub struct Normal(pub Numbers);
 
 impl Normal {
-    fn next(&mut self) -> f64 {
+    pub fn next(&mut self) -> f64 {
         (0..12).map(|_| self.0.next()).sum::<f64>() - 6.0
     }
 }
@@ -168,7 +168,7 @@ fn diagnosed(friction: (&str, f64), held_seed: u64) -> Verdict {
     verdict(world, STUDY, train, held)
 }
 
-fn verdict(world: MemoryWorld, study: &str, train: String, held: String) -> Verdict {
+pub fn verdict(world: MemoryWorld, study: &str, train: String, held: String) -> Verdict {
     judged(world, study, train, held, None)
 }
 

@@ -7,3 +7,4 @@ mod recordings;
 #[path = "../rig/mod.rs"]
 mod rig;
 mod slopes;
+mod thresholds;

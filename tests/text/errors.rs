@@ -9,7 +9,7 @@ use bramah::internals::diag::{Code, Severity};
 use std::fmt::Write;
 
 /// Codes found in a run only.
-const FOUND_IN_RUNS: [&str; 8] = ["E403", "E501", "E502", "E503", "E504", "W505", "E506", "E509"];
+const FOUND_IN_RUNS: [&str; 9] = ["E403", "E501", "E502", "E503", "E504", "W505", "E506", "E509", "W510"];
 
 fn page(code: Code) -> String {
     let path = format!("{}/docs/errors/{}.md", env!("CARGO_MANIFEST_DIR"), code.id());

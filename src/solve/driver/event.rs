@@ -34,6 +34,7 @@ impl<'a> Driver<'a, '_> {
                 };
                 Stop::new(end, diagnostic)
             })?;
+        self.keep_open();
         outcome.refused = self.modes.refused(&model.values);
         self.modes.release();
         if !model.roots.is_empty() {
@@ -42,6 +43,21 @@ impl<'a> Driver<'a, '_> {
         }
         self.next_crossing = next_time_crossing(system, &model.values, t);
         Ok(outcome)
+    }
+
+    /// What an event left open keeps its value until the next one. A warning says so once.
+    fn keep_open(&mut self) {
+        let kept = self.events.kept();
+        self.algebraic.may_keep(kept.is_some());
+        if let Some(carried) = &mut self.carried {
+            carried.may_keep(kept.is_some());
+        }
+        if let Some((switches, unknown)) = kept
+            && self.reported.first_shared()
+        {
+            let warning = report::shared_load(self.system, switches, unknown, self.t);
+            self.diagnostics.push(warning);
+        }
     }
 
     /// Assertions and `terminate` of an event whose rows are out.
@@ -202,7 +218,9 @@ impl<'a> Driver<'a, '_> {
     pub(super) fn go_on(&mut self, cause: Cause, outcome: &Outcome) -> Flow {
         let t = self.t;
         let next = self.next_stop();
+        let open = self.events.kept().is_some();
         let ida = self.ida.as_mut().expect("made before the first step");
+        ida.may_keep(open);
         // what was seen crossed in the integrator's past would never be seen again
         let serves = !outcome.reinitialised
             && !outcome.refused

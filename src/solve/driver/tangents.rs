@@ -91,6 +91,11 @@ impl Carried {
         self.values.len()
     }
 
+    /// Whether what the equations leave open may keep its value ([`Lu::may_keep`]).
+    pub fn may_keep(&mut self, allowed: bool) {
+        self.lu.may_keep(allowed);
+    }
+
     /// Notes where the values belong.
     fn stand(&mut self, y: &[f64], yp: &[f64]) {
         self.y.copy_from_slice(y);

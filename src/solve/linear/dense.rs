@@ -12,6 +12,8 @@ pub trait Dense: Send + std::fmt::Debug {
     fn factor(&mut self, val: &[f64]) -> Result<(), Singular>;
     /// Replaces `b` by the solution; false when it is not finite.
     fn solve(&mut self, b: &mut [f64]) -> bool;
+    /// Pattern of the matrix and sizes of its unknowns.
+    fn shape(&self) -> (&Pattern, &[f64]);
 }
 
 /// A factorisation for this pattern, if it is small enough.
@@ -137,5 +139,9 @@ impl<const N: usize> Dense for Fixed<N> {
         }
         b[..N].copy_from_slice(&x);
         x.iter().all(|v| v.is_finite())
+    }
+
+    fn shape(&self) -> (&Pattern, &[f64]) {
+        (&self.pattern, &self.column_scale)
     }
 }

@@ -12,6 +12,8 @@ const NONE: u32 = u32::MAX;
 const DIAGONAL_PREFERENCE: f64 = 1e-3;
 /// A multiplier beyond this (in weighed rows) means that the recorded pivots have gone bad.
 const LARGEST_MULTIPLIER: f64 = 1e6;
+/// A pivot below this part of the largest entry of its row is what rounding has left of a column that depends on others.
+const DEPENDENT: f64 = 1e-12;
 
 /// Sparse LU factors with a fixed column order and pivots that change only when they must.
 #[derive(Debug)]
@@ -37,6 +39,10 @@ pub struct SparseLu {
     work: Vec<f64>,
     search: Search,
     ready: bool,
+    /// Whether columns without a usable pivot are kept.
+    keeping: bool,
+    /// How many are, the last ones in `order`.
+    kept: usize,
 }
 
 /// Columns of L (without the unit diagonal) or U (without the diagonal).
@@ -105,7 +111,25 @@ impl SparseLu {
             work: vec![0.0; n],
             search: Search::default(),
             ready: false,
+            keeping: false,
+            kept: 0,
         }
+    }
+
+    /// The same, where a column without a usable pivot gets one of the size of a row that is left over: as long as that
+    /// row holds, its unknown stays as it is.
+    pub fn keeping(pattern: &Pattern, column_scale: &[f64]) -> Self {
+        SparseLu { keeping: true, ..Self::new(pattern, column_scale) }
+    }
+
+    /// Pattern of the matrix and sizes of its unknowns.
+    pub fn shape(&self) -> (&Pattern, &[f64]) {
+        (&self.pattern, &self.column_scale)
+    }
+
+    /// How many unknowns the last factorisation keeps.
+    pub fn kept(&self) -> usize {
+        self.kept
     }
 
     /// Entries of both factors.
@@ -123,9 +147,22 @@ impl SparseLu {
         }
         self.ready = false;
         self.x.fill(0.0);
-        self.search_pivots(val)?;
+        self.kept = 0;
+        while let Err(singular) = self.search_pivots(val) {
+            if !self.keeping || self.kept == self.pattern.n || !val.iter().all(|v| v.is_finite()) {
+                return Err(singular);
+            }
+            self.postpone(singular.column);
+        }
         self.ready = true;
         Ok(true)
+    }
+
+    /// Moves a column behind all others, among those that are kept.
+    fn postpone(&mut self, column: usize) {
+        let at = self.order.iter().position(|&c| c as usize == column).expect("a column of the matrix");
+        self.order[at..].rotate_left(1);
+        self.kept += 1;
     }
 
     fn search_pivots(&mut self, val: &[f64]) -> Result<(), Singular> {
@@ -177,6 +214,10 @@ impl SparseLu {
     }
 
     fn choose_pivot(&mut self, j: usize) -> Result<(), Singular> {
+        if j >= self.pattern.n - self.kept {
+            self.keep(j);
+            return Ok(());
+        }
         let column = self.order[j];
         let row = self.best_row(column).ok_or_else(|| self.give_up(column))?;
         let pivot = self.x[row as usize];
@@ -193,6 +234,24 @@ impl SparseLu {
         if self.inverse[j].is_finite() { Ok(()) } else { Err(self.give_up(column)) }
     }
 
+    /// The pivot of a column that is kept, in a row that none of the others needed.
+    fn keep(&mut self, j: usize) {
+        let row = self.position.iter().position(|&p| p == NONE).expect("as many rows as columns");
+        for &r in &self.search.rows {
+            self.x[r as usize] = 0.0;
+        }
+        self.inverse[j] = self.inverse_of_kept(j, self.weights[row]);
+        self.position[row] = count(j);
+        self.pivot_row[j] = count(row);
+        self.lower.close_column();
+    }
+
+    /// In units of row and column the pivot is 1.
+    fn inverse_of_kept(&self, j: usize, row_weight: f64) -> f64 {
+        let weight = if row_weight > 0.0 { row_weight } else { 1.0 };
+        weight * self.column_scale[self.order[j] as usize]
+    }
+
     fn best_row(&self, column: u32) -> Option<u32> {
         let weighed = |r: u32| self.x[r as usize].abs() * self.weights[r as usize];
         let mut best = (0.0, NONE);
@@ -205,7 +264,8 @@ impl SparseLu {
                 best = (v, r);
             }
         }
-        if !(best.0 > 0.0 && best.0.is_finite()) {
+        let least = if self.keeping { DEPENDENT / self.column_scale[column as usize] } else { 0.0 };
+        if !(best.0 > least && best.0.is_finite()) {
             return None;
         }
         let diagonal = self.search.rows.contains(&column) && weighed(column) >= DIAGONAL_PREFERENCE * best.0;
@@ -263,6 +323,16 @@ impl SparseLu {
 
     fn divide(&mut self, j: usize) -> bool {
         let pivot = std::mem::take(&mut self.x[j]);
+        let scale = self.column_scale[self.order[j] as usize];
+        if j >= self.pattern.n - self.kept {
+            self.inverse[j] = self.inverse_of_kept(j, self.weights[j]);
+            // no other rows are left but those of columns that are kept too; one without entries has no size
+            let rests = |v: f64, w: f64| v == 0.0 || (w > 0.0 && v.abs() * w * scale <= DEPENDENT);
+            let open =
+                rests(pivot, self.weights[j]) && self.x[j..].iter().zip(&self.weights[j..]).all(|(&v, &w)| rests(v, w));
+            self.x[j..].fill(0.0);
+            return open;
+        }
         let inverse = 1.0 / pivot;
         let bound = LARGEST_MULTIPLIER * pivot.abs() * self.weights[j];
         let mut largest = 0.0_f64;
@@ -273,7 +343,8 @@ impl SparseLu {
             self.lower.val[t] = v * inverse;
         }
         self.inverse[j] = inverse;
-        inverse.is_finite() && largest <= bound
+        let least = if self.keeping { DEPENDENT } else { 0.0 };
+        inverse.is_finite() && largest <= bound && pivot.abs() * self.weights[j] * scale >= least
     }
 
     /// Replaces `b` by the solution; false when it is not finite.

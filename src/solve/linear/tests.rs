@@ -184,3 +184,63 @@ fn structurally_awkward_arrow_and_zero_diagonal() {
     lu.factor(&val).expect("regular");
     assert!(error(&mut lu, &p, &val, &vec![1.0; n]) < 1e-12);
 }
+
+/// Two unknowns of which only the sum occurs, among others; the equation that is left over holds or does not.
+#[test]
+fn unknowns_that_nothing_determines_stay() {
+    let shared = |scale: f64| {
+        // x0 + x1 + x2 = 6 twice (the second one scaled), x2 + 2 x3 = 11, x3 - x2 = 1
+        csc(
+            4,
+            vec![
+                (0, 0, 1.0),
+                (0, 1, 1.0),
+                (0, 2, 1.0),
+                (1, 0, scale),
+                (1, 1, scale),
+                (1, 2, scale),
+                (2, 2, 1.0),
+                (2, 3, 2.0),
+                (3, 2, -1.0),
+                (3, 3, 1.0),
+            ],
+        )
+    };
+    let (pattern, val) = shared(3.0);
+    let mut lu = Lu::new(&pattern, &[1.0; 4]);
+    lu.factor(&val).expect_err("nothing parts x0 and x1");
+    lu.may_keep(true);
+    // the second time the pivots are known
+    for val in [val.clone(), shared(7.0).1, val] {
+        lu.factor(&val).expect("one of them is kept");
+        assert!(lu.keeps());
+        let scale = val[1];
+        let mut x = vec![6.0, scale * 6.0, 11.0, 1.0];
+        assert!(lu.solve(&mut x));
+        assert!(x[0].min(x[1]).abs() < 1e-14, "{x:?}");
+        assert!((x[0] + x[1] - 3.0).abs() < 1e-12 && (x[2] - 3.0).abs() < 1e-12 && (x[3] - 4.0).abs() < 1e-12, "{x:?}");
+        let mut x = vec![6.0, scale * 6.5, 11.0, 1.0];
+        assert!(lu.solve(&mut x));
+        assert!(x[0].abs().min(x[1].abs()) > 0.1, "a contradiction shows: {x:?}");
+    }
+    let (_, mut val) = shared(3.0);
+    val[1] = 4.0;
+    lu.factor(&val).expect("regular");
+    assert!(!lu.keeps());
+    assert!(error(&mut lu, &pattern, &val, &[1.0; 4]) < 1e-12);
+}
+
+/// An equation that says nothing while two parts hold, and something as soon as one of them moves.
+#[test]
+fn an_equation_that_was_empty_comes_back() {
+    let (pattern, held) = csc(2, vec![(0, 0, 0.0), (1, 0, -1.0), (0, 1, 0.0), (1, 1, -1.0)]);
+    let mut lu = Lu::new(&pattern, &[1.0; 2]);
+    lu.may_keep(true);
+    lu.factor(&held).expect("one of them is kept");
+    assert!(lu.keeps());
+    lu.factor(&[1.0, -100.0, 0.0, -1.0]).expect("regular");
+    assert!(!lu.keeps());
+    let mut x = vec![2.0, -203.0];
+    assert!(lu.solve(&mut x));
+    assert_eq!(x, [2.0, 3.0]);
+}
