@@ -6,5 +6,5 @@ model EarlyOpening "A valve towards the low side opens early and softly"
   parameter SI.Pressure w(min = 1) = 2e5 "Width of the opening";
 equation
   q = K*(Smooth.pos(p - p_0 - p_o, w) - Smooth.pos(-p_o, w));
-  annotation(__bramah(family = "valve_early_opening", id = "E34", coefficients = {"K"}, shapes(p_o = {1.5e6, 2.5e6, 4e6, 6e6, 9e6, 13e6, 18e6}), threshold = {"p_o"}));
+  annotation(__bramah(family = "valve_early_opening", id = "E34", coefficients = {"K"}, shapes(p_o = {1.5e6, 2.5e6, 4e6, 6e6, 9e6, 13e6, 18e6}, w = {2e5}), threshold = {"p_o"}));
 end EarlyOpening;

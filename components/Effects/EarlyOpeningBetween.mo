@@ -6,5 +6,5 @@ model EarlyOpeningBetween "A valve in parallel opens early and softly"
   parameter SI.Pressure w(min = 1) = 2e5 "Width of the opening";
 equation
   q = K*(Smooth.pos(dp - p_o, w) - Smooth.pos(-p_o, w));
-  annotation(__bramah(family = "valve_early_opening", id = "E29", coefficients = {"K"}, shapes(p_o = {5e4, 1e6, 2.5e6, 5e6, 9e6}), threshold = {"p_o"}, ends = "free", directed = "yes"));
+  annotation(__bramah(family = "valve_early_opening", id = "E29", coefficients = {"K"}, shapes(p_o = {5e4, 1e6, 2.5e6, 5e6, 9e6}, w = {2e5}), threshold = {"p_o"}, ends = "free", directed = "yes"));
 end EarlyOpeningBetween;

@@ -6,5 +6,5 @@ model Overflow "Above some pressure, as that of a level, oil leaves to the low s
   parameter SI.Pressure w(min = 1e-3) = 100 "Width of the corner";
 equation
   q = K*(Smooth.pos(p - p_0 - p_o, w) - Smooth.pos(-p_o, w));
-  annotation(__bramah(family = "overflow", id = "E40", coefficients = {"K"}, shapes(p_o = {5e2, 1e3, 2e3, 5e3, 1e4, 2e4}), threshold = {"p_o"}));
+  annotation(__bramah(family = "overflow", id = "E40", coefficients = {"K"}, shapes(p_o = {5e2, 1e3, 2e3, 5e3, 1e4, 2e4}, w = {100}), threshold = {"p_o"}));
 end Overflow;

@@ -6,5 +6,5 @@ model OverflowInto "Above some pressure, as that of a level, oil runs past a com
   parameter SI.Pressure w(min = 1e-3) = 100 "Width of the corner";
 equation
   q = K*Smooth.pos(p_a - p_o, w);
-  annotation(__bramah(family = "overflow", id = "E40", coefficients = {"K"}, shapes(p_o = {5e2, 2e3, 1e4, 1.02e5, 1.05e5, 1.1e5, 1.2e5}), level = {"p_o"}, ends = "free", directed = "yes"));
+  annotation(__bramah(family = "overflow", id = "E40", coefficients = {"K"}, shapes(p_o = {5e2, 2e3, 1e4, 1.02e5, 1.05e5, 1.1e5, 1.2e5}, w = {100}), level = {"p_o"}, ends = "free", directed = "yes"));
 end OverflowInto;

@@ -96,15 +96,16 @@ fn recording(world: &MemoryWorld, seed: u64) -> String {
     text
 }
 
-/// All but the height of the brim is far from determined where the level hardly reaches it, and one undamped Gauss-Newton step
-/// of a fold would throw its conductance away.
+/// A brim that is a tenth as wide as the effect's corner: with its width free the effect fits. Where the level hardly reaches
+/// it, all but its height is far from determined, and one undamped Gauss-Newton step of a fold would throw the rest away.
 #[test]
-fn a_brim_is_found_although_its_conductance_is_hardly_determined() {
+fn a_sharp_brim_is_found() {
     let world = MemoryWorld::single("Brim.mo", TANK);
     let (train, held) = (recording(&world, 5), recording(&world, 6));
     let verdict = verdict(world, STUDY, train, held);
     let first = verdict.effects.first().expect("an effect");
     assert_eq!(first.family, "overflow", "{:?}", verdict.effects.iter().map(|e| &e.effect).collect::<Vec<_>>());
+    // to a corner's width
     let brim = first.parameters["p_o"].value;
-    assert!((brim - 3900.0).abs() < 40.0, "{brim} Pa");
+    assert!((brim - 3900.0).abs() < 150.0, "{brim} Pa");
 }

@@ -143,7 +143,9 @@ impl Chooser<'_> {
         for &i in others {
             let why = self.criteria.worse(&rivals[first].model, &rivals[i].model);
             if matches!(why, Some(Reason::NatsBehind(_))) && own(&rivals[i]) < own(&rivals[first]) && !until.is_over() {
-                rivals[i].model = widened(self.problem, &self.criteria.sensors, rivals[i].model.clone(), until);
+                if let Some(wider) = widened(self.problem, &self.criteria.sensors, &rivals[i].model, until) {
+                    rivals[i].model = wider;
+                }
             }
         }
     }

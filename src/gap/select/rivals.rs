@@ -9,7 +9,7 @@ use super::super::problem::Problem;
 use super::compare::{needed, total_gap};
 use super::criteria::Rival;
 use super::screen::{Ground, Screened, Start, by_turns};
-use super::weighed::{Weighed, at_nominal, at_the_noise, from_nominal, no_worse};
+use super::weighed::{Weighed, at_nominal, at_the_noise, from_nominal, no_worse, widened};
 use rayon::prelude::*;
 
 /// What came of fitting hypotheses.
@@ -69,7 +69,8 @@ pub fn fitted(ground: &Ground<'_>, order: Vec<Screened>, until: Deadline<'_>) ->
     rivals.sort_by(|a, b| a.model.gap(sensors).total_cmp(&b.model.gap(sensors)));
     let front = FRONT.min(rivals.len());
     rivals[..front].par_iter_mut().for_each(|rival| {
-        for other in [from_nominal, at_the_noise] {
+        // a corner that is rounder or sharper than the effect's would count against the effect
+        for other in [from_nominal, at_the_noise, widened] {
             if until.is_over() {
                 break;
             }

@@ -360,7 +360,8 @@ impl Search<'_> {
     /// The model of a step that is taken: with its widths free, at its optimum.
     fn freed(&self, chosen: Weighed) -> Weighed {
         let (problem, sensors) = (self.problem, &self.chooser.criteria.sensors);
-        settled(problem, sensors, widened(problem, sensors, chosen, self.ends), self.ends)
+        let wider = widened(problem, sensors, &chosen, self.ends);
+        settled(problem, sensors, wider.unwrap_or(chosen), self.ends)
     }
 
     /// A model fitted from where it is.

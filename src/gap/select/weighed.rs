@@ -62,16 +62,16 @@ pub fn settled(problem: &Problem<'_>, sensors: &Sensors, mut model: Weighed, unt
     model
 }
 
-/// The model with the widths of everything that was taken free, where that is better.
-pub fn widened(problem: &Problem<'_>, sensors: &Sensors, chosen: Weighed, until: Deadline<'_>) -> Weighed {
-    let causes = chosen.fit.causes();
-    let wider = models::candidate(problem, &causes, Some(&chosen.fit.tolerances()), causes.len());
-    let wider = wider.filter(|c| c.coordinates.len() > chosen.fit.x.len());
-    let fitted = wider.and_then(|c| {
-        let x = c.present();
-        weighed(problem, sensors, (c, x), until)
-    });
-    fitted.filter(|f| ahead(&chosen, f, sensors) > 0.0).unwrap_or(chosen)
+/// The model with the widths of all its effects free, where that is better.
+pub fn widened(problem: &Problem<'_>, sensors: &Sensors, one: &Weighed, until: Deadline<'_>) -> Option<Weighed> {
+    let causes = one.fit.causes();
+    let wider = models::candidate(problem, &causes, Some(&one.fit.tolerances()), causes.len())?;
+    if wider.coordinates.len() <= one.fit.x.len() {
+        return None;
+    }
+    let x = wider.present();
+    let fitted = weighed(problem, sensors, (wider, x), until)?;
+    (ahead(one, &fitted, sensors) > 0.0).then_some(fitted)
 }
 
 /// The model before a rival, fitted anew from where parameters are in the rival, where that is better. It takes the time that
