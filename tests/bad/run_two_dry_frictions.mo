@@ -1,5 +1,5 @@
 //! run
-//! E403: "share its load in no unique way"
+//! W510: "hold one load together"
 model M
   Mechanical.Rotational.BearingFriction left, right;
   Mechanical.Rotational.Inertia shaft(J = 1);

@@ -76,7 +76,7 @@ pub struct Candidate {
     pub model: Assembled,
     /// What is free: tolerances first, then the hypotheses' own in their order.
     pub coordinates: Vec<Coordinate>,
-    /// How many coordinates the hypotheses have of their own.
+    /// How many coordinates without a prior the hypotheses have of their own: widths are not among them.
     pub own: usize,
     /// Per signal its unit, as written.
     pub units: Vec<String>,

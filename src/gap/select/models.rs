@@ -70,7 +70,8 @@ pub fn attached(
         let is_taken = k < taken;
         let shapes = h.shapes.iter().zip(shaped).filter_map(|(s, &p)| shape(s, p, is_taken));
         let of_cause: Vec<Coordinate> = coefficients.chain(shapes).collect();
-        own += of_cause.len();
+        // a width has a prior, and is no size of the effect
+        own += of_cause.iter().filter(|c| c.prior.is_none()).count();
         coordinates.extend(of_cause);
     }
     let deviation = |(n, f): (&f64, &f64)| n.max(ACCURACY * f);
