@@ -142,10 +142,12 @@ impl Chooser<'_> {
         let own = |r: &Rival| r.model.fit.candidate.own;
         for &i in others {
             let why = self.criteria.worse(&rivals[first].model, &rivals[i].model);
-            if matches!(why, Some(Reason::NatsBehind(_))) && own(&rivals[i]) < own(&rivals[first]) && !until.is_over() {
-                if let Some(wider) = widened(self.problem, &self.criteria.sensors, &rivals[i].model, until) {
-                    rivals[i].model = wider;
-                }
+            if matches!(why, Some(Reason::NatsBehind(_)))
+                && own(&rivals[i]) < own(&rivals[first])
+                && !until.is_over()
+                && let Some(wider) = widened(self.problem, &self.criteria.sensors, &rivals[i].model, until)
+            {
+                rivals[i].model = wider;
             }
         }
     }
