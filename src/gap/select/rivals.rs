@@ -4,9 +4,9 @@ use super::super::clock::Deadline;
 use super::super::effects::Coefficient;
 use super::super::estimate::{Fit, Task, Weights};
 use super::super::hypotheses::Hypothesis;
-use super::super::policy::{DELTA, FRONT, HOPED, OTHER_WEIGHTING, ROUGH, TRIED};
+use super::super::policy::{ACCURACY, DELTA, FRONT, HOPED, OTHER_WEIGHTING, ROUGH, TRIED};
 use super::super::problem::Problem;
-use super::compare::{needed, total_gap};
+use super::compare::{Sensors, needed, total_gap};
 use super::criteria::Rival;
 use super::screen::{Ground, Screened, Start, by_turns};
 use super::weighed::{Weighed, at_nominal, at_the_noise, from_nominal, no_worse, widened};
@@ -69,8 +69,7 @@ pub fn fitted(ground: &Ground<'_>, order: Vec<Screened>, until: Deadline<'_>) ->
     rivals.sort_by(|a, b| a.model.gap(sensors).total_cmp(&b.model.gap(sensors)));
     let front = FRONT.min(rivals.len());
     rivals[..front].par_iter_mut().for_each(|rival| {
-        // a corner that is rounder or sharper than the effect's would count against the effect
-        for other in [from_nominal, at_the_noise, widened] {
+        for other in [from_nominal, at_the_noise, wider] {
             if until.is_over() {
                 break;
             }
@@ -85,6 +84,12 @@ pub fn fitted(ground: &Ground<'_>, order: Vec<Screened>, until: Deadline<'_>) ->
         r.size = size(h, &r.model.fit, r.tolerances);
     });
     Fitted { rivals, passed: passed.into_iter().map(|t| t.hypothesis).collect() }
+}
+
+/// With widths free where what is left is worth a name: a corner that is rounder or sharper than the effect's would count
+/// against the effect.
+fn wider(problem: &Problem<'_>, sensors: &Sensors, one: &Weighed, until: Deadline<'_>) -> Option<Weighed> {
+    if one.gap(sensors) > ACCURACY { widened(problem, sensors, one, until) } else { None }
 }
 
 /// A few iterations from the most promising starts of a hypothesis.
