@@ -79,7 +79,6 @@ impl Algebraic {
 
     /// Whether what the equations leave open may keep its value ([`Lu::may_keep`]).
     pub fn may_keep(&mut self, allowed: bool) {
-        self.factored &= allowed == self.lu.may_be_kept();
         self.lu.may_keep(allowed);
     }
 

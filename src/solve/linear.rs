@@ -24,8 +24,10 @@ pub struct Lu {
     kind: Kind,
     /// Factors that keep what the equations do not determine; made when they are first needed.
     keeping: Option<Box<SparseLu>>,
-    /// Whether they are used.
+    /// Whether the next factorisation makes them.
     may_keep: bool,
+    /// Whether the last one did.
+    kept: bool,
     /// Factorisations done so far.
     pub factorizations: u64,
     /// Factorisations that searched for pivots.
@@ -49,23 +51,18 @@ impl Lu {
             }
             _ => Kind::Sparse(Box::new(SparseLu::new(pattern, column_scale))),
         };
-        Lu { kind, keeping: None, may_keep: false, factorizations: 0, pivot_searches: 0 }
+        Lu { kind, keeping: None, may_keep: false, kept: false, factorizations: 0, pivot_searches: 0 }
     }
 
-    /// Whether unknowns without a usable pivot keep their value: the solution is 0 there as long as the right-hand side
-    /// lets the equations that are left over hold, and not small otherwise.
+    /// Whether, from the next factorisation on, unknowns without a usable pivot keep their value: the solution is 0 there
+    /// as long as the right-hand side lets the equations that are left over hold, and not small otherwise.
     pub fn may_keep(&mut self, allowed: bool) {
         self.may_keep = allowed;
     }
 
-    /// Whether they may.
-    pub fn may_be_kept(&self) -> bool {
-        self.may_keep
-    }
-
     /// Whether the last factorisation left unknowns as they are.
     pub fn keeps(&self) -> bool {
-        self.may_keep && self.keeping.as_ref().is_some_and(|lu| lu.kept() > 0)
+        self.kept && self.keeping.as_ref().is_some_and(|lu| lu.kept() > 0)
     }
 
     /// Dense pays while the matrix is tiny, or small and well filled (measured: see `benches/`).
@@ -79,7 +76,8 @@ impl Lu {
     /// [`Singular`] when there is no usable pivot; the factors must not be used then.
     pub fn factor(&mut self, val: &[f64]) -> Result<(), Singular> {
         self.factorizations += 1;
-        if self.may_keep {
+        self.kept = self.may_keep;
+        if self.kept {
             if self.keeping.is_none() {
                 self.keeping = self.kind.shape().map(|(pattern, scale)| Box::new(SparseLu::keeping(pattern, scale)));
             }
@@ -104,7 +102,7 @@ impl Lu {
 
     /// Replaces `b` by the solution; false when it is not finite.
     pub fn solve(&mut self, b: &mut [f64]) -> bool {
-        if let (true, Some(keeping)) = (self.may_keep, &mut self.keeping) {
+        if let (true, Some(keeping)) = (self.kept, &mut self.keeping) {
             return keeping.solve(b);
         }
         match &mut self.kind {

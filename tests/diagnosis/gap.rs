@@ -127,25 +127,29 @@ fn stepped(
     signals: &[(&str, &str, f64)],
     seed: u64,
 ) -> String {
+    let mut random = Normal(Numbers(seed));
+    let heights: Vec<f64> = (0..20).map(|_| height * random.next()).collect();
+    let input: Vec<f64> = heights.iter().flat_map(|u| [*u; 75]).collect();
+    played(world, (source, class), changed, (&input, h), signals, &mut random)
+}
+
+/// A recording of a plant whose input `u` has these values, each held for so long; of each signal column, variable and noise.
+pub fn played(
+    world: &MemoryWorld,
+    (source, class): (&str, &str),
+    changed: &[(&str, f64)],
+    (input, h): (&[f64], f64),
+    signals: &[(&str, &str, f64)],
+    random: &mut Normal,
+) -> String {
     let request = Request { source: source.into(), model: Some(class.into()), ..Request::default() };
     let mut plant = Simulation::compile(world, &request).unwrap();
     for (name, value) in changed {
         plant.set(name, *value).unwrap();
     }
-    let mut random = Normal(Numbers(seed));
-    let count = 1500;
-    let times: Vec<f64> = (0..count).map(|k| f64::from(k) * h).collect();
-    let mut u = 0.0;
-    let input: Vec<f64> = (0..count)
-        .map(|k| {
-            if k % 75 == 0 {
-                u = height * random.next();
-            }
-            u
-        })
-        .collect();
-    plant.input("u", &times, &input, Interpolation::Held).unwrap();
-    plant.stop_time(f64::from(count - 1) * h);
+    let times: Vec<f64> = (0..input.len()).map(|k| k as f64 * h).collect();
+    plant.input("u", &times, input, Interpolation::Held).unwrap();
+    plant.stop_time(times[times.len() - 1]);
     let settings = plant.settings();
     settings.interval = h;
     settings.event_rows = false;

@@ -2,12 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-use crate::gap::{Normal, verdict};
+use crate::gap::{Normal, played, verdict};
 use crate::rig::Numbers;
 
 use bramah::world::MemoryWorld;
-use bramah::{Interpolation, Request, Simulation};
-use std::fmt::Write;
 
 /// A tank with a laminar outlet; the plant has a brim, above which a thousandfold of the outlet's conductance runs off.
 const TANK: &str = "
@@ -67,36 +65,14 @@ time = \"t\"
 
 /// Steps of the inflow, most of which leave the tank below its brim.
 fn recording(world: &MemoryWorld, seed: u64) -> String {
-    let request = Request { source: "Brim.mo".into(), model: Some("Brim.Plant".into()), ..Request::default() };
-    let mut plant = Simulation::compile(world, &request).unwrap();
-    let (count, h) = (1600, 2.0);
-    let times: Vec<f64> = (0..count).map(|k| f64::from(k) * h).collect();
     let mut random = Numbers(seed);
-    let mut u = 0.0;
-    let input: Vec<f64> = (0..count)
-        .map(|k| {
-            if k % 100 == 0 {
-                u = 5e-5 * random.next();
-            }
-            u
-        })
-        .collect();
-    plant.input("u", &times, &input, Interpolation::Held).unwrap();
-    plant.stop_time(f64::from(count - 1) * h);
-    let settings = plant.settings();
-    settings.interval = h;
-    settings.event_rows = false;
-    let run = plant.run().unwrap().trajectory;
-    let level = run.column("h").unwrap();
+    let flows: Vec<f64> = (0..16).map(|_| 5e-5 * random.next()).collect();
+    let input: Vec<f64> = flows.iter().flat_map(|u| [*u; 100]).collect();
     let mut noise = Normal(Numbers(seed + 100));
-    let mut text = String::from("t,u,h\n");
-    for k in 0..times.len() {
-        writeln!(text, "{},{},{}", times[k], input[k], level[k] + 5e-4 * noise.next()).unwrap();
-    }
-    text
+    played(world, ("Brim.mo", "Brim.Plant"), &[], (&input, 2.0), &[("h", "h", 5e-4)], &mut noise)
 }
 
-/// A brim that is a tenth as wide as the effect's corner: with its width free the effect fits. Where the level hardly reaches
+/// A brim without any width: with the width of its corner free the effect fits. Where the level hardly reaches
 /// it, all but its height is far from determined, and one undamped Gauss-Newton step of a fold would throw the rest away.
 #[test]
 fn a_sharp_brim_is_found() {

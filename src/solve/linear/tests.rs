@@ -230,6 +230,24 @@ fn unknowns_that_nothing_determines_stay() {
     assert!(error(&mut lu, &pattern, &val, &[1.0; 4]) < 1e-12);
 }
 
+/// Until the next factorisation the factors at hand serve, whatever is allowed meanwhile.
+#[test]
+fn factors_outlast_what_is_allowed() {
+    for n in [5, 60] {
+        let (p, val) = random(n, 3, 11);
+        let mut lu = Lu::new(&p, &vec![1.0; n]);
+        lu.factor(&val).expect("regular");
+        for allowed in [true, false] {
+            lu.may_keep(allowed);
+            assert!(error(&mut lu, &p, &val, &vec![1.0; n]) < 1e-10);
+            lu.factor(&val).expect("regular");
+            assert!(!lu.keeps());
+            lu.may_keep(!allowed);
+            assert!(error(&mut lu, &p, &val, &vec![1.0; n]) < 1e-10);
+        }
+    }
+}
+
 /// An equation that says nothing while two parts hold, and something as soon as one of them moves.
 #[test]
 fn an_equation_that_was_empty_comes_back() {
