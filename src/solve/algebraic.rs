@@ -13,7 +13,7 @@ use super::model::Model;
 use crate::lower::{ColumnRole, System};
 
 /// Weight of the derivatives in the matrix: so large that states do not move.
-const HOLD_STATES: f64 = 1e60;
+pub const HOLD_STATES: f64 = 1e60;
 /// The last correction, in tolerances.
 const ENOUGH: f64 = 0.1;
 /// A rate that is not believed to be smaller.
@@ -38,6 +38,13 @@ pub fn shares(system: &System) -> Vec<f64> {
         _ => (n / states).sqrt(),
     };
     system.columns.iter().map(|c| share(c.role)).collect()
+}
+
+/// Factors of a Jacobian with [`HOLD_STATES`]; `solved` is false for each unknown whose derivative is sought instead: beside
+/// that, what an equation has of the unknown itself is no pivot.
+pub fn holding(system: &System, nominal: &[f64], solved: &[bool]) -> Lu {
+    let size = |(n, &solved): (&f64, &bool)| if solved { *n } else { n / HOLD_STATES };
+    Lu::new(&system.pattern, &nominal.iter().zip(solved).map(size).collect::<Vec<f64>>())
 }
 
 /// Work done.
@@ -92,7 +99,7 @@ impl Algebraic {
         Algebraic {
             absolute: nominal.iter().map(|n| n * tolerance).collect(),
             relative: tolerance,
-            lu: if needed { Lu::new(&system.pattern, nominal) } else { Lu::new(&Default::default(), &[]) },
+            lu: if needed { holding(system, nominal, &solved) } else { Lu::new(&Default::default(), &[]) },
             val: vec![0.0; if needed { system.pattern.nnz() } else { 0 }],
             factored: false,
             rate: 1.0,

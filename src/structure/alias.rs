@@ -80,6 +80,20 @@ fn simple_form(pool: &Exprs, equation: &Equation) -> Option<Simple> {
     }
 }
 
+/// The variable that an equation says to be 0, or to equal another one.
+pub(super) fn equal(pool: &Exprs, equation: &Equation) -> Option<(VarId, Option<Signed>)> {
+    if let Some(Simple::Equal(a, b)) = simple_form(pool, equation) {
+        return Some((a.variable, Some(b)));
+    }
+    let mut terms = Terms::default();
+    terms.collect(pool, equation.lhs, false, 0)?;
+    terms.collect(pool, equation.rhs, true, 0)?;
+    match (terms.found.as_slice(), terms.found.first().map(|(e, _)| pool.node(*e))) {
+        ([_], Some(Node::Var(v))) => Some((v, None)),
+        _ => None,
+    }
+}
+
 /// Up to two leaves with signs; `true` is minus.
 #[derive(Default)]
 struct Terms {

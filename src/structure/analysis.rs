@@ -9,7 +9,7 @@ use super::solve_block::BlockSolver;
 use super::sorting::{Columns, System, SystemRow};
 use super::{
     ActionKind, Alias, Assign, Block, Conserved, Dae, Selection, StateChoice, Unknown, alias, assertions, cancelling,
-    closed_groups, conserved, delays, dependence, discrete, dummy_derivatives, duplicates, events, held, initial,
+    closed_groups, conserved, constants, delays, dependence, discrete, dummy_derivatives, duplicates, events, held, initial,
     messages, parameters, regularity, start_derivatives, zeros,
 };
 use crate::diag::{Checked, Diagnostic};
@@ -81,6 +81,7 @@ fn run(
         return Err(messages::closed_group(&draft, &aliases, &flows));
     }
 
+    constants::read(&mut draft);
     let mut reduction = dependence::expose(&mut draft, &mut known, !flat.varied)?;
     reduction.reduce(&mut draft)?;
     diagnostics.extend(held::find(&draft, &reduction, &aliases));

@@ -10,6 +10,7 @@ mod blt;
 mod cancelling;
 mod closed_groups;
 mod conserved;
+mod constants;
 mod delays;
 mod dependence;
 mod discrete;

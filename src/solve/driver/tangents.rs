@@ -10,6 +10,7 @@ use crate::diag::{Code, Diagnostic};
 use crate::expr::VarId;
 use crate::lower::{Column, Layout, System};
 use crate::solve::Tangents;
+use crate::solve::algebraic::{HOLD_STATES, holding};
 use crate::solve::events::Outcome;
 use crate::solve::ida::{Differentiable, Equations, Evaluation};
 use crate::solve::linear::Lu;
@@ -18,8 +19,6 @@ use crate::solve::modes::Modes;
 use crate::solve::settings::End;
 use crate::solve::tangents::column;
 
-/// Weight of the derivatives in the matrix: so large that states do not move.
-const HOLD_STATES: f64 = 1e60;
 /// Reach of differences along a direction, as a part of the unknowns' sizes.
 const REACH: f64 = 1e-5;
 /// A change of rates over the next step, in tolerances, that the corrector may deal with.
@@ -70,6 +69,7 @@ impl Carried {
             values
         };
         let count = asked.starts.len();
+        let solved: Vec<bool> = system.columns.iter().map(|c| !c.is_state()).collect();
         Carried {
             values: asked.starts.iter().map(start).collect(),
             rates: vec![vec![0.0; n]; count],
@@ -80,7 +80,7 @@ impl Carried {
             states: system.columns.iter().map(|c| c.is_state()).collect(),
             shift: vec![0.0; count],
             before: vec![vec![0.0; n]; count],
-            lu: Lu::new(&system.pattern, nominal),
+            lu: holding(system, nominal, &solved),
             matrix: vec![0.0; system.pattern.nnz()],
             broken: false,
         }

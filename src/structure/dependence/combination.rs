@@ -4,9 +4,10 @@ use super::super::draft::{Draft, Role};
 use super::super::pantelides::Reduction;
 use super::super::parameters::{self, Known};
 use super::Jacobian;
-use super::elimination::{CANCELLED, Combination};
+use super::elimination::Combination;
 use super::linear::{Factor, Linear};
 use super::offsets::Place;
+use super::symbolic::{self, Sum};
 use crate::diag::Diagnostic;
 use crate::expr::{ExprId, Exprs};
 use crate::flat::Equation;
@@ -38,24 +39,27 @@ impl Combined {
         let offsets = || rows.iter().map(|&row| jacobian.offsets[row]);
         let least = offsets().min()?;
         let mut may_be = |i: &usize| {
-            let factor: &Factor = &factors[*i];
+            let [factor]: &[Factor] = &factors[*i] else { return false };
             jacobian.offsets[rows[*i]] == least && factor.expressions().all(|e| known.is_nonzero(&draft.exprs, e))
         };
-        let place = (0..rows.len()).rev().find(|i| factors[*i].is_number() && may_be(i));
+        let is_number = |i: &usize| factors[*i].iter().all(Factor::is_number);
+        let place = (0..rows.len()).rev().find(|i| is_number(i) && may_be(i));
         let place = place.or_else(|| (0..rows.len()).rev().find(may_be))?;
         let mut made = Combined { replaced: rows[place], terms: Vec::new(), rest: Vec::new(), rows: rows.clone() };
-        for ((offset, linear), factor) in offsets().zip(&linear).zip(factors) {
+        for ((offset, linear), factors) in offsets().zip(&linear).zip(&factors) {
             let times = offset - least;
             // its derivative would have more terms
             let varying = |e: ExprId| known.value(&draft.exprs, e).is_none();
             if times > 0 && linear.terms.iter().flat_map(|t| t.1.expressions()).any(varying) {
                 return None;
             }
-            for ((chain, order), of_term) in &linear.terms {
-                add_to(&mut made.terms, (*chain, order + times), of_term.clone().times(&factor, 1));
-            }
-            for (e, of_rest) in &linear.rest {
-                add_to(&mut made.rest, (*e, times), of_rest.clone().times(&factor, 1));
+            for factor in factors {
+                for ((chain, order), of_term) in &linear.terms {
+                    add_to(&mut made.terms, (*chain, order + times), of_term.clone().times(factor, 1));
+                }
+                for (e, of_rest) in &linear.rest {
+                    add_to(&mut made.rest, (*e, times), of_rest.clone().times(factor, 1));
+                }
             }
         }
         made.is_lower(draft, known, (jacobian, reduction), least).then_some(made)
@@ -125,17 +129,10 @@ fn add_to<T: PartialEq>(terms: &mut Vec<(T, Factor)>, of: T, factor: Factor) {
     let Some(at) = terms.iter().position(|t| t.0 == of && t.1.is_like(&factor)) else {
         return terms.push((of, factor));
     };
-    match sum(&terms[at].1, &factor) {
+    match symbolic::sum(&terms[at].1, &factor) {
         Some(sum) => terms[at].1 = sum,
         None => drop(terms.swap_remove(at)),
     }
-}
-
-/// The sum of two like factors; `None` where they cancel.
-fn sum(a: &Factor, b: &Factor) -> Option<Factor> {
-    let number = a.number + b.number;
-    let cancels = number.abs() <= CANCELLED * (a.number.abs() + b.number.abs());
-    (!cancels).then(|| a.clone().with_number(number))
 }
 
 /// The factors by which rows add up to 0 whatever their expressions are worth. Where they do so only with the parameters as
@@ -147,16 +144,16 @@ fn factors(
     found: &Combination,
     linear: &mut [Linear],
     fixable: bool,
-) -> Option<Vec<Factor>> {
+) -> Option<Vec<Sum>> {
     let rows: Vec<Vec<(u32, &Factor)>> =
         found.iter().zip(&*linear).map(|(&(row, _), linear)| jacobian.entries(row, linear)).collect();
     let expressions: Vec<ExprId> = rows.iter().flatten().flat_map(|(_, factor)| factor.expressions()).collect();
-    let numbers = || found.iter().map(|&(_, factor)| Factor::number(factor)).collect();
+    let numbers = || found.iter().map(|&(_, factor)| vec![Factor::number(factor)]).collect();
     if expressions.is_empty() {
         return Some(numbers());
     }
-    if let Some(factors) = monomials(&rows) {
-        return Some(with_most_numbers(factors));
+    if let Some(factors) = symbolic::factors(&rows) {
+        return Some(factors);
     }
     if !fixable || expressions.iter().any(|&e| known.value(&draft.exprs, e).is_none()) {
         return None;
@@ -169,57 +166,4 @@ fn factors(
         }
     }
     Some(numbers())
-}
-
-/// Elimination by hand: more rows than this are too many.
-const MOST_ROWS: usize = 100;
-
-/// The factors by which these rows (chains with factors) add up to 0, by elimination; `None` where they do not, or where a
-/// sum of unlike factors would be needed.
-fn monomials(rows: &[Vec<(u32, &Factor)>]) -> Option<Vec<Factor>> {
-    let mut chains: Vec<u32> = rows.iter().flatten().map(|entry| entry.0).collect();
-    chains.sort_unstable();
-    chains.dedup();
-    let width = chains.len();
-    let mut pivots: Vec<(Vec<Option<Factor>>, usize)> = Vec::new();
-    for (r, entries) in rows.iter().take(MOST_ROWS).enumerate() {
-        // the row, and which rows it consists of
-        let mut row: Vec<Option<Factor>> = vec![None; width + rows.len()];
-        row[width + r] = Some(Factor::ONE);
-        for (chain, factor) in entries {
-            add(&mut row[chains.binary_search(chain).ok()?], (*factor).clone())?;
-        }
-        for (pivot, c) in &pivots {
-            let (Some(entry), Some(of_pivot)) = (row[*c].take(), &pivot[*c]) else { continue };
-            let factor = entry.times(of_pivot, -1).negative();
-            for (at, part) in pivot.iter().enumerate().filter(|(at, _)| at != c) {
-                if let Some(part) = part {
-                    add(&mut row[at], part.clone().times(&factor, 1))?;
-                }
-            }
-        }
-        let entries = row[..width].iter().enumerate().filter_map(|(c, entry)| Some((c, entry.as_ref()?)));
-        match entries.min_by_key(|(_, factor)| !factor.is_number()) {
-            Some((c, _)) => pivots.push((row, c)),
-            None => return row.split_off(width).into_iter().collect(),
-        }
-    }
-    None
-}
-
-/// Adds to an entry; `None` where the sum is no single factor.
-fn add(entry: &mut Option<Factor>, factor: Factor) -> Option<()> {
-    *entry = match entry.take() {
-        None => Some(factor),
-        Some(old) if old.is_like(&factor) => sum(&old, &factor),
-        Some(_) => return None,
-    };
-    Some(())
-}
-
-/// A multiple of these factors in which as many as possible are numbers.
-fn with_most_numbers(factors: Vec<Factor>) -> Vec<Factor> {
-    let like = |f: &Factor| factors.iter().filter(|other| other.is_like(f)).count();
-    let Some(common) = factors.iter().max_by_key(|f| like(f)).cloned() else { return factors };
-    factors.into_iter().map(|f| f.times(&common, -1)).collect()
 }

@@ -20,6 +20,11 @@ impl Factor {
         Factor { number, powers: Vec::new() }
     }
 
+    #[cfg(test)]
+    pub fn of(e: ExprId) -> Self {
+        Factor { number: 1.0, powers: vec![(e, 1)] }
+    }
+
     pub fn with_number(self, number: f64) -> Self {
         Factor { number, ..self }
     }

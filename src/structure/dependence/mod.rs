@@ -17,6 +17,7 @@ mod combination;
 mod elimination;
 mod linear;
 mod offsets;
+mod symbolic;
 
 use super::draft::Draft;
 use super::messages;
