@@ -15,6 +15,7 @@ equation
     q_used = q;
   end if;
   assert(q_used >= 0 or rho > 1e-3*oil.rho_l, "The source takes " + String(-6e4*q_used) + " l/min out of a node that holds vapour only: its density has fallen to a thousandth. Nothing, or too little, flows in there");
+  assert(q_used <= 0 or port.p < 1e9, "The source presses " + String(6e4*q_used) + " l/min into a place that lets too little out: its pressure exceeds 10000 bar. Is a valve shut, or built in the wrong way round? A relief valve would open");
   assert(q_used >= 0 or port.p > oil.p_void, "The oil cavitates: the source draws more than flows in, and voids open in the oil. Is a valve shut, or a restriction too narrow?", AssertionLevel.warning);
   port.q = -max(q_used, 0)*max(0.9*oil.rho_l/rho, 1) - min(q_used, 0);
   rho = oil.density(port.p);

@@ -141,6 +141,8 @@ pub struct Driver<'a, 'c> {
     renewed: f64,
     /// How often.
     renewals: u32,
+    /// Whether algebraic unknowns are left out of the error test.
+    tests_states_only: bool,
     /// Other states to go on with.
     choice: Option<StateChoice>,
     program: Program,
@@ -292,6 +294,7 @@ fn prepare<'a, 'c>(
         creep: 0,
         renewed: f64::NEG_INFINITY,
         renewals: 0,
+        tests_states_only: false,
         accumulation: Accumulation::default(),
         chatter: Chatter::new(settings.stop_time - settings.start_time, settings.events_at_once),
         reported: Reported::new(system),

@@ -255,6 +255,24 @@ impl<E: Equations> Ida<E> {
         unsafe { s::IDASetNonlinConvCoef(self.memory, part) };
     }
 
+    /// From now on the error test leaves these unknowns out; the corrector solves for them as before. Without any, it is
+    /// about all of them again.
+    ///
+    /// # Errors
+    /// [`Failure::Code`] when SUNDIALS refuses the input.
+    pub fn leave_out(&mut self, untested: &[bool]) -> Result<(), Failure> {
+        let some = untested.contains(&true);
+        // SAFETY: the vectors are ours and not borrowed; IDA copies the marks
+        unsafe {
+            if some {
+                let marks = slice(self.scratch, self.n);
+                marks.iter_mut().zip(untested).for_each(|(mark, &out)| *mark = if out { 0.0 } else { 1.0 });
+                check(s::IDASetId(self.memory, self.scratch))?;
+            }
+            check(s::IDASetSuppressAlg(self.memory, c_int::from(some)))
+        }
+    }
+
     /// Forgets the past and starts again at `t` from these values.
     ///
     /// # Errors

@@ -157,9 +157,13 @@ pub fn jump(system: &System, t: f64, jump: &Jump) -> Diagnostic {
         variable.name,
         number(t)
     );
+    let line = component(&system.dae, variable.origin).filter(|found| chooses_ends(&system.dae, found.0));
+    let at_line = line.map_or(String::new(), |(line, _)| {
+        format!("; with `volume_a = false` or `volume_b = false`, no volume lies at that end of `{line}`")
+    });
     at_origin(&system.dae, Code::ImpulseLost, text, variable.origin, "this must be continuous")
         .note("an equation that is differentiated ties it to a mass, a volume or the like; the jump takes an impulse that no equation holds, and that would be missing in all balances")
-        .help("smooth the command that jumps (`Signal.SecondOrder`, a ramp), let a source follow it by a filter of its own (`exact = false`), or put a spring, a resistance or another storage between")
+        .help(format!("smooth the command that jumps (`Signal.SecondOrder`, a ramp), let a source follow it by a filter of its own (`exact = false`), or put a spring, a resistance or another storage between{at_line}"))
 }
 
 /// What happened in a block, as a diagnostic of the given code; `when` says when, as in `at the start`.
@@ -299,7 +303,7 @@ fn no_pressure_level(dae: &Dae, l: &Loop) -> Option<Diagnostic> {
     }
     let text = format!("nothing fixes the pressure level of {{{}}}", owners.join(", "));
     let place = places::place_of(&dae.variables, &dae.instances, first);
-    let line = owners.iter().find(|o| dae.variables.iter().any(|v| v.name == format!("{o}.volume_a")));
+    let line = owners.iter().find(|owner| chooses_ends(dae, owner));
     let at_line = line.map_or(String::new(), |l| format!("; at an end of `{l}`, `volume_a` or `volume_b` is one"));
     let label = format!("`{}` and the others hang on each other alone", variable(first).name);
     Some(
@@ -308,6 +312,11 @@ fn no_pressure_level(dae: &Dae, l: &Loop) -> Option<Diagnostic> {
             .note("no pressure from elsewhere enters their equations, and what the density changes with pressure does not fix it")
             .help(format!("connect a tank, a volume or a fixed pressure to one of these nodes{at_line}")),
     )
+}
+
+/// Whether a component is a line with or without a volume at each end.
+fn chooses_ends(dae: &Dae, component: &str) -> bool {
+    dae.variables.iter().any(|v| v.name == format!("{component}.volume_a"))
 }
 
 /// Components in which these variables switch.

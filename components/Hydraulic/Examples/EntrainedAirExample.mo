@@ -3,7 +3,7 @@ model EntrainedAirExample "A cylinder is pressed, held and let go through a line
   inner Oil.ISOVG46 oil(x_u = 0.6) "Oil with bubbles";
   PressureSource source(useInput = true);
   Signal.TimeTable pressure(table = [0, 2e5; 1, 2e5; 1.2, 60e5; 20, 60e5; 20.2, 2e5; 30, 2e5]);
-  Line line(L = 2, d = 1e-2, n = 2, volume_b = true, p_start = 2e5, redeclare model Air = EntrainedAir.Dissolving);
+  Line line(L = 2, d = 1e-2, n = 2, p_start = 2e5, redeclare model Air = EntrainedAir.Dissolving);
   Cylinder cylinder(A_1 = 1e-3, A_2 = 1e-3, p_1_start = 2e5, p_2_start = 2e5, redeclare model Air = EntrainedAir.Dissolving(tau_d = 5));
   Plug plug;
   Mechanical.Translational.Fixed wall(s0 = 0.05);

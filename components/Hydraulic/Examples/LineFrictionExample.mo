@@ -2,8 +2,8 @@ within Hydraulic.Examples;
 model LineFrictionExample "Water hammer with friction that knows the past of the flow, beside quasi-steady friction"
   inner Oil.ISOVG46 oil "Oil";
   PressureSource source(p = 50e5);
-  Line steady(L = 20, d = 1e-2, n = 20, volume_b = true, p_start = 50e5, p_b_start = 43.5e5, m_flow_start = 0.168);
-  Line unsteady(redeclare model Friction = LineFriction.Unsteady(k = 5), L = 20, d = 1e-2, n = 20, volume_b = true, p_start = 50e5, p_b_start = 43.5e5, m_flow_start = 0.168);
+  Line steady(L = 20, d = 1e-2, n = 20, p_start = 50e5, p_b_start = 43.5e5, m_flow_start = 0.168);
+  Line unsteady(redeclare model Friction = LineFriction.Unsteady(k = 5), L = 20, d = 1e-2, n = 20, p_start = 50e5, p_b_start = 43.5e5, m_flow_start = 0.168);
   VariableOrifice valve_1(A_max = 3e-6);
   VariableOrifice valve_2(A_max = 3e-6);
   Signal.Ramp close(height = -1, offset = 1, duration = 2e-3, startTime = 0.1);

@@ -242,6 +242,9 @@ impl<'a> Driver<'a, '_> {
         let room = self.next_stop() - t;
         let ida = self.ida.as_mut().expect("made before the first step");
         let (start, root) = (cause == Cause::Start, cause == Cause::Root);
+        if std::mem::take(&mut self.tests_states_only) && ida.leave_out(&[]).is_err() {
+            return false;
+        }
         let longest = self.settings.longest_step.min(ida.watch().playback.delays.longest_step());
         self.restart.restart(ida, t, room, longest, start, root) && (start || self.hand_over_tangents(false))
     }
