@@ -13,6 +13,7 @@ partial model TwoPort "Two ports that exchange oil without storing it"
 protected
   SI.DynamicViscosity mu_in(nominal = 0.03) "Viscosity of the oil that comes in, at low pressure";
   SI.TemperatureDifference dT_gain(nominal = 1) "Rise of the temperature from a to b";
+  constant Real G_start(unit = "kg/(s.Pa)") = 1e-7 "Conductance from which the search for the start sets out: 6 l/min at 10 bar";
   SI.Density rho_a(nominal = 1000) "Density at a, at T_0";
   SI.Density rho_b(nominal = 1000) "Density at b, at T_0";
   Real full(unit = "1") "Density upstream over that of the oil between its voids: 1 where it has none";
@@ -35,7 +36,7 @@ equation
     dT_gain = 0;
     rho = (max(rho_a, oil.rho_l) + max(rho_b, oil.rho_l))/2*full;
   end if;
-  m_flow = rho*q;
+  m_flow = homotopy(rho*q, G_start*dp);
   w_void = oil.voidWork(port_a.p) - oil.voidWork(port_b.p);
   lossPower = dp*q*full + m_flow*w_void;
   rho_a*port_a.q = m_flow;
