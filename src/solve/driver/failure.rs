@@ -78,7 +78,7 @@ impl<'a> Driver<'a, '_> {
     /// An equation that, with the values as they are, holds neither a derivative of a state nor an algebraic unknown.
     /// It then ties states together and leaves undetermined what it was to determine: the index is higher there than
     /// the structure tells.
-    fn idle_equation(&mut self, t: f64, y: &[f64]) -> Option<u32> {
+    pub(super) fn idle_equation(&mut self, t: f64, y: &[f64]) -> Option<u32> {
         let system = self.system;
         let (pattern, n) = (&system.pattern, system.columns.len());
         let yp = self.ida().yp().to_vec();

@@ -166,7 +166,7 @@ impl<'a> Driver<'a, '_> {
     fn begin_anew(&mut self, failure: Failure, to: f64) -> Flow {
         let renewed = match failure {
             Failure::Convergence => self.renew(),
-            Failure::ErrorTest => !self.tests_states_only && self.renew() && self.test_states_only(),
+            Failure::ErrorTest => self.tests_too_much() && self.renew() && self.test_states_only(),
             _ => false,
         };
         if !renewed {
@@ -202,7 +202,13 @@ impl<'a> Driver<'a, '_> {
     /// An algebraic unknown that follows from a derivative, as the flow into a stiff volume, takes over the corrector's error
     /// divided by the step, which grows as steps shrink: once they are short, the error test finds no step any more. What it
     /// measures there is not the error of the solution, which lies in the states (L. Petzold, Differential/algebraic equations
-    /// are not ODE's, SIAM J. Sci. Stat. Comput. 3, 1982). Up to the next event they are left out; false when there are none.
+    /// are not ODE's, SIAM J. Sci. Stat. Comput. 3, 1982). Not so where an equation leaves an unknown open.
+    fn tests_too_much(&mut self) -> bool {
+        let y = self.ida().y().to_vec();
+        !self.tests_states_only && self.idle_equation(self.t, &y).is_none()
+    }
+
+    /// Leaves algebraic unknowns out of the error test up to the next event; false when there are none.
     fn test_states_only(&mut self) -> bool {
         let algebraic: Vec<bool> = self.system.columns.iter().map(|c| c.role == ColumnRole::Algebraic).collect();
         self.tests_states_only = algebraic.contains(&true) && self.ida().leave_out(&algebraic).is_ok();
