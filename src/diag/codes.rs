@@ -116,6 +116,7 @@ codes! {
     CallbackPanicked = "E508", Error, "a callback panicked";
     ImpulseLost = "E509", Error, "what is differentiated jumps";
     SharedLoad = "W510", Warning, "parts share a load in no unique way";
+    RootJumped = "W511", Warning, "a loop jumps to another solution";
     // 6xx data
     BadData = "E601", Error, "a data file cannot be used";
     BadExperiment = "E602", Error, "an experiment file cannot be used";

@@ -80,6 +80,16 @@ impl Blocks {
         })
     }
 
+    /// Whether loops may end at another root than that at hand ([`Newton::may_jump`]).
+    pub fn may_jump(&mut self, allowed: bool) {
+        self.work.iter_mut().for_each(|work| work.may_jump(allowed));
+    }
+
+    /// Whether a loop was solved by a search in the last run ([`Newton::searched`]).
+    pub fn searched(&self) -> bool {
+        self.work.iter().any(Work::searched)
+    }
+
     /// Solves all blocks in order.
     ///
     /// # Errors
@@ -115,6 +125,22 @@ impl Work {
             BlockCode::Assign(assign) => Work::Assign(corrections(assign, modes)),
             BlockCode::Loop(code) => Work::Loop(Box::new(Newton::new(code, scales))),
             BlockCode::Mixed(mixed) => Work::Mixed(Box::new(MixedWork::new(mixed, scales, modes))),
+        }
+    }
+
+    fn may_jump(&mut self, allowed: bool) {
+        match self {
+            Work::Assign(_) => {}
+            Work::Loop(newton) => newton.may_jump(allowed),
+            Work::Mixed(mixed) => mixed.continuous.iter_mut().for_each(|work| work.may_jump(allowed)),
+        }
+    }
+
+    fn searched(&self) -> bool {
+        match self {
+            Work::Assign(_) => false,
+            Work::Loop(newton) => newton.searched(),
+            Work::Mixed(mixed) => mixed.continuous.iter().any(Work::searched),
         }
     }
 

@@ -141,6 +141,8 @@ pub struct Driver<'a, 'c> {
     renewed: f64,
     /// How often.
     renewals: u32,
+    /// When a loop jumped to another root last, and how many tolerances ahead it was sought.
+    jumped: (f64, f64),
     /// Whether algebraic unknowns are left out of the error test.
     tests_states_only: bool,
     /// Other states to go on with.
@@ -294,6 +296,7 @@ fn prepare<'a, 'c>(
         creep: 0,
         renewed: f64::NEG_INFINITY,
         renewals: 0,
+        jumped: (f64::NEG_INFINITY, 0.0),
         tests_states_only: false,
         accumulation: Accumulation::default(),
         chatter: Chatter::new(settings.stop_time - settings.start_time, settings.events_at_once),

@@ -90,6 +90,16 @@ impl Events {
         self.blocks.kept()
     }
 
+    /// Whether loops may end at another root than that at hand.
+    pub fn may_jump(&mut self, allowed: bool) {
+        self.blocks.may_jump(allowed);
+    }
+
+    /// Whether a loop was solved by a search in the last iteration, and may have jumped.
+    pub fn searched(&self) -> bool {
+        self.blocks.searched()
+    }
+
     /// Raises the mode of a `sample`; the iteration lowers it again.
     pub fn raise(&self, sample: usize, values: &mut [f64]) {
         values[self.samples[sample]] = 1.0;

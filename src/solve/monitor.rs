@@ -159,13 +159,14 @@ pub struct Reported {
     asserts: Vec<bool>,
     actions: Vec<bool>,
     shared: bool,
+    jumped: bool,
 }
 
 impl Reported {
     /// None reported yet.
     pub fn new(system: &System) -> Self {
         let (asserts, actions) = (system.dae.asserts.len(), system.dae.actions.len());
-        Reported { asserts: vec![false; asserts], actions: vec![false; actions], shared: false }
+        Reported { asserts: vec![false; asserts], actions: vec![false; actions], shared: false, jumped: false }
     }
 
     /// True the first time an `assert` outside `when` is reported.
@@ -176,6 +177,11 @@ impl Reported {
     /// True the first time that a load is shared in no unique way.
     pub fn first_shared(&mut self) -> bool {
         !std::mem::replace(&mut self.shared, true)
+    }
+
+    /// True the first time that a loop jumps.
+    pub fn first_jump(&mut self) -> bool {
+        !std::mem::replace(&mut self.jumped, true)
     }
 
     /// True the first time an action's `assert` is reported.

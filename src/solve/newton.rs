@@ -91,6 +91,10 @@ pub struct Newton {
     /// What may be left of each residual: 0, but on the way in [`Self::in_parts`].
     rest: Vec<f64>,
     iterations: u32,
+    /// Whether another root will do where the one at hand has ended.
+    may_jump: bool,
+    /// Whether the last solution was found by a search, away from the guess.
+    searched: bool,
 }
 
 enum Trial {
@@ -116,7 +120,19 @@ impl Newton {
             matrix: vec![0.0; code.pattern.nnz()],
             rest: vec![0.0; n],
             iterations: 0,
+            may_jump: false,
+            searched: false,
         }
+    }
+
+    /// Whether full steps are tried where damped ones end nowhere: past a fold they lead to another root.
+    pub fn may_jump(&mut self, allowed: bool) {
+        self.may_jump = allowed;
+    }
+
+    /// Whether the last solution may be another root than that at hand: it was not found from the guess.
+    pub fn searched(&self) -> bool {
+        self.searched
     }
 
     /// Whether unknowns that the equations leave open may keep their value ([`Lu::may_keep`]).
@@ -139,6 +155,7 @@ impl Newton {
         }
         self.guess.copy_from_slice(&self.x);
         self.iterations = 0;
+        self.searched = false;
         let result = if code.linear { self.linear(code, scales, values) } else { self.iterate(code, scales, values) };
         let reason = match result {
             Ok(()) => return Ok(()),
@@ -149,9 +166,14 @@ impl Newton {
             && !code.linear
             && (self.is_double_root(code, scales, values) || self.bracket(code, scales, values))
         {
+            self.searched = true;
             return Ok(());
         }
         if failure.reason == Reason::NoConvergence && !code.linear && self.in_parts(code, scales, values) {
+            return Ok(());
+        }
+        if self.may_jump && !code.linear && self.in_full_steps(code, scales, values) {
+            self.searched = true;
             return Ok(());
         }
         let guess = std::mem::take(&mut self.guess);
@@ -337,6 +359,33 @@ impl Newton {
         }
         self.rest.fill(0.0);
         at >= 1.0
+    }
+
+    /// Newton's method without damping, from the guess and from either side far from it. Where two roots have met and
+    /// vanished, as when a snap-through or a comparator with positive feedback lets go, damped steps end at the place where
+    /// they met.
+    fn in_full_steps(&mut self, code: &LoopCode, scales: &Scales, values: &mut [f64]) -> bool {
+        [0.0, 1.0, -1.0, 10.0, -10.0].into_iter().any(|far| {
+            for ((x, guess), &u) in self.x.iter_mut().zip(&self.guess).zip(&code.tearing) {
+                *x = guess + far * guess.abs().max(scales.of(u).0);
+            }
+            self.full_steps(code, scales, values)
+        })
+    }
+
+    fn full_steps(&mut self, code: &LoopCode, scales: &Scales, values: &mut [f64]) -> bool {
+        for _ in 0..MAX_ITERATIONS {
+            if !evaluate(code, &self.x, values) || self.factor(code, values).is_err() {
+                return false;
+            }
+            self.correction(code, values);
+            let length = self.length(code, scales, &self.step);
+            self.x.iter_mut().zip(&self.step).for_each(|(x, dx)| *x += dx);
+            if length <= TOLERANCE {
+                return evaluate(code, &self.x, values);
+            }
+        }
+        false
     }
 
     /// Whether the guess solves one equation whose derivative vanishes there, as `x^2 + y^2 = 1` at `x = 1`: a root all the same

@@ -349,6 +349,16 @@ pub fn shared_load(system: &System, variables: &[VarId], unknown: Unknown, t: f6
     .help("put what is elastic in reality between the parts where the share of each of them matters")
 }
 
+/// W511: a loop has gone on at another root; the unknown that moved most, from where to where.
+pub fn root_jumped(system: &System, t: f64, column: usize, from: f64, to: f64) -> Diagnostic {
+    let variable = &system.dae.variables[system.columns[column].variable.index()];
+    let unit = variable.unit.as_deref().filter(|u| *u != "1").map_or_else(String::new, |u| format!(" {u}"));
+    let text = format!("`{}` jumps from {} to {}{unit} at time {} s", variable.name, number(from), number(to), number(t));
+    at_origin(&system.dae, Code::RootJumped, text, variable.origin, "this variable")
+        .note("the equations that are solved together for it have more than one solution; that at hand has ended there, and the run goes on from another one. Further jumps are not reported")
+        .help("where the jump is not meant, add what moves between the solutions: a mass, a capacitor, a volume, a lag")
+}
+
 /// Discrete values without which something is undetermined, as the shares of two dry frictions that hold one shaft.
 fn shared(system: &System, code: Code, variables: &[VarId], unknown: Unknown, when: &str) -> Diagnostic {
     let dae = &system.dae;

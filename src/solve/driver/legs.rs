@@ -7,6 +7,7 @@ use crate::solve::Progress;
 use crate::solve::ida::{Equations, Failure, Reached};
 use crate::solve::model::Model;
 use crate::solve::modes::same_time;
+use crate::solve::report;
 use crate::solve::selection;
 
 /// When time moves by less than this part of the run from pause to pause, so many times in a row, the step size counts
@@ -20,6 +21,11 @@ const SHORTEST_STEP: f64 = 1e-15;
 
 /// New beginnings of a run without an event.
 const MOST_RENEWALS: u32 = 1000;
+
+/// How far ahead of the place where a root ended another one is sought, in tolerances of the states.
+const FARTHEST_JUMP: f64 = 100.0;
+/// An unknown that moves by more tolerances has jumped.
+const NOTICEABLE: f64 = 1e4;
 
 impl<'a> Driver<'a, '_> {
     pub(super) fn integrate(&mut self) -> Flow {
@@ -165,7 +171,7 @@ impl<'a> Driver<'a, '_> {
     /// Where there is no step, the integrator begins again, if that may help.
     fn begin_anew(&mut self, failure: Failure, to: f64) -> Flow {
         let renewed = match failure {
-            Failure::Convergence => self.renew(),
+            Failure::Convergence => self.renew() || self.jump(),
             Failure::ErrorTest => self.tests_too_much() && self.renew() && self.test_states_only(),
             _ => false,
         };
@@ -188,15 +194,75 @@ impl<'a> Driver<'a, '_> {
         self.renewed = self.t;
         self.renewals += 1;
         self.statistics.restarts += 1;
-        let t = self.t;
+        self.go_on_from(self.t, 0.0)
+    }
+
+    /// Where the root of a loop ends, since it has met another one (a snap-through, a comparator with positive feedback), the
+    /// loop jumps to a root that goes on, while the states stay. It is sought ahead, where the old root has gone: where the
+    /// states will have moved by their tolerance, and farther where that was not enough.
+    fn jump(&mut self) -> bool {
+        let (last, reach) = self.jumped;
+        let reach = if self.t <= last { 4.0 * reach } else { 1.0 };
+        if self.carried.is_some() || reach > FARTHEST_JUMP || self.renewals >= MOST_RENEWALS {
+            return false;
+        }
+        let Some(ahead) = self.ahead(reach) else { return false };
+        self.jumped = (ahead, reach);
+        self.renewals += 1;
+        self.statistics.restarts += 1;
+        self.events.may_jump(true);
+        let began = self.go_on_from(ahead, ahead - self.t);
+        self.events.may_jump(false);
+        began
+    }
+
+    /// Solves everything anew at `t`, to which the states are moved by their rates over `by`, and begins the integrator again
+    /// there; true when it does.
+    fn go_on_from(&mut self, t: f64, by: f64) -> bool {
+        let system = self.system;
+        let before = self.ida().y().to_vec();
+        let mut weights = Vec::new();
+        self.ida().weights(&mut weights);
+        self.t = t;
         let solved = self.with_model(|driver, model, y, yp| {
-            model.observe(t, y, yp);
-            driver.restart.before(driver.system, &mut model.values, y);
+            let state = |j: usize| if system.columns[j].is_state() { by * yp[j] } else { 0.0 };
+            let moved: Vec<f64> = y.iter().enumerate().map(|(j, y)| y + state(j)).collect();
+            model.observe(t, &moved, yp);
+            driver.restart.before(system, &mut model.values, &moved);
             let solved = driver.iterate(model, Cause::Time).is_ok();
-            driver.restart.gather(driver.system, &mut model.values);
+            driver.restart.gather(system, &mut model.values);
             solved
         });
-        solved && self.first_step(Cause::Time)
+        let began = solved && self.first_step(Cause::Time);
+        if began && self.events.searched() {
+            self.report_jump(&before, &weights);
+        }
+        began
+    }
+
+    /// Says once which unknown moved most, in its tolerances.
+    fn report_jump(&mut self, before: &[f64], weights: &[f64]) {
+        let now = self.ida().y().to_vec();
+        let size = |j: usize| ((now[j] - before[j]) * weights[j]).abs();
+        let farthest = (0..now.len()).max_by(|&a, &b| size(a).total_cmp(&size(b)));
+        if let Some(j) = farthest.filter(|&j| size(j) > NOTICEABLE)
+            && self.reported.first_jump()
+        {
+            self.diagnostics.push(report::root_jumped(self.system, self.t, j, before[j], now[j]));
+        }
+    }
+
+    /// When the states, or the time itself, will have moved by so many tolerances, if that is before the next stop.
+    fn ahead(&mut self, tolerances: f64) -> Option<f64> {
+        let stop = self.next_stop();
+        let mut weights = Vec::new();
+        self.ida().weights(&mut weights);
+        let yp = self.ida().yp().to_vec();
+        let states = (0..yp.len()).filter(|&j| self.system.columns[j].is_state());
+        let speed = states.fold(0.0_f64, |most, j| most.max((weights[j] * yp[j]).abs()));
+        let span = self.settings.stop_time - self.settings.start_time;
+        let ahead = self.t + tolerances * (1.0 / speed).min(self.settings.tolerance * span);
+        (ahead > self.t && ahead < stop).then_some(ahead)
     }
 
     /// An algebraic unknown that follows from a derivative, as the flow into a stiff volume, takes over the corrector's error
