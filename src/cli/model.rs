@@ -59,8 +59,15 @@ pub(super) fn request(experiment: &Experiment) -> Result<Request, Failure> {
         overrides: overrides(experiment),
         libraries: library_folders(experiment)?,
         beside: Vec::new(),
+        externals: experiment.external.iter().map(|file| external(file)).collect(),
         ..Request::default()
     })
+}
+
+/// The whole path of a file, by which a library is found where it is loaded.
+fn external(file: &str) -> PathBuf {
+    let path = Path::new(file);
+    if path.exists() { std::path::absolute(path).unwrap_or_else(|_| path.into()) } else { path.into() }
 }
 
 /// The file or folder that is named; the whole path of one in a package whose folders lie above where the command runs.

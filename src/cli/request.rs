@@ -27,6 +27,10 @@ pub(super) struct ModelArgs {
     /// A folder with further packages; may be repeated. MODELICAPATH is searched after them
     #[arg(short = 'L', long, value_name = "DIR")]
     pub library: Vec<String>,
+    /// A C source or a shared library that external functions may call; may be repeated. With `annotations`, only what
+    /// the functions' own annotations name. Needs the C compiler `cc`; the code runs unguarded
+    #[arg(long, value_name = "FILE")]
+    pub external: Vec<String>,
     /// Warnings are errors
     #[arg(long)]
     pub deny_warnings: bool,
@@ -99,6 +103,7 @@ impl ModelArgs {
         flags.model = self.model.clone();
         flags.set = self.set.clone();
         flags.library = self.library.clone();
+        flags.external = self.external.clone();
         flags.deny_warnings = self.deny_warnings.then_some(true);
         if !is_experiment(&self.file) {
             flags.file = Some(self.file.clone());
@@ -157,6 +162,7 @@ fn read_experiment(path: &Path, messages: &mut Messages) -> Result<Experiment, F
         file.iter_mut().filter(|f| *f != "-").for_each(beside);
     }
     experiment.library.iter_mut().for_each(beside);
+    experiment.external.iter_mut().filter(|f| *f != "annotations").for_each(beside);
     Ok(experiment)
 }
 

@@ -86,6 +86,7 @@ pub(super) fn run(args: &SweepArgs, messages: &mut Messages) -> Result<Ending, F
         model: None,
         set: args.set.iter().map(|s| assignment(s)).collect::<Result<_, _>>()?,
         library: Vec::new(),
+        external: Vec::new(),
         deny_warnings: false,
     };
     args.plot.as_deref().map_or(Ok(()), plot::ready)?;

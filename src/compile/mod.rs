@@ -35,6 +35,9 @@ pub struct Request {
     pub beside: Vec<PathBuf>,
     /// Where relative names of data files begin, if not at the folder of `source`.
     pub data_folder: Option<PathBuf>,
+    /// C sources and shared libraries that external functions may call; `annotations` for what their annotations name
+    /// alone. Without any, C code of a model is refused. It runs unguarded.
+    pub externals: Vec<PathBuf>,
     /// Parameters will take other values in the same model: one that is 0 takes no derivative out of the equations.
     pub varied: bool,
 }
@@ -176,6 +179,7 @@ fn with_class<T>(
     let shipped = Shipped;
     let mut library = Library::new(&trees, roots(world, &shipped, request));
     library.set_data_folder(world, request.data_folder(world));
+    library.set_externals(request.externals.clone());
     let mut diagnostics = Vec::new();
     let value = find_model(world, &mut library, request)
         .map_err(|d| diagnostics.push(*d))

@@ -61,6 +61,8 @@ pub struct Experiment {
     pub interpolation: Option<Hold>,
     /// Folders with further packages.
     pub library: Vec<String>,
+    /// C sources and shared libraries that external functions may call.
+    pub external: Vec<String>,
     /// Where the statistics go.
     pub statistics: Option<String>,
     /// Warnings are errors.
@@ -98,6 +100,7 @@ impl Experiment {
             map,
             interpolation: self.interpolation.or(other.interpolation),
             library: or(self.library, other.library),
+            external: or(self.external, other.external),
             statistics: self.statistics.or(other.statistics),
             deny_warnings: self.deny_warnings.or(other.deny_warnings),
             sweep: self.sweep.or(other.sweep),

@@ -28,6 +28,7 @@ const KEYS: &[&str] = &[
     "map",
     "interpolation",
     "library",
+    "external",
     "statistics",
     "deny-warnings",
     "sweep",
@@ -103,6 +104,7 @@ impl Reader {
             "map" => self.map(value),
             "interpolation" => self.experiment.interpolation = self.hold(key, value),
             "library" => self.experiment.library = self.list(key, value),
+            "external" => self.experiment.external = self.list(key, value),
             "statistics" => self.experiment.statistics = self.text(key, value),
             "deny-warnings" => match value.get_ref().as_bool() {
                 Some(deny) => self.experiment.deny_warnings = Some(deny),

@@ -2,6 +2,8 @@
 //! Library's tables, texts and random numbers, and behind units of other tools (`mockup`). [`builtin`] has them by the names
 //! of the C functions.
 
+#[cfg(feature = "fmi")]
+pub mod c;
 mod curve;
 mod fourier;
 mod linear;

@@ -127,6 +127,7 @@ pub(super) fn request<'a>(
         libraries: nominal.libraries.clone(),
         beside: nominal.beside.clone(),
         data_folder: Some(nominal.data_folder(world)),
+        externals: nominal.externals.clone(),
         varied: true,
     };
     if world.list(&nominal.source).is_some() || world.read(&nominal.source).is_ok() {

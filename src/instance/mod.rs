@@ -293,6 +293,8 @@ pub struct Instance<'a, 'l> {
     procedures: FxHashMap<String, (crate::expr::FunctionId, Vec<Val>)>,
     /// External functions that stay calls, by what they are.
     externals: FxHashMap<String, crate::expr::FunctionId>,
+    /// Compiled C functions, by the text of their wrappers.
+    compiled_c: FxHashMap<String, std::sync::Arc<dyn crate::expr::function::External>>,
     /// Classes of operator records, by the numbers that their values carry.
     operator_records: Vec<ClassRef<'a>>,
     /// Functions that were given as arguments.

@@ -36,6 +36,10 @@ struct Entry<'a> {
     bases: Option<Rc<[ClassId]>>,
 }
 
+/// In place of a file: only what the annotations of functions name.
+#[cfg(feature = "fmi")]
+const ANNOTATIONS: &str = "annotations";
+
 /// All classes that can be named, loaded as far as they have been asked for.
 pub struct Library<'a> {
     trees: &'a Trees,
@@ -47,6 +51,8 @@ pub struct Library<'a> {
     by_ast: FxHashMap<*const ast::Class, ClassId>,
     /// Where files that models name are looked for.
     data_folder: Option<Folder<'a>>,
+    /// C sources and libraries that may be called.
+    externals: Vec<PathBuf>,
     data: FxHashMap<String, FileId>,
     /// All texts read so far.
     pub sources: Sources,
@@ -65,6 +71,7 @@ impl<'a> Library<'a> {
             roots: roots.into_iter().map(|(world, path)| Folder { world, path }).collect(),
             by_ast: FxHashMap::default(),
             data_folder: None,
+            externals: Vec::new(),
             data: FxHashMap::default(),
             sources: Sources::default(),
             diagnostics: Vec::new(),
@@ -280,6 +287,40 @@ impl<'a> Library<'a> {
     /// Says where relative names of data files begin.
     pub fn set_data_folder(&mut self, world: &'a dyn World, path: PathBuf) {
         self.data_folder = Some(Folder { world, path });
+    }
+
+    /// Allows calls of C code: of these sources and libraries, and of what annotations name.
+    pub fn set_externals(&mut self, files: Vec<PathBuf>) {
+        self.externals = files;
+    }
+
+    /// Whether C code may be called.
+    pub fn calls_c(&self) -> bool {
+        !self.externals.is_empty()
+    }
+
+    /// The library that the C compiler makes of a text with the code that may be called.
+    ///
+    /// # Errors
+    /// Why there is none.
+    #[cfg(feature = "fmi")]
+    pub fn compile_c(
+        &self,
+        text: &str,
+        utilities: &str,
+        arguments: Vec<std::ffi::OsString>,
+    ) -> Result<crate::world::CompiledC, String> {
+        let Some(folder) = &self.data_folder else { return Err("there are no files here".to_owned()) };
+        let named = self.externals.iter().filter(|f| f.as_os_str() != ANNOTATIONS).map(|f| f.clone().into_os_string());
+        let arguments: Vec<_> = named.chain(arguments).collect();
+        folder.world.compile_c(text, utilities, &arguments)
+    }
+
+    /// The path of what `modelica://Package/...` names, where that package has a folder.
+    pub fn resource(&mut self, address: &str) -> Option<PathBuf> {
+        let (package, rest) = address.strip_prefix("modelica://")?.split_once('/')?;
+        let id = self.find(package)?;
+        Some(self.entries[id.0 as usize].folder.clone()?.path.join(rest))
     }
 
     /// A data file that a model names: `modelica://Package/...` below the folder of a package, an absolute path, or one

@@ -353,7 +353,8 @@ pub fn shared_load(system: &System, variables: &[VarId], unknown: Unknown, t: f6
 pub fn root_jumped(system: &System, t: f64, column: usize, from: f64, to: f64) -> Diagnostic {
     let variable = &system.dae.variables[system.columns[column].variable.index()];
     let unit = variable.unit.as_deref().filter(|u| *u != "1").map_or_else(String::new, |u| format!(" {u}"));
-    let text = format!("`{}` jumps from {} to {}{unit} at time {} s", variable.name, number(from), number(to), number(t));
+    let text =
+        format!("`{}` jumps from {} to {}{unit} at time {} s", variable.name, number(from), number(to), number(t));
     at_origin(&system.dae, Code::RootJumped, text, variable.origin, "this variable")
         .note("the equations that are solved together for it have more than one solution; that at hand has ended there, and the run goes on from another one. Further jumps are not reported")
         .help("where the jump is not meant, add what moves between the solutions: a mass, a capacitor, a volume, a lag")

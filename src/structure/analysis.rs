@@ -9,8 +9,8 @@ use super::solve_block::BlockSolver;
 use super::sorting::{Columns, System, SystemRow};
 use super::{
     ActionKind, Alias, Assign, Block, Conserved, Dae, Selection, StateChoice, Unknown, alias, assertions, cancelling,
-    closed_groups, conserved, constants, delays, dependence, discrete, dummy_derivatives, duplicates, events, held, initial,
-    messages, parameters, regularity, start_derivatives, zeros,
+    closed_groups, conserved, constants, delays, dependence, discrete, dummy_derivatives, duplicates, events, held,
+    initial, messages, parameters, regularity, start_derivatives, zeros,
 };
 use crate::diag::{Checked, Diagnostic};
 use crate::expr::{Node, VarId};

@@ -34,6 +34,16 @@ impl World for DiskWorld {
         entries.sort();
         Some(entries)
     }
+
+    #[cfg(feature = "fmi")]
+    fn compile_c(
+        &self,
+        text: &str,
+        utilities: &str,
+        arguments: &[std::ffi::OsString],
+    ) -> Result<super::CompiledC, String> {
+        super::compiler::compile(text, utilities, arguments)
+    }
 }
 
 /// Why a file operation failed, as people say it.

@@ -1,9 +1,13 @@
 //! The only door to files: stages below `cli` see the outside through a [`World`].
 
+#[cfg(feature = "fmi")]
+mod compiler;
 mod disk;
 #[cfg(feature = "fmi")]
 mod folder;
 
+#[cfg(feature = "fmi")]
+pub use compiler::CompiledC;
 pub use disk::DiskWorld;
 #[cfg(feature = "cli")]
 pub(crate) use disk::reason;
@@ -27,6 +31,16 @@ pub trait World: Sync {
     /// A sentence saying why they cannot be read.
     fn bytes(&self, path: &Path) -> Result<Vec<u8>, String> {
         self.read(path).map(String::into_bytes)
+    }
+
+    /// The shared library that the C compiler makes of a text, the file named `ModelicaUtilities.h` and further arguments:
+    /// C sources, libraries, flags.
+    ///
+    /// # Errors
+    /// What the compiler says, or that nothing is compiled here.
+    #[cfg(feature = "fmi")]
+    fn compile_c(&self, _text: &str, _utilities: &str, _arguments: &[std::ffi::OsString]) -> Result<CompiledC, String> {
+        Err("nothing is compiled here".to_owned())
     }
 
     /// Names of the entries of a folder with whether each is a folder, sorted; `None` if it is no folder.
@@ -86,6 +100,11 @@ impl World for Overlay<'_> {
 
     fn bytes(&self, path: &Path) -> Result<Vec<u8>, String> {
         self.files.bytes(path).or_else(|_| self.base.bytes(path))
+    }
+
+    #[cfg(feature = "fmi")]
+    fn compile_c(&self, text: &str, utilities: &str, arguments: &[std::ffi::OsString]) -> Result<CompiledC, String> {
+        self.base.compile_c(text, utilities, arguments)
     }
 
     fn list(&self, path: &Path) -> Option<Vec<(String, bool)>> {

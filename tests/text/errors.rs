@@ -9,8 +9,7 @@ use bramah::internals::diag::{Code, Severity};
 use std::fmt::Write;
 
 /// Codes found in a run only.
-const FOUND_IN_RUNS: [&str; 10] =
-    ["E403", "E501", "E502", "E503", "E504", "W505", "E506", "E509", "W510", "W511"];
+const FOUND_IN_RUNS: [&str; 10] = ["E403", "E501", "E502", "E503", "E504", "W505", "E506", "E509", "W510", "W511"];
 
 fn page(code: Code) -> String {
     let path = format!("{}/docs/errors/{}.md", env!("CARGO_MANIFEST_DIR"), code.id());

@@ -8,6 +8,7 @@ mod diagnose;
 #[path = "../disk/mod.rs"]
 mod disk;
 mod errors;
+mod external_c;
 mod language;
 mod library;
 mod meaning;

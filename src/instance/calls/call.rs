@@ -260,13 +260,18 @@ impl<'a> Instance<'a, '_> {
         if let Some(how) = self.external_builtin_of(callee) {
             return self.call_external(how, callee, positional, named, Place { call: span, given: None });
         }
-        if callee.template.bases.iter().any(|b| has_external(b.ast)) {
-            self.unsupported(span, &format!("the external function `{}`", callee.name));
-            return None;
-        }
         if callee.template.bases[0].ast.prefixes.partial {
             let message = format!("`{}` is partial and cannot be called", callee.name);
             return self.fail(Code::Partial, &message, span);
+        }
+        if callee.template.bases.iter().any(|b| has_external(b.ast)) {
+            #[cfg(feature = "fmi")]
+            return self.call_c(callee, positional, named, span);
+            #[cfg(not(feature = "fmi"))]
+            {
+                self.unsupported(span, &format!("the external function `{}`", callee.name));
+                return None;
+            }
         }
         let known = self.all_known(&positional) && named.iter().all(|(_, v)| self.known(v));
         if !self.well_formed(callee) {

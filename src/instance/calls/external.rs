@@ -15,23 +15,25 @@ use crate::types::Type;
 use std::sync::Arc;
 
 /// `result = name(arguments)`, as it stands behind `external`.
-struct CCall {
-    name: String,
+pub(super) struct CCall {
+    pub name: String,
     /// The output to which the result goes.
-    result: Option<Symbol>,
-    arguments: Vec<Argument>,
+    pub result: Option<Symbol>,
+    pub arguments: Vec<Argument>,
 }
 
 /// An argument of a C call.
 #[derive(Clone, Debug, PartialEq)]
-enum Argument {
+pub(super) enum Argument {
     /// An input or output of the function.
     Name(Symbol),
     /// A text.
     Text(String),
     /// A number or truth value.
     Number(f64),
-    /// Anything else, such as `size(table, 1)`, which Rust knows by itself.
+    /// `size(name, dimension)`
+    Size(Symbol, usize),
+    /// Anything else.
     Other,
 }
 
@@ -44,9 +46,15 @@ impl Argument {
             _ => match (text.parse(), text.strip_prefix('"').and_then(|t| t.strip_suffix('"'))) {
                 (Ok(number), _) => Argument::Number(number),
                 (_, Some(words)) => Argument::Text(words.to_owned()),
-                _ => Argument::Other,
+                _ => Self::size(text).unwrap_or(Argument::Other),
             },
         }
+    }
+
+    fn size(text: &str) -> Option<Self> {
+        let (name, dimension) = text.strip_prefix("size(")?.strip_suffix(')')?.split_once(',')?;
+        let dimension = dimension.trim().parse().ok().filter(|d| *d > 0)?;
+        is_name(name.trim()).then(|| Argument::Size(Symbol::new(name.trim()), dimension))
     }
 
     fn name(&self) -> Option<Symbol> {
@@ -113,7 +121,7 @@ impl<'a> Instance<'a, '_> {
         crate::external::builtin(&self.c_call(callee)?.name)
     }
 
-    fn c_call(&self, callee: &Callee<'a>) -> Option<CCall> {
+    pub(super) fn c_call(&self, callee: &Callee<'a>) -> Option<CCall> {
         let mut bodies = callee.template.bases.iter().filter_map(|b| match &b.ast.body {
             ClassBody::Long(body) => body.external_text.as_deref(),
             _ => None,
@@ -175,17 +183,17 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// The value of an argument that is an input of the function or written out.
-    fn input_of_c(&mut self, argument: &Argument) -> Option<Val> {
+    pub(super) fn input_of_c(&mut self, argument: &Argument) -> Option<Val> {
         match argument {
             Argument::Name(name) => self.local(*name).map(|i| self.eval.locals[i].1.clone()),
             Argument::Text(words) => Some(Val::text(words.as_str())),
             Argument::Number(x) => Some(Val::Scalar(self.exprs.num(*x), Type::Real)),
-            Argument::Other => None,
+            Argument::Size(..) | Argument::Other => None,
         }
     }
 
     /// The values with which outputs and protected variables go into the call, where they are declared with one.
-    fn prepare_locals(&mut self, callee: &Callee<'a>) -> Option<()> {
+    pub(super) fn prepare_locals(&mut self, callee: &Callee<'a>) -> Option<()> {
         let formals = self.formals(callee, |c, p| {
             !crate::instance::calls::binding::is_input(c, p)
                 && c.modification.as_ref().is_some_and(|m| m.value.is_some())
@@ -256,7 +264,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// A call that stays one, or its numbers where all arguments are known.
-    fn external_function(
+    pub(super) fn external_function(
         &mut self,
         function: Arc<dyn External>,
         key: &str,
@@ -341,7 +349,7 @@ impl<'a> Instance<'a, '_> {
         match self.external_builtin_of(&callee) {
             Some(how) => self.call_external(how, &callee, given.positional, given.named, place),
             None => {
-                self.unsupported(place.call, &format!("the external function `{}`", callee.name));
+                self.unsupported(place.call, &format!("the external object `{}`", callee.name));
                 None
             }
         }
@@ -370,7 +378,7 @@ mod tests {
         let call = CCall::parse(r#""C" y = f_x(a, size(b, 1), b) annotation(Library="m")"#).expect("a call");
         assert_eq!((call.name.as_str(), call.result), ("f_x", Some(Symbol::new("y"))));
         let name = |n| Argument::Name(Symbol::new(n));
-        assert_eq!(call.arguments, [name("a"), Argument::Other, name("b")]);
+        assert_eq!(call.arguments, [name("a"), Argument::Size(Symbol::new("b"), 1), name("b")]);
         let literal = CCall::parse(r#"f("x, y", 2.5, true)"#).expect("a call");
         assert_eq!(literal.arguments, [Argument::Text("x, y".into()), Argument::Number(2.5), Argument::Number(1.0)]);
         assert!(CCall::parse("\"C\"").is_none());

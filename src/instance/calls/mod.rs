@@ -2,6 +2,8 @@
 
 pub(in crate::instance) mod binding;
 pub(in crate::instance) mod builtin;
+#[cfg(feature = "fmi")]
+mod c;
 pub(in crate::instance) mod call;
 pub(in crate::instance) mod external;
 pub(in crate::instance) mod files;

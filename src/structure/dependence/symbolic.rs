@@ -89,7 +89,8 @@ impl Elimination {
                 several => (entry, Some(several.to_vec())),
             };
             let by: Sum = by.into_iter().map(Factor::negative).collect();
-            let others = pivot.entries.iter().enumerate().map(|(c, part)| if c == column { &[] } else { part.as_slice() });
+            let others =
+                pivot.entries.iter().enumerate().map(|(c, part)| if c == column { &[] } else { part.as_slice() });
             let pairs = row.entries.iter_mut().zip(others);
             let parts = row.parts.iter_mut().zip(pivot.parts.iter().map(Vec::as_slice));
             for (to, part) in pairs.chain(parts) {
