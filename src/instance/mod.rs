@@ -294,6 +294,7 @@ pub struct Instance<'a, 'l> {
     /// External functions that stay calls, by what they are.
     externals: FxHashMap<String, crate::expr::FunctionId>,
     /// Compiled C functions, by the text of their wrappers.
+    #[cfg(feature = "fmi")]
     compiled_c: FxHashMap<String, std::sync::Arc<dyn crate::expr::function::External>>,
     /// Classes of operator records, by the numbers that their values carry.
     operator_records: Vec<ClassRef<'a>>,

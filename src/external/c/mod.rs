@@ -159,7 +159,7 @@ char *ModelicaAllocateString(size_t length) {
 }
 ";
 
-/// The header that C sources of a user may include: [`HEAD`] defines what it declares.
+/// The header that C sources of a user may include; every wrapper defines what it declares.
 pub const UTILITIES: &str = "#ifndef MODELICA_UTILITIES_H
 #define MODELICA_UTILITIES_H
 #include <stdarg.h>

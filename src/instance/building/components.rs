@@ -59,6 +59,7 @@ pub fn instantiate<'a, 'l>(library: &'l mut Library<'a>, request: &ModelRequest)
         at_start: FxHashMap::default(),
         procedures: FxHashMap::default(),
         externals: FxHashMap::default(),
+        #[cfg(feature = "fmi")]
         compiled_c: FxHashMap::default(),
         outer_checked: FxHashMap::default(),
         varied: false,

@@ -85,7 +85,7 @@ impl Elimination {
             }
             // a single term divides; what is longer multiplies the row instead
             let (by, times) = match pivot.entries[column].as_slice() {
-                [single] => (product(&entry, &vec![Factor::ONE.times(single, -1)]), None),
+                [single] => (product(&entry, &[Factor::ONE.times(single, -1)]), None),
                 several => (entry, Some(several.to_vec())),
             };
             let by: Sum = by.into_iter().map(Factor::negative).collect();
