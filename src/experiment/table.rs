@@ -288,6 +288,7 @@ input = "bench.csv"
 time-column = "t_s"
 interpolation = "linear"
 library = ["lib"]
+external = ["valve.c"]
 statistics = "stats.json"
 deny-warnings = true
 [set]
