@@ -349,9 +349,17 @@ impl MixedWork {
         if relations.len() <= COMBINED {
             let mut combinations: Vec<u32> = (0..1 << relations.len()).collect();
             combinations.sort_by_key(|c: &u32| c.count_ones());
-            for flips in combinations {
-                if self.fits(code, setting, values, start, &relations, flips) {
-                    return Ok(());
+            for within_error in [false, true] {
+                for &flips in &combinations {
+                    let wanted = flipped(start, &relations, flips);
+                    let mut modes = setting.modes.clone();
+                    if within_error {
+                        relations.iter().for_each(|&i| self.hold(&mut modes, i, wanted[i]));
+                    }
+                    let setting = Setting { modes: &modes, ..*setting };
+                    if self.fits(code, &setting, values, &wanted) {
+                        return Ok(());
+                    }
                 }
             }
         }
@@ -360,24 +368,18 @@ impl MixedWork {
         Err(BlockFailure::Mixed(self.targets.clone(), self.undetermined))
     }
 
-    /// Whether the modes, flipped where `flips` says, reproduce themselves.
-    fn fits(
-        &mut self,
-        code: &MixedCode,
-        setting: &Setting<'_>,
-        values: &mut [f64],
-        start: &[f64],
-        relations: &[usize],
-        flips: u32,
-    ) -> bool {
-        let mut wanted = start.to_vec();
-        for (bit, &i) in relations.iter().enumerate() {
-            if flips >> bit & 1 == 1 {
-                wanted[i] = 1.0 - start[i];
-            }
+    /// Lets a mode keep a value as long as what it compares differs by less than the error of the solution: where a current
+    /// and a voltage vanish together, rounding decides on which side of 0 they lie, and may leave no side to any mode.
+    fn hold(&self, modes: &mut Modes, target: usize, value: f64) {
+        if let Some(crossing) = modes.crossing(self.targets[target]) {
+            modes.hold(crossing, value);
         }
-        self.write(&wanted, values);
-        self.settle_others(code, setting, values, &wanted);
+    }
+
+    /// Whether these modes reproduce themselves.
+    fn fits(&mut self, code: &MixedCode, setting: &Setting<'_>, values: &mut [f64], wanted: &[f64]) -> bool {
+        self.write(wanted, values);
+        self.settle_others(code, setting, values, wanted);
         let before = self.read(values);
         if self.solve_continuous(code, setting, values).is_err() {
             return false;
@@ -401,6 +403,17 @@ impl MixedWork {
             }
         }
     }
+}
+
+/// The start with some of its relations the other way round.
+fn flipped(start: &[f64], relations: &[usize], flips: u32) -> Vec<f64> {
+    let mut wanted = start.to_vec();
+    for (bit, &i) in relations.iter().enumerate() {
+        if flips >> bit & 1 == 1 {
+            wanted[i] = 1.0 - start[i];
+        }
+    }
+    wanted
 }
 
 /// The old values with one change: the first mode that wants to change, else the first of any.

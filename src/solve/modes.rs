@@ -74,6 +74,12 @@ impl Modes {
         self.any_forced = true;
     }
 
+    /// Lets a crossing keep a value within the error of the solution, as if IDA had seen it cross to it.
+    pub fn hold(&mut self, crossing: u32, value: f64) {
+        self.forced[crossing as usize] = value;
+        self.any_forced = true;
+    }
+
     /// Whether a crossing keeps what IDA has seen.
     pub fn forces(&self) -> bool {
         self.any_forced
