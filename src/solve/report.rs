@@ -141,7 +141,10 @@ pub fn non_finite(system: &System, t: f64, trap: Option<(Trap, u32)>) -> Diagnos
 /// E504: an equation has no slope there.
 pub fn infinite_derivative(system: &System, t: f64, row: usize, column: usize) -> Diagnostic {
     let v = name(&system.dae, Unknown::Var(system.columns[column].variable));
-    let text = format!("how fast an equation changes with `{v}` is not finite at time {} s", number(t));
+    let text = match troubles(system).pop() {
+        Some(trouble) => format!("{trouble} (at time {} s)", number(t)),
+        None => format!("how fast an equation changes with `{v}` is not finite at time {} s", number(t)),
+    };
     equation_diagnostic(&system.dae, Code::NonFinite, text, system.rows[row].equation).help(
         "look for the root of 0, a power of 0 with an exponent below 1, or a parameter that is 0 where it divides",
     )
