@@ -1,5 +1,5 @@
 //! Random linear networks against a nodal analysis of their own: what depends on what hangs on numbers here, in rings of
-//! capacitors, bundles of inductors, and nodes that only dampers meet.
+//! capacitors, bundles of inductors, and nodes that only dampers meet. Random hydraulic networks with lines run to their end.
 
 use bramah::world::MemoryWorld;
 use bramah::{Request, Simulation};
@@ -94,6 +94,17 @@ const ELECTRIC: &str = "model M
   model Node Pole p; equation p.i = 0; end Node;
 ";
 
+/// The components of the library, of which a resistance is a function of a temperature that nothing heats.
+const LIBRARY: &str = "model M
+  connector Pole = Interfaces.Pin;
+  model Resistor extends Electrical.Resistor(R = 1/k); parameter Real k = 1; end Resistor;
+  model Capacitor extends Electrical.Capacitor(C = k); parameter Real k = 1; end Capacitor;
+  model Inductor extends Electrical.Inductor(L = k); parameter Real k = 1; end Inductor;
+  model Ground = Electrical.Ground;
+  model Source Pole p; equation p.i = cos(time) - 1; end Source;
+  model Node Pole p; equation p.i = 0; end Node;
+";
+
 /// The same of springs and dampers: positions for levels, forces for flows.
 const MECHANIC: &str = "model M
   connector Pole Real v(nominal = 1); flow Real i; end Pole;
@@ -148,12 +159,62 @@ fn mechanical() -> impl Strategy<Value = Law> + Clone {
     prop_oneof![Just(Law::Resistor), Just(Law::Capacitor)]
 }
 
+/// Lines from node to node, so that all that flows in finds the tank, and what else joins them: at each node a plug, a flow
+/// that jumps into the last one.
+fn hydraulic(further: &[(&str, usize, usize)]) -> String {
+    let mut text = "model M inner Oil.Fluid oil; Hydraulic.Tank tank; Hydraulic.FlowSource source(useInput = true, q_in = if time < 0.1 then 1e-4 else 2e-4);\n".to_owned();
+    let mut joins = format!("connect(tank.port, plug[1].port); connect(source.port, plug[{NODES}].port);\n");
+    text += &format!("Hydraulic.Plug plug[{NODES}];\n");
+    let chain = (1..NODES).map(|node| ("Hydraulic.Line", node - 1, node));
+    for (k, (class, from, to)) in chain.chain(further.iter().copied()).enumerate() {
+        text += &format!("{class} b{k};\n");
+        joins +=
+            &format!("connect(b{k}.port_a, plug[{}].port); connect(b{k}.port_b, plug[{}].port);\n", from + 1, to + 1);
+    }
+    text + "equation\n" + &joins + "end M;\n"
+}
+
+fn joined() -> impl Strategy<Value = Vec<(&'static str, usize, usize)>> {
+    let class = prop_oneof![
+        2 => Just("Hydraulic.Line"),
+        1 => Just("Hydraulic.Orifice"),
+        1 => Just("Hydraulic.LaminarGap"),
+        1 => Just("Hydraulic.CheckValve"),
+        1 => Just("Hydraulic.ReliefValve"),
+    ];
+    let element = (class, 0..NODES, 0..NODES - 1)
+        .prop_map(|(class, from, other)| (class, from, if other >= from { other + 1 } else { other }));
+    prop::collection::vec(element, 0..6)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 32, ..ProptestConfig::default() })]
+
+    #[test]
+    fn lines_join_whatever_there_is(further in joined()) {
+        let text = hydraulic(&further);
+        let world = MemoryWorld::single("model.mo", &*text);
+        let request = Request { source: "model.mo".into(), model: Some("M".into()), ..Request::default() };
+        let ran = Simulation::compile(&world, &request).and_then(|mut s| s.stop_time(0.5).run().map(|run| run.trajectory));
+        let trajectory = ran.map_err(|e| TestCaseError::fail(format!("{e}\n{text}")))?;
+        for node in 1..=NODES {
+            let p = trajectory.column(&format!("plug[{node}].port.p")).expect("a pressure");
+            prop_assert!(p.iter().all(|p| *p > 0.0), "{text}");
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 96, ..ProptestConfig::default() })]
 
     #[test]
     fn resistors_capacitors_and_inductors_as_nodal_analysis_says(branches in branches(electric())) {
         agree(&branches, &model(ELECTRIC, &branches))?;
+    }
+
+    #[test]
+    fn the_library_as_nodal_analysis_says(branches in branches(electric())) {
+        agree(&branches, &model(LIBRARY, &branches))?;
     }
 
     #[test]
