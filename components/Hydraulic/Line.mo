@@ -37,7 +37,7 @@ protected
   parameter Real x[N] = {if staggered then (i - a)/n else (i - 0.5)/n for i in 1:N} "Places of the cells over the length";
   parameter SI.Volume V[N] = {if volume_a and i == 1 or volume_b and i == N then 0.5*A*L/n else A*L/n for i in 1:N} "Volumes of the cells";
   parameter Real share[M] = {if not staggered and (i == 1 or i == M) then 0.5/n else 1/n for i in 1:M} "Share of the length between cells";
-  SI.MassFlowRate m_carried[M](each nominal = 0.1) "Mass flows between the cells: of m_flow, what the voids of the cell before leave";
+  SI.MassFlowRate m_carried[M](each nominal = 0.1) "Mass flows between the cells: m_flow, less where the cell before is mostly void";
   SI.MassFlowRate m_left[N](each nominal = 0.1) "Mass flows into the cells from the side of a";
   SI.MassFlowRate m_right[N](each nominal = 0.1) "Mass flows out of the cells to the side of b";
   SI.MassFlowRate supply[N](each nominal = 0.1) "What flows into the cells, by the share of its air above the one there";

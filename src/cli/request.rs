@@ -9,6 +9,7 @@ use super::files::access;
 use super::messages::Messages;
 use crate::diag::{Code, Diagnostic};
 use crate::experiment::{self, Experiment, Hold, InputMap, duration, event_rows, seconds, tolerance};
+use crate::resolve::ANNOTATIONS;
 use crate::results::CsvUnits;
 use crate::results::glob::split_list;
 
@@ -162,7 +163,7 @@ fn read_experiment(path: &Path, messages: &mut Messages) -> Result<Experiment, F
         file.iter_mut().filter(|f| *f != "-").for_each(beside);
     }
     experiment.library.iter_mut().for_each(beside);
-    experiment.external.iter_mut().filter(|f| *f != "annotations").for_each(beside);
+    experiment.external.iter_mut().filter(|f| *f != ANNOTATIONS).for_each(beside);
     Ok(experiment)
 }
 

@@ -68,9 +68,9 @@ codes! {
     WrongClassKind = "E024", Error, "a class of the wrong kind stands here";
     AutomaticInner = "N025", Note, "an `inner` component was added";
     Restricted = "E027", Error, "a class holds or extends what its kind does not allow";
-    RunsC = "N027", Note, "C code of the model runs";
     Shadowed = "N026", Note, "a class of the user hides one that ships with bramah";
     BadMockUp = "E029", Error, "a functional mock-up unit cannot be used";
+    RunsC = "N030", Note, "C code of the model runs";
     OtherVersion = "W028", Warning, "a library of another version than the model says";
     // 1xx ports
     OpenPort = "E103", Error, "a port is not connected";

@@ -37,8 +37,8 @@ struct Entry<'a> {
 }
 
 /// In place of a file: only what the annotations of functions name.
-#[cfg(feature = "fmi")]
-const ANNOTATIONS: &str = "annotations";
+#[cfg(any(feature = "fmi", feature = "cli"))]
+pub const ANNOTATIONS: &str = "annotations";
 
 /// All classes that can be named, loaded as far as they have been asked for.
 pub struct Library<'a> {

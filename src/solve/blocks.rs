@@ -349,17 +349,15 @@ impl MixedWork {
         if relations.len() <= COMBINED {
             let mut combinations: Vec<u32> = (0..1 << relations.len()).collect();
             combinations.sort_by_key(|c: &u32| c.count_ones());
-            for within_error in [false, true] {
-                for &flips in &combinations {
-                    let wanted = flipped(start, &relations, flips);
-                    let mut modes = setting.modes.clone();
-                    if within_error {
-                        relations.iter().for_each(|&i| self.hold(&mut modes, i, wanted[i]));
-                    }
-                    let setting = Setting { modes: &modes, ..*setting };
-                    if self.fits(code, &setting, values, &wanted) {
-                        return Ok(());
-                    }
+            let wanted = || combinations.iter().map(|&flips| flipped(start, &relations, flips));
+            if wanted().any(|wanted| self.fits(code, setting, values, &wanted)) {
+                return Ok(());
+            }
+            let mut modes = setting.modes.clone();
+            for wanted in wanted() {
+                relations.iter().for_each(|&i| self.hold(&mut modes, i, wanted[i]));
+                if self.fits(code, &Setting { modes: &modes, ..*setting }, values, &wanted) {
+                    return Ok(());
                 }
             }
         }

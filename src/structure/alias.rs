@@ -54,19 +54,28 @@ pub(super) fn eliminate(
     aliases
 }
 
-/// An equation between two leaves.
-enum Simple {
+/// An equation of one leaf or two.
+pub(super) enum Simple {
+    /// The variable is 0.
+    Zero(VarId),
     /// The first equals the second.
     Equal(Signed, Signed),
     /// The first is the derivative of the second.
     Derivative(Signed, Signed),
 }
 
-fn simple_form(pool: &Exprs, equation: &Equation) -> Option<Simple> {
+/// What an equation says where it says no more than that.
+pub(super) fn simple_form(pool: &Exprs, equation: &Equation) -> Option<Simple> {
     let mut terms = Terms::default();
     terms.collect(pool, equation.lhs, false, 0)?;
     terms.collect(pool, equation.rhs, true, 0)?;
-    let [(a, first), (b, second)] = terms.found.as_slice() else { return None };
+    let ((a, first), (b, second)) = match terms.found.as_slice() {
+        [first, second] => (first, second),
+        [(only, _)] => {
+            return if let Node::Var(v) = pool.node(*only) { Some(Simple::Zero(v)) } else { None };
+        }
+        _ => return None,
+    };
     // `first*a + second*b = 0`
     let negated = first == second;
     match (pool.node(*a), pool.node(*b)) {
@@ -76,20 +85,6 @@ fn simple_form(pool: &Exprs, equation: &Equation) -> Option<Simple> {
         (Node::Var(w), Node::Der(x)) | (Node::Der(x), Node::Var(w)) => {
             Some(Simple::Derivative(Signed { variable: w, negated: false }, Signed { variable: x, negated }))
         }
-        _ => None,
-    }
-}
-
-/// The variable that an equation says to be 0, or to equal another one.
-pub(super) fn equal(pool: &Exprs, equation: &Equation) -> Option<(VarId, Option<Signed>)> {
-    if let Some(Simple::Equal(a, b)) = simple_form(pool, equation) {
-        return Some((a.variable, Some(b)));
-    }
-    let mut terms = Terms::default();
-    terms.collect(pool, equation.lhs, false, 0)?;
-    terms.collect(pool, equation.rhs, true, 0)?;
-    match (terms.found.as_slice(), terms.found.first().map(|(e, _)| pool.node(*e))) {
-        ([_], Some(Node::Var(v))) => Some((v, None)),
         _ => None,
     }
 }

@@ -10,7 +10,6 @@ const MODEL: &str = r#"model M
     input Real dp; input Integer turns; input Real curve[:]; input String words; output Real q; output Real Re[2];
   external "C" q = valve_flow(dp, turns, curve, size(curve, 1), words, Re);
   end volumeFlow;
-  parameter Real limit = 1e9;
   Real p(start = 4, fixed = true), q, Re[2];
 equation
   (q, Re) = volumeFlow(p, 3, {0.25, 0.75}, "a \"b\"");

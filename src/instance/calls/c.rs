@@ -2,14 +2,16 @@
 //! (MLS 12.9.1), and what their annotations name (MLS 12.9.4).
 
 use crate::diag::{Code, Diagnostic, Span};
+use crate::expr::function::External;
 use crate::external::c::{self, Kind, Signature};
 use crate::instance::Instance;
 use crate::instance::call::Callee;
-use crate::instance::calls::external::{Argument, CCall};
+use crate::instance::calls::external::{Argument, CCall, external_text};
 use crate::instance::value::Val;
-use crate::syntax::ast::{Causality, ClassBody, Ident};
+use crate::syntax::ast::{Causality, Ident};
 use crate::types::Type;
 use std::ffi::OsString;
+use std::sync::Arc;
 
 /// Where libraries for this machine lie below those for all (MLS 12.9.4).
 const MACHINE: &str = "linux64";
@@ -34,39 +36,17 @@ impl<'a> Instance<'a, '_> {
     }
 
     fn carry_out_c(&mut self, callee: &Callee<'a>, span: Span) -> Option<Val> {
-        let Some(call) = self.c_call(callee).filter(|_| !self.external_text(callee).starts_with("\"FORTRAN")) else {
+        let is_c = !external_text(callee)?.trim_start().starts_with("\"FORTRAN");
+        let Some(call) = self.c_call(callee).filter(|_| is_c) else {
             self.unsupported(span, &format!("the language or the call of the external function `{}`", callee.name));
             return None;
         };
         self.prepare_locals(callee)?;
         let signature = self.signature(&call, callee, span)?;
-        let text = signature.wrapper();
-        let function = match self.compiled_c.get(&text) {
+        let wrapper = signature.wrapper();
+        let function = match self.compiled_c.get(&wrapper) {
             Some(known) => known.clone(),
-            None => {
-                let arguments = self.compiler_arguments(callee);
-                let compiled = self.library.compile_c(&text, c::UTILITIES, arguments);
-                let ran = compiled.as_ref().map(|c| c.command.clone()).unwrap_or_default();
-                match compiled.and_then(|compiled| c::bind(compiled, &signature)) {
-                    Ok(function) => {
-                        let said = format!("`{}` is C code, which runs unguarded", callee.name);
-                        self.report(
-                            Diagnostic::new(Code::RunsC, said).at(span, "this call").note(format!("ran: {ran}")),
-                        );
-                        self.compiled_c.insert(text.clone(), function.clone());
-                        function
-                    }
-                    Err(why) => {
-                        let said = format!("the external function `{}` cannot be called: {why}", callee.name);
-                        self.report(
-                            Diagnostic::new(Code::BadCall, said)
-                                .at(span, "this call")
-                                .help("give every C source and library that it takes with --external"),
-                        );
-                        return None;
-                    }
-                }
-            }
+            None => self.compiled(&signature, &wrapper, callee, span)?,
         };
         let mut scalars = Vec::new();
         for argument in &call.arguments {
@@ -77,19 +57,41 @@ impl<'a> Instance<'a, '_> {
                 value.scalars(&mut scalars);
             }
         }
-        self.external_function(function, &text, &call, callee, &scalars)
+        self.external_function(function, &wrapper, &call, callee, &scalars)
+    }
+
+    /// Compiles a wrapper, and says what was run for it.
+    fn compiled(
+        &mut self,
+        signature: &Signature,
+        wrapper: &str,
+        callee: &Callee<'a>,
+        span: Span,
+    ) -> Option<Arc<dyn External>> {
+        let arguments = self.compiler_arguments(callee);
+        let compiled = self.library.compile_c(wrapper, c::UTILITIES, arguments);
+        let ran = compiled.as_ref().map(|c| c.command.clone()).unwrap_or_default();
+        match compiled.and_then(|compiled| c::bind(compiled, signature)) {
+            Ok(function) => {
+                let said = format!("`{}` is C code, which runs unguarded", callee.name);
+                self.report(Diagnostic::new(Code::RunsC, said).at(span, "this call").note(format!("ran: {ran}")));
+                self.compiled_c.insert(wrapper.to_owned(), function.clone());
+                Some(function)
+            }
+            Err(why) => {
+                let said = format!("the external function `{}` cannot be called: {why}", callee.name);
+                self.report(
+                    Diagnostic::new(Code::BadCall, said)
+                        .at(span, "this call")
+                        .help("give every C source and library that it takes with --external"),
+                );
+                None
+            }
+        }
     }
 
     fn is_output(&mut self, callee: &Callee<'a>, name: crate::syntax::symbol::Symbol) -> bool {
         self.formals(callee, |c, _| c.prefix.causality == Some(Causality::Output)).iter().any(|f| f.name == name)
-    }
-
-    fn external_text(&self, callee: &Callee<'a>) -> String {
-        let text = callee.template.bases.iter().find_map(|b| match &b.ast.body {
-            ClassBody::Long(body) => body.external_text.as_deref(),
-            _ => None,
-        });
-        text.unwrap_or_default().trim_start().to_owned()
     }
 
     /// The types in C of a call's arguments.
@@ -126,16 +128,16 @@ impl<'a> Instance<'a, '_> {
             Some(formal) => Some(number(&self.declared_local(formal)?)?.0),
             None => None,
         };
-        let include = annotation_texts(&self.external_text(callee), "Include").join("\n");
+        let include = annotation_texts(external_text(callee)?, "Include").join("\n");
         Some(Signature { name: call.name.clone(), result, arguments, include })
     }
 
     /// Folders and libraries of the annotations, as the compiler takes them.
     fn compiler_arguments(&mut self, callee: &Callee<'a>) -> Vec<OsString> {
-        let text = self.external_text(callee);
+        let text = external_text(callee).unwrap_or_default();
         let package = callee.name.split('.').next().unwrap_or_default().to_owned();
         let mut folder = |key: &str, usual: &str| {
-            let named = annotation_texts(&text, key);
+            let named = annotation_texts(text, key);
             let usual = vec![format!("modelica://{package}/Resources/{usual}")];
             let addresses = if named.is_empty() { usual } else { named };
             addresses.iter().filter_map(|address| self.library.resource(address)).collect::<Vec<_>>()
@@ -153,7 +155,7 @@ impl<'a> Instance<'a, '_> {
             flag("-L", &path);
             flag("-Wl,-rpath,", &path);
         }
-        annotation_texts(&text, "Library").iter().for_each(|name| flag("-l", std::path::Path::new(name)));
+        annotation_texts(text, "Library").iter().for_each(|name| flag("-l", std::path::Path::new(name)));
         made
     }
 }

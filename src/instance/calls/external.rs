@@ -115,6 +115,14 @@ fn is_name(text: &str) -> bool {
     text.chars().all(letter) && text.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
 }
 
+/// What stands behind `external`, annotations included.
+pub(super) fn external_text<'a>(callee: &Callee<'a>) -> Option<&'a str> {
+    callee.template.bases.iter().find_map(|b| match &b.ast.body {
+        ClassBody::Long(body) => body.external_text.as_deref(),
+        _ => None,
+    })
+}
+
 impl<'a> Instance<'a, '_> {
     /// How an external function is carried out, if it is known.
     pub(in crate::instance) fn external_builtin_of(&self, callee: &Callee<'a>) -> Option<Builtin> {
@@ -122,11 +130,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     pub(super) fn c_call(&self, callee: &Callee<'a>) -> Option<CCall> {
-        let mut bodies = callee.template.bases.iter().filter_map(|b| match &b.ast.body {
-            ClassBody::Long(body) => body.external_text.as_deref(),
-            _ => None,
-        });
-        CCall::parse(bodies.next()?)
+        CCall::parse(external_text(callee)?)
     }
 
     pub(in crate::instance) fn call_external(
