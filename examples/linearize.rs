@@ -2,8 +2,8 @@
 
 #![allow(clippy::print_stdout, reason = "an example shows what it found")]
 
-use bramah::Simulation;
 use bramah::linear::poles;
+use bramah::{Analyze, Simulation};
 
 const TANKS: &str = "
 model Tanks

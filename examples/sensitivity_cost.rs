@@ -6,7 +6,7 @@
 
 use bramah::Request;
 use bramah::internals::analysis::Tangent;
-use bramah::internals::compile::{Model, compile};
+use bramah::internals::compile::{CompiledModel, compile};
 use bramah::internals::expr::VarId;
 use bramah::internals::lower::Options;
 use bramah::internals::solve::{Control, Settings, signals, simulate};
@@ -21,7 +21,7 @@ const TEN: &str =
 /// Step of the differences as a part of a parameter.
 const STEP: f64 = 1e-5;
 
-fn run(model: &Model, settings: &Settings, moved: Option<(VarId, f64)>) -> Result<Trajectory, String> {
+fn run(model: &CompiledModel, settings: &Settings, moved: Option<(VarId, f64)>) -> Result<Trajectory, String> {
     let mut settings = settings.clone();
     settings.parameters.extend(moved);
     let mut rows = Trajectory::new(signals(&model.dae, &settings.wanted));

@@ -81,116 +81,49 @@
 
 #![deny(missing_docs)]
 
-// The stages, in the order in which a circuit passes through them.
-#[doc(hidden)]
-pub mod diag;
-#[doc(hidden)]
-pub mod units;
-pub mod world;
-
-#[doc(hidden)]
-pub mod shipped;
-
-#[doc(hidden)]
-pub mod syntax;
-
-#[doc(hidden)]
-pub mod resolve;
-
-#[doc(hidden)]
-pub mod expr;
-#[doc(hidden)]
-pub mod external;
-#[doc(hidden)]
-pub mod types;
-
-pub mod results;
-
-#[doc(hidden)]
-pub mod instance;
-
-#[doc(hidden)]
-pub mod network;
-
-#[doc(hidden)]
-pub mod flat;
-#[doc(hidden)]
-pub mod unit_check;
-
-#[doc(hidden)]
-pub mod structure;
-
-#[doc(hidden)]
-pub mod lower;
-
-#[doc(hidden)]
-pub mod compile;
-
-#[doc(hidden)]
-pub mod solve;
-
-#[doc(hidden)]
-pub mod circuit;
-
-#[doc(hidden)]
-pub mod fmi;
-
-#[cfg(feature = "analysis")]
-mod estimate;
-
-#[cfg(feature = "analysis")]
-#[doc(hidden)]
-pub mod analysis;
-
-#[doc(hidden)]
-pub mod plot;
-
-#[cfg(feature = "analysis")]
-#[doc(hidden)]
-pub mod experiment;
-
-#[cfg(feature = "analysis")]
-#[doc(hidden)]
-pub mod study;
-
-#[cfg(feature = "gap")]
-#[doc(hidden)]
-pub mod gap;
-
-#[cfg(feature = "lsp")]
-#[doc(hidden)]
-pub mod editor;
-
 #[cfg(feature = "cli")]
 #[doc(hidden)]
 pub mod cli;
 
-pub use circuit::{
+#[doc(inline)]
+pub use bramah_results as results;
+#[doc(inline)]
+pub use bramah_syntax::world;
+
+#[doc(inline)]
+pub use bramah_circuit::{
     Circuit, Exchange, InputPort, Outcome, OwnedExchange, OwnedStepping, Parameter, Probe, Simulation, Stepping,
 };
-pub use compile::Request;
-pub use diag::{Code, Diagnostic, Error, Severity, Sources};
-pub use instance::Override;
-pub use results::{Kind, Signal, Trajectory};
-pub use solve::{Control, End, Interpolation, Progress, Settings, State, Statistics};
+#[doc(inline)]
+pub use bramah_model::{compile::Request, instance::Override};
+#[doc(inline)]
+pub use bramah_results::{Kind, Signal, Trajectory};
+#[doc(inline)]
+pub use bramah_solve::{Control, End, Interpolation, Progress, Settings, State, Statistics};
+#[doc(inline)]
+pub use bramah_syntax::diag::{Code, Diagnostic, Error, Severity, Sources};
 
 #[cfg(feature = "analysis")]
-pub use analysis::identify::{Asked as IdentifyOptions, Identified, Method as IdentifyMethod, identify, identify_as};
-#[cfg(feature = "analysis")]
-pub use analysis::sensitivity::Sensitivity;
+#[doc(inline)]
+pub use bramah_analysis::{
+    Analyze,
+    identify::{Asked as IdentifyOptions, Identified, Method as IdentifyMethod, identify, identify_as},
+    sensitivity::Sensitivity,
+};
 #[cfg(feature = "gap")]
-pub use gap::{Budget, DiagnoseOptions, Diagnosis, Stage, Verdict, diagnose, diagnose_as};
+#[doc(inline)]
+pub use bramah_gap::{Budget, DiagnoseOptions, Diagnosis, Stage, Verdict, diagnose, diagnose_as};
 
 /// Linear models, as [`Simulation::linearize`] gives them.
 #[cfg(feature = "analysis")]
 pub mod linear {
-    pub use crate::analysis::linear::{Pole, Quantity, StateSpace, csv, mat, modelica, poles, response, words, zeros};
+    pub use bramah_analysis::linear::{Pole, Quantity, StateSpace, csv, mat, modelica, poles, response, words, zeros};
 }
 
 /// What a [`Verdict`] is made of.
 #[cfg(feature = "gap")]
 pub mod verdict {
-    pub use crate::gap::verdict::*;
+    pub use bramah_gap::verdict::*;
 }
 
 /// The stages of compiler, solver and diagnosis, in the order in which a circuit passes through them. No promise: they
@@ -198,14 +131,24 @@ pub mod verdict {
 pub mod internals {
     #[cfg(feature = "cli")]
     pub use crate::cli;
-    #[cfg(feature = "lsp")]
-    pub use crate::editor;
-    #[cfg(feature = "gap")]
-    pub use crate::gap;
     #[cfg(feature = "analysis")]
-    pub use crate::{analysis, experiment, study};
-    pub use crate::{
-        circuit, compile, diag, expr, external, flat, fmi, instance, lower, network, plot, resolve, shipped, solve,
-        structure, syntax, types, unit_check, units,
+    pub use bramah_analysis::{self as analysis, experiment, study};
+    #[cfg(feature = "lsp")]
+    pub use bramah_editor as editor;
+    pub use bramah_expr::{types, units};
+    #[cfg(feature = "gap")]
+    pub use bramah_gap as gap;
+    pub use bramah_model::{flat, instance, network, resolve, shipped, structure, unit_check};
+    pub use bramah_solve::lower;
+    pub use bramah_syntax::diag;
+    pub use {
+        bramah_circuit as circuit, bramah_expr as expr, bramah_external as external, bramah_fmi as fmi,
+        bramah_plot as plot, bramah_solve as solve, bramah_syntax as syntax,
     };
+
+    /// From a request to a model ready to run.
+    pub mod compile {
+        pub use bramah_circuit::compiled::*;
+        pub use bramah_model::compile::*;
+    }
 }

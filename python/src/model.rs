@@ -8,7 +8,7 @@ use bramah::internals::diag::render::full;
 use bramah::internals::plot::network;
 use bramah::internals::units::{Unit, quantity};
 use bramah::world::{DiskWorld, MemoryWorld, Overlay};
-use bramah::{Diagnostic, Error, Kind, Override, Request, Signal, Simulation};
+use bramah::{Analyze, Diagnostic, Error, Kind, Override, Request, Signal, Simulation};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

@@ -1,8 +1,8 @@
 //! `NAME=VALUES`: what an option says of a quantity that takes several values.
 
 use super::Failure;
-use crate::analysis::grid;
-use crate::diag::Code;
+use bramah_analysis::grid;
+use bramah_syntax::diag::Code;
 
 /// Such an entry of an option.
 pub(super) struct Entry<'e> {

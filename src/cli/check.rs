@@ -6,12 +6,12 @@ use super::messages::Messages;
 use super::recorder::write_text;
 use super::request::ModelArgs;
 use super::{Ending, Failure, model};
-use crate::diag::Code;
-use crate::experiment::Experiment;
-use crate::flat::FlatModel;
-use crate::network::Graph;
-use crate::plot::{network, png};
-use crate::structure::{Block, Dae};
+use bramah_analysis::experiment::Experiment;
+use bramah_model::flat::FlatModel;
+use bramah_model::network::Graph;
+use bramah_model::structure::{Block, Dae};
+use bramah_plot::{network, png};
+use bramah_syntax::diag::Code;
 
 /// Check a circuit without running it: ports, balance, units, structure
 #[derive(Args, Debug)]

@@ -6,8 +6,8 @@ use std::path::PathBuf;
 use super::Failure;
 use super::files::{access, write};
 use super::recorder::Target;
-use crate::diag::{Code, Diagnostic, Sources};
-use crate::solve::{Checkpoint, Input, Settings};
+use bramah_solve::{Checkpoint, Input, Settings};
+use bramah_syntax::diag::{Code, Diagnostic, Sources};
 
 /// The first line of a file; the number grows when its form changes.
 const HEAD: &str = "bramah checkpoint 1";

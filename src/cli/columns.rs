@@ -2,11 +2,11 @@
 
 use super::Failure;
 use super::recorder::Target;
-use crate::diag::{Code, Diagnostic, nearest};
-use crate::expr::VarId;
-use crate::flat::{Variability, Variable};
-use crate::results::Globs;
-use crate::structure::Dae;
+use bramah_expr::VarId;
+use bramah_model::flat::{Variability, Variable};
+use bramah_model::structure::Dae;
+use bramah_results::Globs;
+use bramah_syntax::diag::{Code, Diagnostic, nearest};
 
 /// The variables to write, in declaration order.
 ///

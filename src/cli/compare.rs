@@ -7,12 +7,12 @@ use clap::{Args, ValueEnum};
 use super::messages::Messages;
 use super::plot::stem;
 use super::{Ending, Failure, data, files, plot};
-use crate::diag::{Code, Diagnostic, nearest};
-use crate::experiment::seconds;
-use crate::plot::select::shown_values;
-use crate::plot::{Band, Figure, Panel, Series};
-use crate::results::compare::{Comparison, SignalComparison, Tolerance, compare, tube};
-use crate::results::{Globs, Kind, Trajectory, glob, number};
+use bramah_analysis::experiment::seconds;
+use bramah_plot::select::shown_values;
+use bramah_plot::{Band, Figure, Panel, Series};
+use bramah_results::compare::{Comparison, SignalComparison, Tolerance, compare, tube};
+use bramah_results::{Globs, Kind, Trajectory, glob, number};
+use bramah_syntax::diag::{Code, Diagnostic, nearest};
 
 /// Put a result beside a reference, signal by signal
 #[derive(Args, Debug)]
@@ -192,7 +192,7 @@ fn mapped(
     let with_unit = theirs.strip_suffix(']').and_then(|t| t.rsplit_once('['));
     let Some((name, unit)) = with_unit else { return Err(missing(theirs, &args.reference, reference)) };
     let a = reference.index(name.trim()).ok_or_else(|| missing(name.trim(), &args.reference, reference))?;
-    crate::units::Unit::parse(unit).map_err(|e| Failure::new(Code::BadMap, format!("`--map {entry}`: {e}")))?;
+    bramah_expr::units::Unit::parse(unit).map_err(|e| Failure::new(Code::BadMap, format!("`--map {entry}`: {e}")))?;
     reference.signals[a].unit = unit.trim().to_owned();
     Ok((a, b))
 }

@@ -5,9 +5,9 @@ use std::path::Path;
 use super::Failure;
 use super::files::access;
 use super::messages::Messages;
-use crate::diag::{Code, Diagnostic, FileId};
-use crate::results::{Strictness, Trajectory, mat, parquet, read_csv};
-use crate::units::Unit;
+use bramah_expr::units::Unit;
+use bramah_results::{Strictness, Trajectory, mat, parquet, read_csv};
+use bramah_syntax::diag::{Code, Diagnostic, FileId};
 
 /// Reads a data file as text; letters of old encodings in remarks and units do no harm.
 pub(super) fn text(path: &Path, messages: &mut Messages) -> Result<FileId, Failure> {
@@ -46,7 +46,7 @@ pub(super) fn apply_units(trajectory: &mut Trajectory, assignments: &[String]) -
         if !shown.trim().is_empty() && from.convert(0.0, &to).is_none() {
             return Err(wrong(format!("`{unit}` cannot be shown in `{shown}`")));
         }
-        let globs = crate::results::Globs::new(&[pattern]);
+        let globs = bramah_results::Globs::new(&[pattern]);
         for signal in trajectory.signals.iter_mut().filter(|s| globs.matches(&s.name)) {
             signal.unit = unit.trim().to_owned();
             signal.display_unit = shown.trim().to_owned();

@@ -1,10 +1,10 @@
 //! What a shipped class offers to those who use it, as text: ports, parameters, members of a package.
 
-use crate::resolve::names::{self, Member};
-use crate::resolve::{ClassId, Library, Trees};
-use crate::shipped::Shipped;
-use crate::syntax::ast::{ClassKind, Variability};
-use crate::world::World;
+use bramah_model::resolve::names::{self, Member};
+use bramah_model::resolve::{ClassId, Library, Trees};
+use bramah_model::shipped::Shipped;
+use bramah_syntax::ast::{ClassKind, Variability};
+use bramah_syntax::world::World;
 use std::fmt::Write;
 
 /// The packages to begin with.

@@ -5,7 +5,7 @@ use include_dir::{Dir, include_dir};
 
 use super::describe::{describe, resembling};
 use super::{Ending, Failure, files};
-use crate::diag::{Code, Diagnostic, nearest};
+use bramah_syntax::diag::{Code, Diagnostic, nearest};
 
 /// One page a code: cause, smallest example, remedy.
 static PAGES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/docs/errors");

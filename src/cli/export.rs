@@ -15,14 +15,14 @@ use super::messages::Messages;
 use super::model::{described, request};
 use super::request::ModelArgs;
 use super::{Ending, Failure};
-use crate::Simulation;
-use crate::diag::{Code, Diagnostic, nearest};
-use crate::fmi::description::{self, IDENTIFIER, Version};
-use crate::fmi::{Causality, Interface, Packed, Recorder, packed};
-use crate::plot::network;
-use crate::plot::svg::escape;
-use crate::results::number;
-use crate::world::DiskWorld;
+use bramah_circuit::Simulation;
+use bramah_fmi::description::{self, IDENTIFIER, Version};
+use bramah_fmi::{Causality, Interface, Packed, Recorder, packed};
+use bramah_plot::network;
+use bramah_plot::svg::escape;
+use bramah_results::number;
+use bramah_syntax::diag::{Code, Diagnostic, nearest};
+use bramah_syntax::world::DiskWorld;
 
 /// Write a circuit as a functional mock-up unit (FMI, Co-Simulation)
 #[derive(Args, Debug)]

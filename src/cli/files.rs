@@ -5,8 +5,8 @@ use std::io::{self, BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 
 use super::Failure;
-use crate::diag::{Code, Diagnostic};
-use crate::world::{DiskWorld, World, reason};
+use bramah_syntax::diag::{Code, Diagnostic};
+use bramah_syntax::world::{DiskWorld, World, reason};
 
 /// A file that cannot be read or written.
 pub(super) fn access(path: &Path, verb: &str, error: &io::Error) -> Failure {

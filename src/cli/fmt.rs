@@ -7,10 +7,10 @@ use clap::Args;
 
 use super::messages::Messages;
 use super::{Ending, Failure, files};
-use crate::diag::Code;
-use crate::syntax::format::format;
-use crate::world::DiskWorld;
-use crate::world::World;
+use bramah_syntax::diag::Code;
+use bramah_syntax::format::format;
+use bramah_syntax::world::DiskWorld;
+use bramah_syntax::world::World;
 
 /// Lay out Modelica files: indentation and blanks; comments and line breaks stay
 #[derive(Args, Debug)]

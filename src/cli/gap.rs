@@ -8,14 +8,14 @@ use std::time::Duration;
 use super::messages::Messages;
 use super::recorder::write_text;
 use super::{Ending, Failure, files};
-use crate::diag::{Checked, Code, Diagnostic};
-use crate::gap::hypotheses::Hypothesis;
-use crate::gap::plan::plan;
-use crate::gap::select::search::Stage;
-use crate::gap::study::{Unusable, planned, proposed, question};
-use crate::gap::{Budget, DiagnoseOptions, Diagnosis};
-use crate::study::Study;
-use crate::world::DiskWorld;
+use bramah_analysis::study::Study;
+use bramah_gap::hypotheses::Hypothesis;
+use bramah_gap::plan::plan;
+use bramah_gap::select::search::Stage;
+use bramah_gap::study::{Unusable, planned, proposed, question};
+use bramah_gap::{Budget, DiagnoseOptions, Diagnosis};
+use bramah_syntax::diag::{Checked, Code, Diagnostic};
+use bramah_syntax::world::DiskWorld;
 
 /// Find where model and machine differ, and which missing effect explains it
 #[derive(Args, Debug)]
@@ -190,7 +190,7 @@ fn listed(all: &[Hypothesis]) -> String {
 
 /// A time that is not nothing.
 fn budget(text: &str) -> Result<Duration, String> {
-    let seconds = crate::experiment::seconds(text)?;
+    let seconds = bramah_analysis::experiment::seconds(text)?;
     let time = Duration::try_from_secs_f64(seconds).ok().filter(|t| !t.is_zero());
     time.ok_or_else(|| "the budget must be a time above zero".into())
 }

@@ -8,12 +8,12 @@ use super::messages::Messages;
 use super::recorder::write_text;
 use super::study::{Opened, open};
 use super::{Ending, Failure, files, plot};
-use crate::analysis::identify::{
+use bramah_analysis::identify::{
     Fit, Identification, Method, Problem, Profile, Report, doubts, fit_words, picture, profile_words, separation_words,
 };
-use crate::diag::{Code, Diagnostic};
-use crate::results::Globs;
-use crate::study::Role;
+use bramah_analysis::study::Role;
+use bramah_results::Globs;
+use bramah_syntax::diag::{Code, Diagnostic};
 
 /// Find parameters from recordings of a test rig
 #[derive(Args, Debug)]

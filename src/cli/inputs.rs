@@ -5,14 +5,14 @@ use std::sync::Arc;
 
 use super::messages::Messages;
 use super::{Failure, data};
-use crate::diag::{Code, Diagnostic, nearest};
-use crate::experiment::{Experiment, Hold, InputMap};
-use crate::expr::VarId;
-use crate::flat::{Type, Variable};
-use crate::results::{Strictness, Trajectory, contradiction, number, read_csv};
-use crate::solve::{Input, Interpolation, missing_inputs};
-use crate::structure::Dae;
-use crate::units::Unit;
+use bramah_analysis::experiment::{Experiment, Hold, InputMap};
+use bramah_expr::VarId;
+use bramah_expr::units::Unit;
+use bramah_model::flat::{Type, Variable};
+use bramah_model::structure::Dae;
+use bramah_results::{Strictness, Trajectory, contradiction, number, read_csv};
+use bramah_solve::{Input, Interpolation, missing_inputs};
+use bramah_syntax::diag::{Code, Diagnostic, nearest};
 
 /// The inputs of a run, and the time that their recording covers.
 #[derive(Debug, Default)]
@@ -83,7 +83,7 @@ fn input(dae: &Dae, name: &str) -> Option<VarId> {
 /// The entries of `--map`, and for other inputs the column of equal name where there is one.
 fn entries(experiment: &Experiment, dae: &Dae, text: &str) -> Vec<InputMap> {
     let mut entries = experiment.map.clone();
-    let columns = crate::results::recording::column_names(text);
+    let columns = bramah_results::recording::column_names(text);
     for v in &dae.inputs {
         let name = &dae.variables[v.index()].name;
         if columns.contains(name) && !entries.iter().any(|e| &e.input == name) {

@@ -9,17 +9,17 @@ use super::messages::Messages;
 use super::recorder::write_text;
 use super::request::ModelArgs;
 use super::{Ending, Failure, files, interrupt, model, plot};
-use crate::analysis::linear::{self, Choice, Chosen, StateSpace};
-use crate::analysis::steady;
-use crate::compile::Model;
-use crate::diag::{Code, Diagnostic};
-use crate::experiment::seconds;
-use crate::expr::VarId;
-use crate::plot::Figure;
-use crate::results::glob::split_list;
-use crate::results::{Trajectory, number};
-use crate::solve::{Control, Settings, State, signals, simulate};
-use crate::structure::StateChoice;
+use bramah_analysis::experiment::seconds;
+use bramah_analysis::linear::{self, Choice, Chosen, StateSpace};
+use bramah_analysis::steady;
+use bramah_circuit::compiled::CompiledModel;
+use bramah_expr::VarId;
+use bramah_model::structure::StateChoice;
+use bramah_plot::Figure;
+use bramah_results::glob::split_list;
+use bramah_results::{Trajectory, number};
+use bramah_solve::{Control, Settings, State, signals, simulate};
+use bramah_syntax::diag::{Code, Diagnostic};
 
 /// A model near an operating point: A, B, C, D, poles and zeros; or its quasi-linear form over operating points
 #[derive(Args, Debug)]
@@ -119,7 +119,7 @@ fn list(flags: &[String]) -> Vec<String> {
     flags.iter().flat_map(|f| split_list(f)).collect()
 }
 
-fn linear_model(args: &LinearizeArgs, model: &Model, messages: &Messages) -> Result<Ending, Failure> {
+fn linear_model(args: &LinearizeArgs, model: &CompiledModel, messages: &Messages) -> Result<Ending, Failure> {
     let choice = Choice { inputs: list(&args.inputs), outputs: list(&args.outputs) };
     let chosen = Chosen::new(&model.flat, &choice, &[]).map_err(|diagnostics| Failure { diagnostics })?;
     let state = operating_point(args, model, &chosen)?;
@@ -179,7 +179,7 @@ fn pretty(value: &serde_json::Value) -> String {
 }
 
 /// The state at the time asked for, or the steady state reached from there.
-fn operating_point(args: &LinearizeArgs, model: &Model, chosen: &Chosen) -> Result<State, Failure> {
+fn operating_point(args: &LinearizeArgs, model: &CompiledModel, chosen: &Chosen) -> Result<State, Failure> {
     let state = state_at(model, args.at)?.0;
     if !args.steady {
         return Ok(state);
@@ -192,7 +192,7 @@ fn no_values(why: &str) -> Failure {
 }
 
 /// A run up to a time, or to no time at all, with the rows it made.
-pub(super) fn state_at(model: &Model, time: Option<f64>) -> Result<(State, Trajectory), Failure> {
+pub(super) fn state_at(model: &CompiledModel, time: Option<f64>) -> Result<(State, Trajectory), Failure> {
     let mut settings = Settings::from_experiment(&model.dae.experiment);
     if let Some(time) = time.filter(|t| *t < settings.start_time) {
         let (time, start) = (number::rounded(time, 9), number::rounded(settings.start_time, 9));
@@ -205,7 +205,7 @@ pub(super) fn state_at(model: &Model, time: Option<f64>) -> Result<(State, Traje
 }
 
 /// A run, with its rows.
-pub(super) fn run_to(model: &Model, settings: &Settings) -> Result<(State, Trajectory), Failure> {
+pub(super) fn run_to(model: &CompiledModel, settings: &Settings) -> Result<(State, Trajectory), Failure> {
     let mut rows = Trajectory::new(signals(&model.dae, &settings.wanted));
     let mut reselect = |choice: &StateChoice| model.with_states(choice);
     let mut control =
@@ -214,7 +214,7 @@ pub(super) fn run_to(model: &Model, settings: &Settings) -> Result<(State, Traje
     if run.end.is_success() { Ok((run.state, rows)) } else { Err(Failure { diagnostics: run.diagnostics }) }
 }
 
-fn quasi_linear(args: &LinearizeArgs, model: &Model, messages: &Messages) -> Result<Ending, Failure> {
+fn quasi_linear(args: &LinearizeArgs, model: &CompiledModel, messages: &Messages) -> Result<Ending, Failure> {
     let rho = list(&args.schedule);
     let chosen =
         Chosen::scheduled(&model.flat, &list(&args.inputs), &rho).map_err(|diagnostics| Failure { diagnostics })?;
@@ -239,7 +239,7 @@ fn quasi_linear(args: &LinearizeArgs, model: &Model, messages: &Messages) -> Res
 
 /// Smallest and largest values of states and inputs: those of a run, widened by a tenth; of quantities that do not move
 /// a fifth of their value to both sides.
-fn ranges(model: &Model, chosen: &Chosen, state: &State) -> Result<Vec<(f64, f64)>, Failure> {
+fn ranges(model: &CompiledModel, chosen: &Chosen, state: &State) -> Result<Vec<(f64, f64)>, Failure> {
     let mut settings = Settings::from_experiment(&model.dae.experiment);
     let all: Vec<VarId> = chosen.quantities().collect();
     settings.wanted = all.iter().copied().filter(|v| v.index() < model.dae.variables.len()).collect();

@@ -3,8 +3,8 @@
 use std::io::{IsTerminal, Write};
 
 use super::Failure;
-use crate::diag::render::{Format, render};
-use crate::diag::{Checked, Diagnostic, Severity, Sources};
+use bramah_syntax::diag::render::{Format, render};
+use bramah_syntax::diag::{Checked, Diagnostic, Severity, Sources};
 
 /// `--message-format`
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]

@@ -43,8 +43,8 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use crate::diag::{Code, Diagnostic, Sources};
-use crate::instance::GIVEN;
+use bramah_model::instance::GIVEN;
+use bramah_syntax::diag::{Code, Diagnostic, Sources};
 use messages::{MessageFormat, Messages};
 
 /// Acausal simulator for electro-hydraulic machines: circuits in a strict subset of Modelica, solved by SUNDIALS IDA.

@@ -5,50 +5,51 @@ use std::path::{Path, PathBuf};
 use super::Failure;
 use super::messages::Messages;
 use super::request::library_folders;
-use crate::compile::{Flattened, Model, Outcome, Request};
-use crate::diag::{Diagnostic, Severity};
-use crate::experiment::Experiment;
-use crate::flat::FlatModel;
-use crate::instance::Override;
-use crate::lower::Options;
-use crate::network::Graph;
-use crate::structure::Dae;
-use crate::world::DiskWorld;
+use bramah_analysis::experiment::Experiment;
+use bramah_circuit::compiled::CompiledModel;
+use bramah_model::compile::{Flattened, Outcome, Request};
+use bramah_model::flat::FlatModel;
+use bramah_model::instance::Override;
+use bramah_model::network::Graph;
+use bramah_model::structure::Dae;
+use bramah_solve::lower::Options;
+use bramah_syntax::diag::{Diagnostic, Severity};
+use bramah_syntax::world::DiskWorld;
 
 /// Up to the flat model, which exists also where the equations do not fit together.
 pub(super) fn flatten(experiment: &Experiment, messages: &mut Messages) -> Result<Flattened, Failure> {
-    let outcome = crate::compile::flatten(&DiskWorld, &request(experiment)?);
+    let outcome = bramah_model::compile::flatten(&DiskWorld, &request(experiment)?);
     pass(outcome, experiment, messages)
 }
 
 /// Name, components and connections, also where ports are open.
 pub(super) fn graph(experiment: &Experiment, messages: &mut Messages) -> Result<(String, Graph), Failure> {
-    let outcome = crate::compile::graph(&DiskWorld, &request(experiment)?);
+    let outcome = bramah_model::compile::graph(&DiskWorld, &request(experiment)?);
     pass(outcome, experiment, messages)
 }
 
 /// Up to the sorted equations, without running.
 pub(super) fn sort(experiment: &Experiment, messages: &mut Messages) -> Result<(FlatModel, Graph, Dae), Failure> {
-    let outcome = crate::compile::sort(&DiskWorld, &request(experiment)?);
+    let outcome = bramah_model::compile::sort(&DiskWorld, &request(experiment)?);
     pass(outcome, experiment, messages)
 }
 
 /// Names of all models of a source that can run.
 pub(super) fn runnable(experiment: &Experiment) -> Result<Vec<String>, Failure> {
-    let found =
-        crate::compile::runnable(&DiskWorld, &request(experiment)?).map_err(|diagnostics| Failure { diagnostics })?;
+    let found = bramah_model::compile::runnable(&DiskWorld, &request(experiment)?)
+        .map_err(|diagnostics| Failure { diagnostics })?;
     Ok(found.into_iter().map(|r| r.class).collect())
 }
 
 /// The description of a class, or nothing.
 pub(super) fn described(request: &Request, class: &str) -> String {
-    let all = crate::compile::runnable(&DiskWorld, request).unwrap_or_default();
+    let all = bramah_model::compile::runnable(&DiskWorld, request).unwrap_or_default();
     all.into_iter().find(|r| r.class == class).map(|r| r.description).unwrap_or_default()
 }
 
 /// The whole way to a system that can run.
-pub(super) fn compile(experiment: &Experiment, messages: &mut Messages) -> Result<Model, Failure> {
-    let outcome = crate::compile::compile(&DiskWorld, &request(experiment)?, &Options::default());
+pub(super) fn compile(experiment: &Experiment, messages: &mut Messages) -> Result<CompiledModel, Failure> {
+    let outcome = bramah_circuit::compiled::compile(&DiskWorld, &request(experiment)?, &Options::default());
     pass(outcome, experiment, messages)
 }
 

@@ -7,7 +7,7 @@ use clap::Args;
 use super::files::{access, write};
 use super::messages::Messages;
 use super::{Ending, Failure};
-use crate::diag::{Code, Diagnostic};
+use bramah_syntax::diag::{Code, Diagnostic};
 
 const CIRCUIT: &str = include_str!("new/circuit.mo");
 const EXPERIMENT: &str = include_str!("new/experiment.toml");
@@ -89,11 +89,11 @@ mod tests {
     #[test]
     fn the_study_ties_to_its_model() {
         let named = |text: &str| text.replace("{{Name}}", "Rig").replace("{{name}}", "rig");
-        let mut world = crate::world::MemoryWorld::single("Rig.mo", named(RIG));
+        let mut world = bramah_syntax::world::MemoryWorld::single("Rig.mo", named(RIG));
         world.add("rig.toml", named(STUDY));
-        let mut sources = crate::diag::Sources::default();
-        let study = crate::study::Study::read(&world, Path::new("rig.toml"), &mut sources).value.unwrap();
-        let flat = crate::compile::flatten(&world, &study.request()).value.unwrap().flat;
+        let mut sources = bramah_syntax::diag::Sources::default();
+        let study = bramah_analysis::study::Study::read(&world, Path::new("rig.toml"), &mut sources).value.unwrap();
+        let flat = bramah_model::compile::flatten(&world, &study.request()).value.unwrap().flat;
         let bound = study.bind(&flat);
         assert_eq!(bound.diagnostics, []);
         assert_eq!(bound.value.unwrap().parameters.len(), 4);
@@ -101,9 +101,9 @@ mod tests {
 
     #[test]
     fn the_experiment_can_be_read() {
-        let mut sources = crate::diag::Sources::default();
+        let mut sources = bramah_syntax::diag::Sources::default();
         let file = sources.add("x.toml", EXPERIMENT.replace("{{Name}}", "X").replace("{{name}}", "x"));
-        let checked = crate::experiment::parse(&sources, file);
+        let checked = bramah_analysis::experiment::parse(&sources, file);
         assert_eq!(checked.diagnostics, []);
     }
 }

@@ -10,16 +10,16 @@ use super::messages::Messages;
 use super::recorder::{write_points, write_text};
 use super::request::ModelArgs;
 use super::{Ending, Failure, files, model, plot};
-use crate::analysis::linear::{Choice, Chosen, outputs};
-use crate::analysis::partition::{Zones, curve, zones};
-use crate::analysis::steady::{Point, Unsteady};
-use crate::compile::Model;
-use crate::diag::Code;
-use crate::expr::VarId;
-use crate::plot::Figure;
-use crate::plot::figure::{Panel, Series};
-use crate::results::{Signal, number};
-use crate::solve::signals;
+use bramah_analysis::linear::{Choice, Chosen, outputs};
+use bramah_analysis::partition::{Zones, curve, zones};
+use bramah_analysis::steady::{Point, Unsteady};
+use bramah_circuit::compiled::CompiledModel;
+use bramah_expr::VarId;
+use bramah_plot::Figure;
+use bramah_plot::figure::{Panel, Series};
+use bramah_results::{Signal, number};
+use bramah_solve::signals;
+use bramah_syntax::diag::Code;
 
 /// Where a pump delivers: dead, load and saturation zone of its flow over the speed, under loads
 #[derive(Args, Debug)]
@@ -96,13 +96,13 @@ pub(super) fn run(args: &PartitionArgs, messages: &mut Messages) -> Result<Endin
     say(&model, &axes, &flow, &curves)
 }
 
-fn axis(model: &Model, entry: &Entry<'_>, variable: VarId) -> Result<Axis, Failure> {
+fn axis(model: &CompiledModel, entry: &Entry<'_>, variable: VarId) -> Result<Axis, Failure> {
     let signal = signals(&model.dae, &[variable]).remove(0);
     Ok(Axis { variable, values: entry.values(&signal.unit)?, signal })
 }
 
 /// The curve at each load, from the point at the slowest speed of the one before.
-fn curves(model: &Model, chosen: &Chosen, axes: &[Axis]) -> Result<Vec<Curve>, Failure> {
+fn curves(model: &CompiledModel, chosen: &Chosen, axes: &[Axis]) -> Result<Vec<Curve>, Failure> {
     let loads: Vec<Option<f64>> = match axes.get(1) {
         Some(load) => load.values.iter().copied().map(Some).collect(),
         None => vec![None],
@@ -138,7 +138,7 @@ fn with_unit(signal: &Signal, value: f64) -> String {
 }
 
 /// Tells the zones; a load without one is an end of its own.
-fn say(model: &Model, axes: &[Axis], flow: &Signal, curves: &[Curve]) -> Result<Ending, Failure> {
+fn say(model: &CompiledModel, axes: &[Axis], flow: &Signal, curves: &[Curve]) -> Result<Ending, Failure> {
     let speed = &axes[0].signal;
     let mut out = format!("{}: zones of {} over {}\n", model.dae.class, flow.name, speed.name);
     let mut none = true;
@@ -182,7 +182,7 @@ fn words(zones: &Zones, speed: &Signal, flow: &Signal) -> String {
         .to_owned()
 }
 
-fn picture(model: &Model, axes: &[Axis], flow: &Signal, curves: &[Curve]) -> Figure {
+fn picture(model: &CompiledModel, axes: &[Axis], flow: &Signal, curves: &[Curve]) -> Figure {
     let label = |s: &Signal| if s.unit.is_empty() { s.name.clone() } else { format!("{} in {}", s.name, s.unit) };
     let series = curves.iter().enumerate().map(|(colour, curve)| Series {
         colour,

@@ -6,11 +6,11 @@ use clap::Args;
 
 use super::messages::Messages;
 use super::{Ending, Failure, data, files};
-use crate::diag::{Code, Diagnostic};
-use crate::plot::map::{self, map};
-use crate::plot::select::{Choice, Run, UnitSystem, figure};
-use crate::plot::{Figure, html, png, svg};
-use crate::results::{Globs, Trajectory};
+use bramah_plot::map::{self, map};
+use bramah_plot::select::{Choice, Run, UnitSystem, figure};
+use bramah_plot::{Figure, html, png, svg};
+use bramah_results::{Globs, Trajectory};
+use bramah_syntax::diag::{Code, Diagnostic};
 
 /// Draw results: SVG, PNG, or a page with zoom and hover
 #[derive(Args, Debug)]
@@ -187,7 +187,7 @@ fn not_found(why: &str, args: &PlotArgs, trajectories: &[Trajectory]) -> Failure
     let asked = Globs::new(&[args.variables.as_slice(), args.panel.as_slice()].concat());
     let wanted = args.x.as_deref().into_iter().chain(args.y.as_deref()).chain(asked.unused(names()));
     for name in wanted.filter(|n| !names().any(|k| k == *n)) {
-        if let Some(near) = crate::diag::nearest(name, names()) {
+        if let Some(near) = bramah_syntax::diag::nearest(name, names()) {
             diagnostic = diagnostic.help(format!("`{name}`: did you mean `{near}`?"));
         }
     }

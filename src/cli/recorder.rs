@@ -7,9 +7,9 @@ use std::time::{Duration, Instant};
 use super::Failure;
 use super::checkpoint::Written;
 use super::files::{NewFile, access, ending, print};
-use crate::diag::{Code, Diagnostic};
-use crate::results::parquet::ParquetWriter;
-use crate::results::{CsvUnits, CsvWriter, Signal, Trajectory, csv_bytes_per_row, mat};
+use bramah_results::parquet::ParquetWriter;
+use bramah_results::{CsvUnits, CsvWriter, Signal, Trajectory, csv_bytes_per_row, mat};
+use bramah_syntax::diag::{Code, Diagnostic};
 
 /// Rows wait in memory until they take this much, so that writing hardly disturbs the run; in Parquet a group of rows.
 const BUFFER_BYTES: usize = 32 << 20;

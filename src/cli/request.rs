@@ -7,11 +7,11 @@ use clap::Args;
 use super::Failure;
 use super::files::access;
 use super::messages::Messages;
-use crate::diag::{Code, Diagnostic};
-use crate::experiment::{self, Experiment, Hold, InputMap, duration, event_rows, seconds, tolerance};
-use crate::resolve::ANNOTATIONS;
-use crate::results::CsvUnits;
-use crate::results::glob::split_list;
+use bramah_analysis::experiment::{self, Experiment, Hold, InputMap, duration, event_rows, seconds, tolerance};
+use bramah_model::resolve::ANNOTATIONS;
+use bramah_results::CsvUnits;
+use bramah_results::glob::split_list;
+use bramah_syntax::diag::{Code, Diagnostic};
 
 /// What to compile: shared by `check` and `simulate`.
 #[derive(Args, Debug)]

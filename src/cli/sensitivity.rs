@@ -8,15 +8,15 @@ use super::messages::Messages;
 use super::recorder::{Target, write_text};
 use super::request::ModelArgs;
 use super::{Ending, Failure, columns, files, interrupt, model, plot};
-use crate::analysis::sensitivity::{Moved, Sensitivity, TOLERANCE, sensitivity};
-use crate::compile::Model;
-use crate::diag::{Code, Diagnostic};
-use crate::experiment::seconds;
-use crate::expr::VarId;
-use crate::flat::{Type, Variability};
-use crate::plot::{Figure, Panel, Series};
-use crate::results::{CsvWriter, Globs, Signal, number};
-use crate::solve::Settings;
+use bramah_analysis::experiment::seconds;
+use bramah_analysis::sensitivity::{Moved, Sensitivity, TOLERANCE, sensitivity};
+use bramah_circuit::compiled::CompiledModel;
+use bramah_expr::VarId;
+use bramah_model::flat::{Type, Variability};
+use bramah_plot::{Figure, Panel, Series};
+use bramah_results::{CsvWriter, Globs, Signal, number};
+use bramah_solve::Settings;
+use bramah_syntax::diag::{Code, Diagnostic};
 
 /// How trajectories of variables move with parameters
 #[derive(Args, Debug)]
@@ -87,7 +87,7 @@ pub(super) fn run(args: &SensitivityArgs, messages: &mut Messages) -> Result<End
     Ok(Ending::Fine)
 }
 
-fn variables(args: &SensitivityArgs, model: &Model) -> Result<Vec<VarId>, Failure> {
+fn variables(args: &SensitivityArgs, model: &CompiledModel) -> Result<Vec<VarId>, Failure> {
     if !args.variables.is_empty() {
         return columns::choose(&model.dae, &args.variables, &Target::Stdout);
     }
@@ -97,7 +97,7 @@ fn variables(args: &SensitivityArgs, model: &Model) -> Result<Vec<VarId>, Failur
     Ok(if outputs.is_empty() { states().collect() } else { outputs })
 }
 
-fn parameters(args: &SensitivityArgs, model: &Model) -> Result<Vec<Moved>, Failure> {
+fn parameters(args: &SensitivityArgs, model: &CompiledModel) -> Result<Vec<Moved>, Failure> {
     let mut values = model.system.layout.values();
     model.system.evaluate_parameters(&mut values, &[]);
     let globs = Globs::new(&args.parameters);

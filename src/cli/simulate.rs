@@ -15,14 +15,14 @@ use super::recorder::{Recorder, Target, announcement, write_text};
 use super::request::{ModelArgs, RunArgs};
 use super::statistics::{Record, peak_memory};
 use super::{Ending, Failure, columns, interrupt, model, plot};
-use crate::compile::Model;
-use crate::diag::{Code, Diagnostic, Sources};
-use crate::experiment::{Experiment, duration};
-use crate::flat;
-use crate::plot::select::{Choice, Run as Drawn, figure};
-use crate::results::{CsvUnits, Signal, Trajectory, number};
-use crate::solve::{Checkpoint, Control, End, Progress, Run, Settings, Sink, resume, signals, simulate};
-use crate::structure::StateChoice;
+use bramah_analysis::experiment::{Experiment, duration};
+use bramah_circuit::compiled::CompiledModel;
+use bramah_model::flat;
+use bramah_model::structure::StateChoice;
+use bramah_plot::select::{Choice, Run as Drawn, figure};
+use bramah_results::{CsvUnits, Signal, Trajectory, number};
+use bramah_solve::{Checkpoint, Control, End, Progress, Run, Settings, Sink, resume, signals, simulate};
+use bramah_syntax::diag::{Code, Diagnostic, Sources};
 
 /// Run a circuit
 #[derive(Args, Debug)]
@@ -240,7 +240,7 @@ impl Sink for Rows {
 }
 
 fn solve(
-    model: &Model,
+    model: &CompiledModel,
     settings: &Settings,
     recorded: &Recorded,
     from: Option<&Checkpoint>,

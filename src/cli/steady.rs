@@ -10,16 +10,16 @@ use super::messages::Messages;
 use super::recorder::write_points;
 use super::request::ModelArgs;
 use super::{Ending, Failure, columns, files, interrupt, model};
-use crate::analysis::balance::{self, Budget};
-use crate::analysis::linear::{Choice, Chosen};
-use crate::analysis::steady::{rest, run_from};
-use crate::compile::Model;
-use crate::diag::Code;
-use crate::experiment::seconds;
-use crate::expr::VarId;
-use crate::plot::{png, sankey};
-use crate::results::{Signal, Trajectory, number};
-use crate::solve::{Settings, State, signals};
+use bramah_analysis::balance::{self, Budget};
+use bramah_analysis::experiment::seconds;
+use bramah_analysis::linear::{Choice, Chosen};
+use bramah_analysis::steady::{rest, run_from};
+use bramah_circuit::compiled::CompiledModel;
+use bramah_expr::VarId;
+use bramah_plot::{png, sankey};
+use bramah_results::{Signal, Trajectory, number};
+use bramah_solve::{Settings, State, signals};
+use bramah_syntax::diag::Code;
 
 /// Operating points: where nothing changes any more, and where the power goes there
 #[derive(Args, Debug)]
@@ -123,7 +123,7 @@ pub(super) fn run(args: &SteadyArgs, messages: &mut Messages) -> Result<Ending, 
 }
 
 /// What is moved, and its values; one point without a name where nothing is.
-fn over(args: &SteadyArgs, model: &Model) -> Result<(Vec<String>, Vec<f64>), Failure> {
+fn over(args: &SteadyArgs, model: &CompiledModel) -> Result<(Vec<String>, Vec<f64>), Failure> {
     let Some(entry) = &args.over else { return Ok((Vec::new(), vec![0.0])) };
     let entry = Entry::parse("--over", entry)?;
     let variable = model.flat.variables.iter().find(|v| v.name == entry.name);
@@ -131,7 +131,7 @@ fn over(args: &SteadyArgs, model: &Model) -> Result<(Vec<String>, Vec<f64>), Fai
     Ok((vec![entry.name.to_owned()], values))
 }
 
-fn wanted(args: &SteadyArgs, model: &Model, chosen: &Chosen) -> Result<Vec<VarId>, Failure> {
+fn wanted(args: &SteadyArgs, model: &CompiledModel, chosen: &Chosen) -> Result<Vec<VarId>, Failure> {
     if !args.variables.is_empty() {
         return columns::choose(&model.dae, &args.variables, &super::recorder::Target::Stdout);
     }
@@ -146,13 +146,23 @@ fn wanted(args: &SteadyArgs, model: &Model, chosen: &Chosen) -> Result<Vec<VarId
 /// Seconds over which a steady state is watched, to see how fast positions move.
 const MOMENT: f64 = 1e-3;
 
-fn moment(model: &Model, chosen: &Chosen, state: &State, wanted: &[VarId]) -> Result<(Trajectory, State), Failure> {
+fn moment(
+    model: &CompiledModel,
+    chosen: &Chosen,
+    state: &State,
+    wanted: &[VarId],
+) -> Result<(Trajectory, State), Failure> {
     let ran = run_from(model, chosen, state, MOMENT, wanted, interrupt::flag());
     ran.map_err(|diagnostics| Failure { diagnostics })
 }
 
 /// The values at a steady state, and the state with everything that follows from it.
-fn settled(model: &Model, chosen: &Chosen, state: &State, wanted: &[VarId]) -> Result<(Vec<f64>, State), Failure> {
+fn settled(
+    model: &CompiledModel,
+    chosen: &Chosen,
+    state: &State,
+    wanted: &[VarId],
+) -> Result<(Vec<f64>, State), Failure> {
     let (rows, mut after) = moment(model, chosen, state, wanted)?;
     after.time = state.time;
     Ok((rows.columns.iter().map(|c| c[0]).collect(), after))
@@ -180,7 +190,7 @@ fn tell(args: &SteadyArgs, over: &[String], table: &Trajectory) -> Result<(), Fa
 /// The power balance in words, and its picture.
 fn power(
     args: &SteadyArgs,
-    model: &Model,
+    model: &CompiledModel,
     ports: &[balance::Port],
     rows: &Trajectory,
     messages: &Messages,

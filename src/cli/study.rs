@@ -4,16 +4,16 @@ use std::path::{Path, PathBuf};
 
 use super::Failure;
 use super::messages::Messages;
-use crate::compile::Model;
-use crate::diag::{Checked, Diagnostic, Sources};
-use crate::lower::Options;
-use crate::study::{Bound, Recording, Role, Study};
-use crate::world::DiskWorld;
+use bramah_analysis::study::{Bound, Recording, Role, Study};
+use bramah_circuit::compiled::CompiledModel;
+use bramah_solve::lower::Options;
+use bramah_syntax::diag::{Checked, Diagnostic, Sources};
+use bramah_syntax::world::DiskWorld;
 
 /// A study tied to its model.
 pub(super) struct Opened {
     /// The model.
-    pub model: Model,
+    pub model: CompiledModel,
     /// The study.
     pub bound: Bound,
     /// The texts of the study and its recordings.
@@ -25,7 +25,7 @@ pub(super) struct Opened {
 pub(super) fn open(path: &Path, data: Option<&Path>, messages: &mut Messages) -> Result<Opened, Failure> {
     let mut sources = Sources::default();
     let study = said(Study::read(&DiskWorld, path, &mut sources), &sources, messages)?;
-    let outcome = crate::compile::compile(&DiskWorld, &study.request(), &Options::default());
+    let outcome = bramah_circuit::compiled::compile(&DiskWorld, &study.request(), &Options::default());
     messages.sources = outcome.sources;
     let Some(model) = outcome.value else { return Err(Failure { diagnostics: outcome.diagnostics }) };
     messages.say(&outcome.diagnostics);

@@ -13,15 +13,15 @@ use super::messages::Messages;
 use super::recorder::Target;
 use super::request::ModelArgs;
 use super::{Ending, Failure, columns, interrupt, model, plot};
-use crate::analysis::sweep::{Plan, Table, fingerprint, indices, matrix, scatter};
-use crate::compile::Model;
-use crate::diag::{Code, Diagnostic};
-use crate::experiment::{Experiment, Sampling, Sweep};
-use crate::flat;
-use crate::plot::matrix::write as draw;
-use crate::results::parquet::write_table;
-use crate::results::{CsvWriter, Trajectory, number};
-use crate::solve::{Settings, signals};
+use bramah_analysis::experiment::{Experiment, Sampling, Sweep};
+use bramah_analysis::sweep::{Plan, Table, fingerprint, indices, matrix, scatter};
+use bramah_circuit::compiled::CompiledModel;
+use bramah_model::flat;
+use bramah_plot::matrix::write as draw;
+use bramah_results::parquet::write_table;
+use bramah_results::{CsvWriter, Trajectory, number};
+use bramah_solve::{Settings, signals};
+use bramah_syntax::diag::{Code, Diagnostic};
 
 /// Many runs of one model, on all cores, into one table
 #[derive(Args, Debug)]
@@ -117,7 +117,12 @@ fn output(args: &SweepArgs, file: &str) -> PathBuf {
     }
 }
 
-fn settings(args: &SweepArgs, experiment: &Experiment, model: &Model, plan: &Plan) -> Result<Settings, Failure> {
+fn settings(
+    args: &SweepArgs,
+    experiment: &Experiment,
+    model: &CompiledModel,
+    plan: &Plan,
+) -> Result<Settings, Failure> {
     let annotation = &model.dae.experiment;
     let mut settings = Settings::from_experiment(&flat::Experiment {
         start_time: experiment.start_time.or(annotation.start_time),
@@ -162,7 +167,7 @@ fn resumed(path: &Path, empty: Table) -> Result<Table, Failure> {
 
 fn execute(
     args: &SweepArgs,
-    model: &Model,
+    model: &CompiledModel,
     plan: &Plan,
     settings: &Settings,
     output: &Path,
@@ -220,7 +225,7 @@ fn execute(
 type Shared = Mutex<(std::fs::File, Vec<(usize, (Vec<f64>, String))>, Option<std::io::Error>)>;
 
 /// One run, and its line in the table.
-fn one(args: &SweepArgs, model: &Model, plan: &Plan, settings: &Settings, run: usize, shared: &Shared) {
+fn one(args: &SweepArgs, model: &CompiledModel, plan: &Plan, settings: &Settings, run: usize, shared: &Shared) {
     let stop = interrupt::flag();
     if stop.load(Ordering::Relaxed) {
         return;
@@ -244,7 +249,13 @@ fn one(args: &SweepArgs, model: &Model, plan: &Plan, settings: &Settings, run: u
     shared.1.push((run, (values, status)));
 }
 
-fn trajectory(folder: &Path, run: usize, model: &Model, settings: &Settings, rows: &Trajectory) -> std::io::Result<()> {
+fn trajectory(
+    folder: &Path,
+    run: usize,
+    model: &CompiledModel,
+    settings: &Settings,
+    rows: &Trajectory,
+) -> std::io::Result<()> {
     let file = std::io::BufWriter::new(std::fs::File::create(folder.join(format!("run_{run}.csv")))?);
     let mut writer = CsvWriter::new(file, &signals(&model.dae, &settings.wanted))?;
     for (i, &time) in rows.times.iter().enumerate() {

@@ -11,7 +11,7 @@ use crate::disk;
 use crate::rig;
 
 use bramah::Request;
-use bramah::internals::compile::{Model, compile};
+use bramah::internals::compile::{CompiledModel, compile};
 use bramah::internals::expr::VarId;
 use bramah::internals::flat::{Type, Variability};
 use bramah::internals::lower::Options;
@@ -57,7 +57,7 @@ struct Parameter {
 }
 
 /// An example, read from the folder beside the tests.
-fn model(class: &str, native: bool) -> Model {
+fn model(class: &str, native: bool) -> CompiledModel {
     let library = concat!(env!("CARGO_MANIFEST_DIR"), "/components").into();
     let request = Request { source: class.into(), libraries: vec![library], ..Request::default() };
     let compiled = compile(&Disk, &request, &Options { native, ..Options::default() });
@@ -65,7 +65,7 @@ fn model(class: &str, native: bool) -> Model {
 }
 
 /// What users may change without compiling again: neither protected parameters nor those of an array.
-fn parameters(model: &Model) -> Vec<Parameter> {
+fn parameters(model: &CompiledModel) -> Vec<Parameter> {
     let system = &model.system;
     let mut values = system.layout.values();
     system.evaluate_parameters(&mut values, &vec![false; model.dae.variables.len()]);
@@ -87,7 +87,7 @@ fn parameters(model: &Model) -> Vec<Parameter> {
 }
 
 /// A value that the declaration allows: near the given one, at a limit, or anywhere between.
-fn draw(p: &Parameter, numbers: &mut Numbers, model: &Model) -> f64 {
+fn draw(p: &Parameter, numbers: &mut Numbers, model: &CompiledModel) -> f64 {
     match p.ty {
         Type::Boolean => f64::from(numbers.next() < 0.5),
         Type::Enumeration(e) => {
@@ -114,7 +114,7 @@ fn between_limits(p: &Parameter, numbers: &mut Numbers) -> f64 {
 }
 
 /// Runs with these values; the word for its end, or what is wrong with it.
-fn run(model: &Model, given: &[(VarId, f64)]) -> Result<String, String> {
+fn run(model: &CompiledModel, given: &[(VarId, f64)]) -> Result<String, String> {
     let count = u32::try_from(model.flat.variables.len()).expect("few variables");
     let usual = Settings::from_experiment(&model.flat.experiment);
     let settings = Settings {
@@ -142,7 +142,7 @@ fn run(model: &Model, given: &[(VarId, f64)]) -> Result<String, String> {
 }
 
 /// One draw: what was changed, and what came of it.
-fn one(model: &Model, all: &[Parameter], numbers: &mut Numbers) -> (String, Result<String, String>) {
+fn one(model: &CompiledModel, all: &[Parameter], numbers: &mut Numbers) -> (String, Result<String, String>) {
     let many = 1 + (numbers.next() * CHANGED) as usize;
     let mut given = Vec::new();
     let mut said = Vec::new();

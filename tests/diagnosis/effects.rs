@@ -54,7 +54,7 @@ fn check(world: &dyn World, request: &Request, signals: &[Signal]) -> String {
     let text = augment(&places, &attached, signals);
     let model = value(compile(world, request, None, &text, &lower::Options::default()));
     let plain = value(bramah::internals::compile::compile(world, request, &lower::Options::default()));
-    let states = |m: &bramah::internals::compile::Model, prefix: &str| -> Vec<String> {
+    let states = |m: &bramah::internals::compile::CompiledModel, prefix: &str| -> Vec<String> {
         let names = m.dae.states.iter().map(|v| m.dae.variables[v.index()].name.clone());
         let mut names: Vec<String> = names.map(|n| n.strip_prefix(prefix).unwrap_or(&n).to_string()).collect();
         names.sort();

@@ -2,7 +2,7 @@
 #![allow(clippy::disallowed_methods, reason = "starts the command and kills it")]
 
 use bramah::Request;
-use bramah::internals::compile::{Model, compile};
+use bramah::internals::compile::{CompiledModel, compile};
 use bramah::internals::lower;
 use bramah::internals::solve::{Checkpoint, Control, Input, Run, Settings, Sink, resume, simulate};
 use bramah::internals::structure::StateChoice;
@@ -30,13 +30,13 @@ impl Sink for Tape {
     }
 }
 
-fn model(text: &str) -> Model {
+fn model(text: &str) -> CompiledModel {
     let request = Request { source: "M.mo".into(), ..Request::default() };
     let outcome = compile(&MemoryWorld::single("M.mo", text), &request, &lower::Options::default());
     outcome.value.unwrap_or_else(|| panic!("{:?}", outcome.diagnostics))
 }
 
-fn settings(model: &Model, every: f64) -> Settings {
+fn settings(model: &CompiledModel, every: f64) -> Settings {
     let wanted = (0u32..).zip(&model.flat.variables).map(|(i, _)| bramah::internals::expr::VarId(i)).collect();
     Settings { wanted, checkpoint_every: every, ..Settings::from_experiment(&model.flat.experiment) }
 }

@@ -18,14 +18,14 @@ use serde_json::Value;
 use super::super::files::modelica_below;
 use super::files::{Cache, Open};
 use super::texts;
-use crate::compile::{Request as Wanted, graph, runnable};
-use crate::diag::FileId;
-use crate::editor::hints::{Facts, hints};
-use crate::editor::messages::Message;
-use crate::editor::navigate::{self, Declared, Place};
-use crate::editor::{View, complete, hover, is_shipped, lines, outline, signature, tokens};
-use crate::plot::network;
-use crate::syntax::format::format;
+use bramah_editor::hints::{Facts, hints};
+use bramah_editor::messages::Message;
+use bramah_editor::navigate::{self, Declared, Place};
+use bramah_editor::{View, complete, hover, is_shipped, lines, outline, signature, tokens};
+use bramah_model::compile::{Request as Wanted, graph, runnable};
+use bramah_plot::network;
+use bramah_syntax::diag::FileId;
+use bramah_syntax::format::format;
 
 /// The request of the picture of a model's network.
 const NETWORK: &str = "bramah/network";

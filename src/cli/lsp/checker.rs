@@ -8,9 +8,9 @@ use crossbeam_channel::{Receiver, Sender, unbounded};
 
 use super::files::{Cache, Open};
 use super::texts;
-use crate::compile::STACK;
-use crate::editor::hints::Facts;
-use crate::editor::messages::{Message, of_models};
+use bramah_editor::hints::Facts;
+use bramah_editor::messages::{Message, of_models};
+use bramah_model::compile::STACK;
 
 /// What was found about a file.
 pub(super) struct Checked {

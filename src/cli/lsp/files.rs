@@ -7,10 +7,10 @@ use std::sync::Arc;
 
 use lsp_types::Uri;
 
-use crate::editor::is_shipped;
-use crate::shipped::Shipped;
-use crate::world::DiskWorld;
-use crate::world::World;
+use bramah_editor::is_shipped;
+use bramah_model::shipped::Shipped;
+use bramah_syntax::world::DiskWorld;
+use bramah_syntax::world::World;
 
 /// Texts that are open, over the disk. Cheap to copy.
 #[derive(Clone, Debug, Default)]

@@ -17,9 +17,9 @@ use serde::de::DeserializeOwned;
 
 use super::request::folders;
 use super::{Ending, Failure};
-use crate::diag::Code;
-use crate::editor::{lines, messages};
 use answers::Answers;
+use bramah_editor::{lines, messages};
+use bramah_syntax::diag::Code;
 use checker::{Checked, Checker};
 use files::Open;
 
@@ -154,7 +154,7 @@ impl Server<'_> {
 
     /// What the parser says at once, the rest when it is there.
     fn check(&mut self, path: &Path) {
-        if crate::editor::is_shipped(path) {
+        if bramah_editor::is_shipped(path) {
             return;
         }
         let found = messages::of_syntax(path, self.answers.open.get(path).unwrap_or_default());
@@ -214,6 +214,6 @@ fn apply(text: &mut String, change: &lsp_types::TextDocumentContentChangeEvent) 
 }
 
 /// The texts and what surrounds them, for one look.
-fn texts<'t>(open: &'t Open, libraries: &'t [PathBuf]) -> crate::editor::Texts<'t> {
-    crate::editor::Texts { world: open, libraries }
+fn texts<'t>(open: &'t Open, libraries: &'t [PathBuf]) -> bramah_editor::Texts<'t> {
+    bramah_editor::Texts { world: open, libraries }
 }

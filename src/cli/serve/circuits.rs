@@ -6,18 +6,18 @@ use super::super::model::described;
 use super::folder::Folder;
 use super::http::{Answer, Ask, Refusal};
 use super::jobs::{Job, Jobs, Made};
-use crate::Simulation;
-use crate::circuit::Parameter;
-use crate::compile::{Request, graph};
-use crate::diag::render::full;
-use crate::diag::{Code, Diagnostic, nearest};
-use crate::experiment::seconds;
-use crate::instance::Override;
-use crate::plot::select::{Choice, Run, UnitSystem, figure, shown_unit, shown_values};
-use crate::plot::{html, network};
-use crate::results::{Globs, Kind, Signal, number};
-use crate::solve::{Control, Progress, missing_inputs};
-use crate::world::DiskWorld;
+use bramah_analysis::experiment::seconds;
+use bramah_circuit::Parameter;
+use bramah_circuit::Simulation;
+use bramah_model::compile::{Request, graph};
+use bramah_model::instance::Override;
+use bramah_plot::select::{Choice, Run, UnitSystem, figure, shown_unit, shown_values};
+use bramah_plot::{html, network};
+use bramah_results::{Globs, Kind, Signal, number};
+use bramah_solve::{Control, Progress, missing_inputs};
+use bramah_syntax::diag::render::full;
+use bramah_syntax::diag::{Code, Diagnostic, nearest};
+use bramah_syntax::world::DiskWorld;
 
 /// Digits of values that the page shows: as many as the reader of a data sheet needs, and the text is what is sent back.
 const DIGITS: usize = 9;
@@ -70,7 +70,7 @@ pub(super) fn open(folder: &Folder, ask: &Ask) -> Result<Answer, Refusal> {
             return Ok(Answer::json(&wrong).with_status(422));
         }
     };
-    let (settings, class) = (simulation.asked(), simulation.model().flat.class.clone());
+    let (settings, class) = (simulation.run_settings(), simulation.model().flat.class.clone());
     Ok(Answer::json(&Circuit {
         source: ask.value("source").to_owned(),
         description: described(&request, &class),
@@ -159,7 +159,10 @@ fn simulated(request: &Request, wanted: &Wanted, stop: Option<f64>, job: &Job) -
     let patterns = Globs::new(&wanted.variables);
     all_given(&simulation)?;
     record(&mut simulation, &patterns)?;
-    let (start, length) = (simulation.asked().start_time, simulation.asked().stop_time - simulation.asked().start_time);
+    let (start, length) = (
+        simulation.run_settings().start_time,
+        simulation.run_settings().stop_time - simulation.run_settings().start_time,
+    );
     let mut progress = |now: &Progress| {
         job.at("simulating", Some((now.time - start) / length));
         true

@@ -9,11 +9,11 @@ use super::super::model::source;
 use super::super::{Failure, files};
 use super::guard;
 use super::http::Refusal;
-use crate::compile::{Request, runnable};
-use crate::diag::render::full;
-use crate::diag::{Code, Sources};
-use crate::shipped::Shipped;
-use crate::world::{DiskWorld, World};
+use bramah_model::compile::{Request, runnable};
+use bramah_model::shipped::Shipped;
+use bramah_syntax::diag::render::full;
+use bramah_syntax::diag::{Code, Sources};
+use bramah_syntax::world::{DiskWorld, World};
 
 /// Folders deeper than this are not searched.
 const DEPTH: usize = 5;
@@ -128,8 +128,11 @@ fn shipped() -> Vec<Listed> {
             all.extend(runnable(&Shipped, &request).unwrap_or_default().into_iter().filter(|r| r.experiment));
         }
     }
-    let listed =
-        |r: crate::compile::Runnable| Listed { source: String::new(), class: r.class, description: r.description };
+    let listed = |r: bramah_model::compile::Runnable| Listed {
+        source: String::new(),
+        class: r.class,
+        description: r.description,
+    };
     all.into_iter().map(listed).collect()
 }
 

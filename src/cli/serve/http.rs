@@ -9,8 +9,8 @@ use serde::de::DeserializeOwned;
 use tiny_http::{Header, Method, Request, Response};
 
 use super::guard;
-use crate::diag::render::full;
-use crate::diag::{Diagnostic, Sources};
+use bramah_syntax::diag::render::full;
+use bramah_syntax::diag::{Diagnostic, Sources};
 
 /// What the page itself may load.
 const POLICY: &str = "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; \

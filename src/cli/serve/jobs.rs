@@ -9,7 +9,7 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 
 use super::http::{Answer, Ask, Refusal};
-use crate::compile::STACK;
+use bramah_model::compile::STACK;
 
 /// So many jobs may run at the same time: a page with a slider begins one after the other.
 const RUNNING: usize = 8;

@@ -20,8 +20,8 @@ use include_dir::{Dir, include_dir};
 use tiny_http::Server;
 
 use super::{Ending, Failure, files};
-use crate::compile::STACK;
-use crate::diag::{Code, Diagnostic};
+use bramah_model::compile::STACK;
+use bramah_syntax::diag::{Code, Diagnostic};
 use folder::Folder;
 use http::{Answer, Ask, Refusal};
 use jobs::Jobs;

@@ -12,15 +12,15 @@ use super::super::files;
 use super::folder::{Folder, unusable};
 use super::http::{Answer, Ask, Refusal};
 use super::jobs::{File, Job, Jobs, Made};
-use crate::diag::render::full;
-use crate::diag::{Code, Diagnostic, Sources};
-use crate::gap::study::{Question, Unusable, question};
-use crate::gap::{Budget, DiagnoseOptions, Diagnosis};
-use crate::plot::html;
-use crate::results::recording::column_names;
-use crate::results::{Strictness, read_csv};
-use crate::study::{Amount, Role, Study, parse};
-use crate::world::{DiskWorld, MemoryWorld, Overlay};
+use bramah_analysis::study::{Amount, Role, Study, parse};
+use bramah_gap::study::{Question, Unusable, question};
+use bramah_gap::{Budget, DiagnoseOptions, Diagnosis};
+use bramah_plot::html;
+use bramah_results::recording::column_names;
+use bramah_results::{Strictness, read_csv};
+use bramah_syntax::diag::render::full;
+use bramah_syntax::diag::{Code, Diagnostic, Sources};
+use bramah_syntax::world::{DiskWorld, MemoryWorld, Overlay};
 
 /// The name under which messages show the text of the page.
 const STUDY: &str = "study.toml";
@@ -259,7 +259,7 @@ pub(super) fn compare(folder: &Folder, ask: &Ask, uploads: &Uploads, jobs: &Jobs
 pub(super) fn diagnose(folder: &Folder, ask: &Ask, uploads: &Uploads, jobs: &Jobs) -> Result<Answer, Refusal> {
     begin(folder, ask, uploads, jobs, |question, sources, job| {
         let held = question.held(None, sources).map_err(|d| full(sources, &d))?;
-        let mut progress = |stage: crate::gap::Stage| {
+        let mut progress = |stage: bramah_gap::Stage| {
             job.at(stage.to_string(), None);
             if job.stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };

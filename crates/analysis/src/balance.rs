@@ -1,0 +1,256 @@
+//! Where the power goes: what flows into each component through its ports, and from component to component.
+
+use bramah_expr::VarId;
+use bramah_expr::units::{Dimension, Unit};
+use bramah_model::flat::FlatModel;
+use bramah_model::network::Graph;
+use bramah_results::Trajectory;
+use std::collections::BTreeMap;
+
+/// A port of a top-level component that carries power.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Port {
+    /// The component.
+    pub component: String,
+    /// The port, relative to it.
+    pub name: String,
+    /// Flow variable, positive into the component.
+    flow: VarId,
+    partner: Partner,
+}
+
+/// What the flow is multiplied with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Partner {
+    /// Nothing: the flow is power itself, as heat is.
+    Own,
+    /// A potential, as pressure, voltage or speed.
+    Potential(VarId),
+    /// The rate of a position or angle.
+    Rate(VarId),
+}
+
+const POWER: Dimension = Dimension::new([1, 2, -3, 0, 0, 0, 0]);
+const ENERGY: Dimension = Dimension::new([1, 2, -2, 0, 0, 0, 0]);
+
+/// The ports of the model's top-level components, recognised by the units of their variables.
+pub fn ports(flat: &FlatModel) -> Vec<Port> {
+    let ids = || (0..).map(VarId).zip(&flat.variables);
+    let mut found = Vec::new();
+    for (flow, variable) in ids().filter(|(_, v)| v.flow) {
+        let Some((connector, _)) = variable.name.rsplit_once('.') else { continue };
+        let Some((component, port)) = connector.split_once('.') else { continue };
+        if port.contains('.') {
+            continue;
+        }
+        let siblings = ids().filter(|(_, v)| {
+            !v.flow
+                && v.name.strip_prefix(connector).and_then(|r| r.strip_prefix('.')).is_some_and(|r| !r.contains('.'))
+        });
+        let siblings: Vec<(VarId, Dimension)> =
+            siblings.filter_map(|(v, s)| Some((v, dimension(s.unit.as_deref()?)?))).collect();
+        let partner = variable.unit.as_deref().and_then(dimension).and_then(|d| partner(d, &siblings));
+        if let Some(partner) = partner {
+            found.push(Port { component: component.to_owned(), name: port.to_owned(), flow, partner });
+        }
+    }
+    found
+}
+
+fn dimension(unit: &str) -> Option<Dimension> {
+    Unit::parse(unit).ok().map(|u| u.dimension)
+}
+
+fn partner(flow: Dimension, siblings: &[(VarId, Dimension)]) -> Option<Partner> {
+    if flow == POWER {
+        return Some(Partner::Own);
+    }
+    let times = |wanted: Dimension| siblings.iter().find(|s| s.1.times(flow) == Some(wanted)).map(|s| s.0);
+    times(POWER).map(Partner::Potential).or_else(|| times(ENERGY).map(Partner::Rate))
+}
+
+/// The variables to record for [`powers`].
+pub fn wanted(ports: &[Port]) -> Vec<VarId> {
+    let of = |p: &Port| match p.partner {
+        Partner::Own => vec![p.flow],
+        Partner::Potential(v) | Partner::Rate(v) => vec![p.flow, v],
+    };
+    let mut all: Vec<VarId> = ports.iter().flat_map(of).collect();
+    all.sort();
+    all.dedup();
+    all
+}
+
+/// The mean power into each port over a run in W. `rows` holds the columns of [`wanted`] first.
+pub fn powers(ports: &[Port], rows: &Trajectory) -> Vec<f64> {
+    let wanted = wanted(ports);
+    let column = |v: VarId| wanted.binary_search(&v).ok().map_or(&[] as &[f64], |k| rows.columns[k].as_slice());
+    let duration = rows.times.last().zip(rows.times.first()).map_or(0.0, |(a, b)| a - b);
+    let one = |p: &Port| {
+        let flow = column(p.flow);
+        let steps = rows.times.windows(2).enumerate();
+        let energy: f64 = match p.partner {
+            Partner::Own => steps.map(|(k, t)| 0.5 * (flow[k] + flow[k + 1]) * (t[1] - t[0])).sum(),
+            Partner::Potential(v) => {
+                let p = column(v);
+                steps.map(|(k, t)| 0.5 * (p[k] * flow[k] + p[k + 1] * flow[k + 1]) * (t[1] - t[0])).sum()
+            }
+            Partner::Rate(v) => {
+                let s = column(v);
+                // an event has no width, and a position does not jump but by `reinit`
+                let moves = steps.filter(|(_, t)| t[1] > t[0]);
+                moves.map(|(k, _)| 0.5 * (flow[k] + flow[k + 1]) * (s[k + 1] - s[k])).sum()
+            }
+        };
+        if duration > 0.0 { energy / duration } else { f64::NAN }
+    };
+    ports.iter().map(one).collect()
+}
+
+/// A component with what flows in through its ports.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Budget {
+    /// Its name.
+    pub component: String,
+    /// Its class; empty where it has no connection.
+    pub class: String,
+    /// Power into each port in W.
+    pub ports: Vec<(String, f64)>,
+    /// Their sum: what is lost or stored; negative for sources.
+    pub net: f64,
+}
+
+/// All components, those that take most first.
+pub fn budgets(ports: &[Port], powers: &[f64], graph: &Graph) -> Vec<Budget> {
+    let mut by: BTreeMap<&str, Budget> = BTreeMap::new();
+    for (port, &power) in ports.iter().zip(powers) {
+        let class = graph.node_weights().find(|n| n.name == port.component).map_or("", |n| n.class.as_str());
+        let budget = by.entry(&port.component).or_insert_with(|| Budget {
+            component: port.component.clone(),
+            class: class.to_owned(),
+            ports: Vec::new(),
+            net: 0.0,
+        });
+        budget.ports.push((port.name.clone(), power));
+        budget.net += power;
+    }
+    let mut all: Vec<Budget> = by.into_values().collect();
+    all.sort_by(|a, b| b.net.total_cmp(&a.net));
+    all
+}
+
+/// Power from one component to another.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stream {
+    /// Where it comes from.
+    pub from: String,
+    /// Where it goes.
+    pub to: String,
+    /// In W, positive.
+    pub power: f64,
+}
+
+/// Streams through the connections. Where more than two ports meet, each that takes is fed by all that give, in
+/// proportion.
+pub fn streams(ports: &[Port], powers: &[f64], graph: &Graph) -> Vec<Stream> {
+    let mut streams: BTreeMap<(String, String), f64> = BTreeMap::new();
+    for set in meetings(ports, graph) {
+        let given: f64 = set.iter().map(|&p| (-powers[p]).max(0.0)).sum();
+        for &a in set.iter().filter(|&&p| powers[p] < 0.0) {
+            for &b in set.iter().filter(|&&p| powers[p] > 0.0) {
+                let power = -powers[a] * powers[b] / given;
+                *streams.entry((ports[a].component.clone(), ports[b].component.clone())).or_default() += power;
+            }
+        }
+    }
+    let all = streams.into_iter().filter(|(ends, _)| ends.0 != ends.1);
+    all.map(|((from, to), power)| Stream { from, to, power }).collect()
+}
+
+/// What components that pass power on keep of it: their losses, and what they store, as streams to `name`. Losses have no
+/// port where they are not led away as heat, so no connection shows them. Where power only ends nothing is left over.
+pub fn left(budgets: &[Budget], name: &str) -> Vec<Stream> {
+    let passing = budgets.iter().filter(|b| b.net > 0.0 && b.ports.iter().any(|p| p.1 < 0.0));
+    passing.map(|b| Stream { from: b.component.clone(), to: name.to_owned(), power: b.net }).collect()
+}
+
+/// Groups of connected ports, by index.
+fn meetings(ports: &[Port], graph: &Graph) -> Vec<Vec<usize>> {
+    let mut group: Vec<usize> = (0..ports.len()).collect();
+    let find = |component: &str, name: &str| ports.iter().position(|p| p.component == component && p.name == name);
+    for edge in graph.edge_indices() {
+        let Some((a, b)) = graph.edge_endpoints(edge) else { continue };
+        let wire = &graph[edge];
+        let ends = find(&graph[a].name, &wire.from).zip(find(&graph[b].name, &wire.to));
+        let swapped = find(&graph[b].name, &wire.from).zip(find(&graph[a].name, &wire.to));
+        if let Some((a, b)) = ends.or(swapped) {
+            let (low, high) = (group[a].min(group[b]), group[a].max(group[b]));
+            group.iter_mut().filter(|g| **g == high).for_each(|g| *g = low);
+        }
+    }
+    let mut sets: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    group.into_iter().enumerate().for_each(|(port, g)| sets.entry(g).or_default().push(port));
+    sets.into_values().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bramah_circuit::Simulation;
+    use bramah_model::compile::Request;
+    use bramah_syntax::world::MemoryWorld;
+
+    #[test]
+    fn a_resistor_takes_what_a_source_gives() {
+        let text = "model M
+            connector Pin Real v(unit = \"V\"); flow Real i(unit = \"A\"); end Pin;
+            model Source Pin p, n; equation p.v - n.v = 12; p.i + n.i = 0; end Source;
+            model Resistor Pin p, n; parameter Real R(unit = \"Ohm\") = 3; equation p.v - n.v = R*p.i; p.i + n.i = 0; end Resistor;
+            model Ground Pin p; equation p.v = 0; end Ground;
+            Source s; Resistor r; Resistor q; Ground g;
+          equation
+            connect(s.p, r.p); connect(r.n, q.p); connect(q.n, s.n); connect(s.n, g.p);
+          end M;";
+        let world = MemoryWorld::single("m.mo", text);
+        let mut simulation =
+            Simulation::compile(&world, &Request { source: "m.mo".into(), ..Request::default() }).expect("sound");
+        let model = simulation.model().clone();
+        let ports = ports(&model.flat);
+        simulation.settings().wanted = wanted(&ports);
+        let rows = simulation.run().expect("runs").trajectory;
+        let powers = powers(&ports, &rows);
+        let budgets = budgets(&ports, &powers, &model.graph);
+        let net = |c: &str| budgets.iter().find(|b| b.component == c).expect("there").net;
+        assert!((net("r") - 12.0).abs() < 1e-9 && (net("q") - 12.0).abs() < 1e-9 && (net("s") + 24.0).abs() < 1e-9);
+        assert!(budgets.iter().map(|b| b.net).sum::<f64>().abs() < 1e-9);
+        let streams = streams(&ports, &powers, &model.graph);
+        let stream = |a: &str, b: &str| streams.iter().find(|s| s.from == a && s.to == b).map(|s| s.power);
+        assert_eq!(stream("s", "r").map(f64::round), Some(24.0));
+        assert_eq!(stream("r", "q").map(f64::round), Some(12.0));
+    }
+
+    /// A motor drives a pump on a throttle: what the pump loses flows out of it, so that as much leaves as goes in.
+    #[test]
+    fn what_a_machine_loses_flows_out_of_it() {
+        let world = MemoryWorld::default();
+        let request = Request { source: "Hydraulic.Examples.PumpExample".into(), ..Request::default() };
+        let mut simulation = Simulation::compile(&world, &request).expect("sound");
+        let model = simulation.model().clone();
+        let ports = ports(&model.flat);
+        let loss = model.flat.variables.iter().position(|v| v.name == "pump.lossPower").expect("there");
+        let mut wanted = wanted(&ports);
+        wanted.push(VarId(u32::try_from(loss).expect("small")));
+        simulation.settings().wanted = wanted;
+        let rows = simulation.run().expect("runs").trajectory;
+        let powers = powers(&ports, &rows);
+        let budgets = budgets(&ports, &powers, &model.graph);
+        let mut all = streams(&ports, &powers, &model.graph);
+        all.extend(left(&budgets, "lost"));
+        let of_pump = |s: &&Stream| s.from == "pump" || s.to == "pump";
+        let net: f64 = all.iter().filter(of_pump).map(|s| if s.to == "pump" { s.power } else { -s.power }).sum();
+        let lost = all.iter().find(|s| s.from == "pump" && s.to == "lost").expect("a stream").power;
+        let said = rows.columns.last().and_then(|c| c.last()).copied().expect("rows");
+        assert!(net.abs() < 1e-6 * lost && (lost - said).abs() < 0.2 * said, "{net} {lost} {said}");
+        assert!(left(&budgets, "lost").iter().all(|s| s.power > 0.0));
+    }
+}

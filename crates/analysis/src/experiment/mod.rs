@@ -1,0 +1,188 @@
+//! Experiment files: what to run, as TOML. Every key is a flag of `bramah simulate` without its dashes.
+//!
+//! ```toml
+//! file = "Press.mo"
+//! model = "Press"
+//! stop-time = "2 s"
+//! variables = ["cyl.*", "pump.b.p"]
+//! output-file = "press.csv"
+//!
+//! [set]
+//! pump.D = "0.8 ml"
+//!
+//! [map]
+//! F = "tau_N[N]"
+//! ```
+
+mod input;
+mod sweep;
+mod table;
+
+pub use input::{Hold, InputMap};
+pub use sweep::{Sampling, Spread, Sweep};
+pub use table::parse;
+
+use bramah_results::CsvUnits;
+
+/// What is to be run; `None` and empty lists where nothing was said.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Experiment {
+    /// A file, a folder that is a package, or the dotted name of a class that ships with bramah.
+    pub file: Option<String>,
+    /// The class to run.
+    pub model: Option<String>,
+    /// Values of parameters: dotted name, and the value as written, with or without unit.
+    pub set: Vec<(String, String)>,
+    /// Seconds.
+    pub start_time: Option<f64>,
+    /// Seconds.
+    pub stop_time: Option<f64>,
+    /// Seconds between output rows.
+    pub output_interval: Option<f64>,
+    /// Event rows at most: 0 for none, `u64::MAX` for all.
+    pub event_rows: Option<u64>,
+    /// Where a CSV says its units.
+    pub csv_units: Option<CsvUnits>,
+    /// Relative tolerance of the integration.
+    pub relative_tolerance: Option<f64>,
+    /// Patterns of variables to write.
+    pub variables: Vec<String>,
+    /// Where the result goes.
+    pub output_file: Option<String>,
+    /// A picture of the result.
+    pub plot: Option<String>,
+    /// A recording that drives the model.
+    pub input: Option<String>,
+    /// The recording's time column.
+    pub time_column: Option<String>,
+    /// Which column drives which input, and how.
+    pub map: Vec<InputMap>,
+    /// How inputs run between samples where their own entry does not say.
+    pub interpolation: Option<Hold>,
+    /// Folders with further packages.
+    pub library: Vec<String>,
+    /// C sources and shared libraries that external functions may call.
+    pub external: Vec<String>,
+    /// Where the statistics go.
+    pub statistics: Option<String>,
+    /// Warnings are errors.
+    pub deny_warnings: Option<bool>,
+    /// What `bramah sweep` varies.
+    pub sweep: Option<Sweep>,
+}
+
+impl Experiment {
+    /// What `self` says, and where it says nothing, what `other` says. Of a parameter set twice `self` wins.
+    #[must_use]
+    pub fn over(mut self, other: Experiment) -> Experiment {
+        let own: Vec<String> = self.set.iter().map(|s| s.0.clone()).collect();
+        let mut set: Vec<(String, String)> = other.set.into_iter().filter(|s| !own.contains(&s.0)).collect();
+        set.append(&mut self.set);
+        let mut map: Vec<InputMap> =
+            other.map.into_iter().filter(|m| !self.map.iter().any(|own| own.input == m.input)).collect();
+        map.append(&mut self.map);
+        let or = |own: Vec<String>, other: Vec<String>| if own.is_empty() { other } else { own };
+        Experiment {
+            file: self.file.or(other.file),
+            model: self.model.or(other.model),
+            set,
+            start_time: self.start_time.or(other.start_time),
+            stop_time: self.stop_time.or(other.stop_time),
+            output_interval: self.output_interval.or(other.output_interval),
+            event_rows: self.event_rows.or(other.event_rows),
+            csv_units: self.csv_units.or(other.csv_units),
+            relative_tolerance: self.relative_tolerance.or(other.relative_tolerance),
+            variables: or(self.variables, other.variables),
+            output_file: self.output_file.or(other.output_file),
+            plot: self.plot.or(other.plot),
+            input: self.input.or(other.input),
+            time_column: self.time_column.or(other.time_column),
+            map,
+            interpolation: self.interpolation.or(other.interpolation),
+            library: or(self.library, other.library),
+            external: or(self.external, other.external),
+            statistics: self.statistics.or(other.statistics),
+            deny_warnings: self.deny_warnings.or(other.deny_warnings),
+            sweep: self.sweep.or(other.sweep),
+        }
+    }
+}
+
+/// A time in seconds: a number, or a number with a unit of time.
+///
+/// # Errors
+/// A sentence saying what is expected.
+pub fn seconds(text: &str) -> Result<f64, String> {
+    let (value, unit) = bramah_expr::units::quantity(text).map_err(|e| e.to_string())?;
+    let second = bramah_expr::units::Unit::parse("s").map_err(|e| e.to_string())?;
+    let time = match unit {
+        None => Some(value),
+        Some(unit) => unit.convert(value, &second),
+    };
+    time.filter(|t| t.is_finite()).ok_or_else(|| format!("`{text}` is no time; write `2`, `2 s` or `500 ms`"))
+}
+
+/// How many event rows a result may have: `all`, `none` or a number.
+///
+/// # Errors
+/// A sentence saying what is expected.
+pub fn event_rows(text: &str) -> Result<u64, String> {
+    match text.trim() {
+        "all" => Ok(u64::MAX),
+        "none" => Ok(0),
+        number => match number.parse::<f64>() {
+            Ok(n) if n >= 0.0 && n.fract() == 0.0 => Ok(n as u64),
+            _ => Err(format!("`{text}` is no number of rows; write `all`, `none` or a number such as `100000`")),
+        },
+    }
+}
+
+/// A length of time in seconds, written like [`seconds`].
+///
+/// # Errors
+/// A sentence saying what is expected; also when the time is not positive.
+pub fn duration(text: &str) -> Result<f64, String> {
+    match seconds(text)? {
+        length if length > 0.0 => Ok(length),
+        _ => Err(format!("`{text}` is no length of time; write a positive one, such as `1 ms`")),
+    }
+}
+
+/// A relative tolerance.
+///
+/// # Errors
+/// A sentence saying what is expected.
+pub fn tolerance(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(v) if v > 0.0 && v < 1.0 => Ok(v),
+        _ => Err(format!("`{text}` is no relative tolerance; write a number between 0 and 1, such as 1e-6")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_and_tolerances() {
+        assert_eq!(seconds("2"), Ok(2.0));
+        assert_eq!(seconds("500 ms"), Ok(0.5));
+        assert_eq!(seconds("2min"), Ok(120.0));
+        assert!(seconds("2 m").unwrap_err().contains("no time"));
+        assert!(seconds("soon").is_err());
+        assert_eq!(duration("2 ms"), Ok(0.002));
+        assert!(duration("0").unwrap_err().contains("positive"));
+        assert!(duration("-1 s").is_err());
+        assert_eq!(tolerance("1e-6"), Ok(1e-6));
+        assert!(tolerance("0").is_err() && tolerance("2").is_err() && tolerance("nan").is_err());
+    }
+
+    #[test]
+    fn the_command_line_goes_over_the_file() {
+        let set = |v: &str| vec![("pump.D".to_owned(), v.to_owned())];
+        let file = Experiment { set: set("1"), stop_time: Some(1.0), model: Some("A".into()), ..Experiment::default() };
+        let line = Experiment { set: set("2"), stop_time: Some(2.0), ..Experiment::default() };
+        let both = line.over(file);
+        assert_eq!((both.set, both.stop_time, both.model.as_deref()), (set("2"), Some(2.0), Some("A")));
+    }
+}

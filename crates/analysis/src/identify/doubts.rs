@@ -1,0 +1,115 @@
+//! Doubts that a user should hear first: columns of another sign or unit, signals met worse than by a constant.
+
+use super::{Fit, Method, Problem, SignalFit, Trajectory};
+use bramah_results::number::rounded;
+use bramah_syntax::diag::{Code, Diagnostic};
+
+/// An error of this part of the signal's own deviation is what a constant leaves; what is measured and what sampling does
+/// to it may add a little.
+const CONSTANT: f64 = 1.05;
+/// From this part of the measured variation on that a multiple of the model explains, the multiple is reported.
+const EXPLAINED: f64 = 0.5;
+
+/// Measured values that are so many times those of the model, or its part, are in another unit.
+const FAR: f64 = 300.0;
+
+/// Warnings ([`Code::ForeignColumn`]) about signals that follow the run with the model's own values, but with another
+/// sign or size.
+pub(super) fn foreign(problem: &Problem<'_>, trajectories: &[Trajectory]) -> Vec<Diagnostic> {
+    let strange = |f: &f64| *f < 0.0 || !(1.0 / FAR..FAR).contains(f);
+    let found = trajectories.iter().filter_map(|c| Some((c, multiple(c).filter(strange)?)));
+    found.map(|(trajectory, factor)| suspicion(problem, trajectory, factor)).collect()
+}
+
+fn suspicion(problem: &Problem<'_>, trajectory: &Trajectory, factor: f64) -> Diagnostic {
+    let times = rounded(factor, 3);
+    let text = format!("`{}` goes {times} times as in a run with the values of the model", trajectory.name);
+    let d = Diagnostic::new(Code::ForeignColumn, text);
+    let d = match problem.bound.signals.iter().find(|s| s.name == trajectory.name) {
+        Some(signal) => d.at(signal.entry.span, "compared here"),
+        None => d,
+    };
+    let cause = match (factor < 0.0, (1.0 / FAR..FAR).contains(&factor.abs())) {
+        (true, true) => "a `sign`, of this column or of an input",
+        (true, false) => "a `sign` and a `unit`, of this column or of an input",
+        _ => "a `unit`, of this column or of an input",
+    };
+    d.help(format!("likely causes: {cause}; a parameter of the model that is far off"))
+}
+
+/// Warnings ([`Code::WorseThanConstant`]) about signals whose errors are larger than their own deviation, on the train
+/// recordings or on held ones.
+pub fn doubts(problem: &Problem<'_>, fit: &Fit, held: &[SignalFit]) -> Vec<Diagnostic> {
+    let roles = [("train", fit.train.as_slice()), ("held", held)];
+    let found = roles.into_iter().flat_map(|(role, fits)| fits.iter().map(move |f| (role, f)));
+    let doubtful = found.filter(|(_, f)| f.relative > CONSTANT);
+    doubtful.map(|(role, signal)| doubt(problem, fit, role, signal)).collect()
+}
+
+fn doubt(problem: &Problem<'_>, fit: &Fit, role: &str, signal: &SignalFit) -> Diagnostic {
+    let (name, share) = (&signal.name, rounded(100.0 * signal.relative, 3));
+    let text = format!("`{name}` is met worse than by a constant: on {role} recordings the error is {share} %");
+    let mut d = Diagnostic::new(Code::WorseThanConstant, text).note("in parts of the signal's own deviation");
+    let span = problem.bound.signals.iter().find(|s| s.name == *name).map(|s| s.entry.span);
+    if let Some(span) = span {
+        d = d.at(span, "compared here");
+    }
+    let trajectory = fit.trajectories.iter().find(|c| c.name == *name && fit.method == Method::Output);
+    if let Some(factor) = trajectory.and_then(multiple) {
+        d = d.help(advice(factor));
+    }
+    let held: Vec<&str> = problem.bound.inputs.iter().filter(|i| i.entry.hold).map(|i| i.entry.name.as_str()).collect();
+    let hold = match held[..] {
+        [] => "`hold` of an input (now all are joined by straight lines)".to_owned(),
+        _ => format!("`hold` of an input (now each sample of {} holds until the next)", held.join(", ")),
+    };
+    d.help(format!("likely causes: {hold}, the `sign` or `unit` of a column, a wrong column"))
+        .help("where the columns are right the search may have ended far off: try `--starts 12`, or `pieces`")
+}
+
+/// By which number the model has to be multiplied to give what was measured, means apart, where that explains it.
+fn multiple(trajectory: &Trajectory) -> Option<f64> {
+    let n = trajectory.measured.len() as f64;
+    let modelled: Vec<f64> = trajectory.measured.iter().zip(&trajectory.errors).map(|(m, e)| m + e).collect();
+    let mean = |v: &[f64]| v.iter().sum::<f64>() / n;
+    let (a, b) = (mean(&trajectory.measured), mean(&modelled));
+    let pairs = trajectory.measured.iter().zip(&modelled).map(|(m, s)| (m - a, s - b));
+    let (mut own, mut both, mut other) = (0.0, 0.0, 0.0);
+    for (m, s) in pairs {
+        (own, both, other) = (own + m * m, both + m * s, other + s * s);
+    }
+    let explained = both * both / (own * other);
+    (explained > EXPLAINED).then(|| both / other)
+}
+
+fn advice(factor: f64) -> String {
+    let times = rounded(factor, 3);
+    if factor < 0.0 {
+        format!("what was measured goes {times} times as the model goes: its `sign` may be wrong, or that of an input")
+    } else {
+        format!("what was measured goes {times} times as the model goes: a `unit` may be wrong")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn trajectory(factor: f64) -> Trajectory {
+        let modelled: Vec<f64> = (0..50).map(|k| (0.3 * f64::from(k)).sin()).collect();
+        let measured: Vec<f64> = modelled.iter().map(|m| 5.0 + factor * m).collect();
+        let errors = modelled.iter().zip(&measured).map(|(s, m)| s - m).collect();
+        Trajectory { name: "y".into(), unit: "1".into(), times: vec![0.0; 50], measured, errors }
+    }
+
+    #[test]
+    fn factors_are_seen_and_told() {
+        for factor in [-1.0, 1000.0] {
+            assert!((multiple(&trajectory(factor)).expect("a multiple") / factor - 1.0).abs() < 1e-9);
+        }
+        assert!(advice(-1.0).contains("`sign`") && advice(1000.0).contains("`unit`"));
+        let mut other = trajectory(1.0);
+        other.errors = other.measured.iter().enumerate().map(|(k, m)| (k as f64).sqrt() - m).collect();
+        assert_eq!(multiple(&other), None);
+    }
+}

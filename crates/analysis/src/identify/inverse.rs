@@ -1,0 +1,353 @@
+//! Least squares on the inverse model: measured motion in, force out, compared with the measured force.
+//!
+//! States come from measured signals and their derivatives; the force that would give the measured acceleration is
+//! solved from the equations of motion. Residual and derivatives pass the same low-pass and are thinned (parallel
+//! filter), so that noise above the motion's band does not bias the result. Source: M. Gautier, Dynamic identification
+//! of robots with power model, ICRA 1997; A. Janot, P.-O. Vandanjon, M. Gautier, IEEE Trans. CST 22 (2014) 132.
+
+use super::filter::{LowPass, derivative, filled};
+use super::least_squares::LeastSquares;
+use super::weights::Weights;
+use super::{Problem, Residuals, Trajectory};
+use crate::estimate::Series;
+use crate::local::Plan;
+use crate::study::Recording;
+use crate::{Local, lift};
+use bramah_expr::VarId;
+use bramah_expr::units::{Dimension, Unit};
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// Where a state comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Origin {
+    /// A signal over a factor.
+    Signal(usize, f64),
+    /// The derivative of another state.
+    Rate(usize),
+}
+
+/// How a model is inverted.
+#[derive(Clone, Debug)]
+pub struct Inverse {
+    plan: Arc<Plan>,
+    /// Per state, in the order of `order`.
+    origins: Vec<Origin>,
+    /// States in an order in which each comes after the one it is derived from.
+    order: Vec<usize>,
+    /// States whose rate the force decides, as many as inputs.
+    driven: Vec<usize>,
+    /// Per input of the plan its entry in the study.
+    inputs: Vec<usize>,
+}
+
+impl Inverse {
+    /// `None` where the inputs are not measured forces or torques, or the motion does not follow from the signals.
+    pub fn new(problem: &Problem<'_>) -> Option<Inverse> {
+        let bound = problem.bound;
+        let force = |unit: &str| Unit::parse(unit).is_ok_and(|u| u.dimension == FORCE || u.dimension == TORQUE);
+        if bound.inputs.is_empty() || !bound.inputs.iter().all(|i| force(&i.unit)) {
+            return None;
+        }
+        let parameters: Vec<VarId> = problem.free.iter().map(|f| f.variable).collect();
+        let outputs: Vec<VarId> = bound.signals.iter().map(|s| s.variable).collect();
+        let plan = Arc::new(Plan::new(&lift(&problem.model.flat, &parameters, &outputs)).ok()?);
+        let mut inverse = Inverse {
+            order: Vec::new(),
+            driven: Vec::new(),
+            inputs: plan_inputs(problem)?,
+            origins: vec![Origin::Rate(usize::MAX); plan.states()],
+            plan,
+        };
+        inverse.find_origins(problem)?;
+        (inverse.driven.len() == inverse.inputs.len()).then_some(inverse)
+    }
+
+    /// Reads from the derivatives at two points which state is a signal, and which the derivative of another.
+    fn find_origins(&mut self, problem: &Problem<'_>) -> Option<()> {
+        let n = self.plan.states();
+        let theta: Vec<f64> = problem.free.iter().map(|f| f.start).collect();
+        let u = vec![0.0; self.inputs.len()];
+        let mut local = Local::start(self.plan.clone(), 0.0, &theta, &u).ok()?;
+        let (x0, nominals) = (local.state(), local.nominals());
+        let mut points = Vec::new();
+        for shift in [0.01, 0.037] {
+            let x: Vec<f64> = x0.iter().zip(&nominals).map(|(x, n)| x + shift * n).collect();
+            local.linearize(0.0, &x, &theta, &u).ok()?;
+            points.push(local.linear.clone());
+        }
+        let mut known = vec![false; n];
+        for s in 0..problem.bound.signals.len() {
+            let lone = points.iter().map(|p| lone(p.c.row(s).iter(), p.d.row(s).iter())).collect::<Option<Vec<_>>>();
+            if let Some([(i, a), (j, b)]) = lone.as_deref()
+                && i == j
+                && a == b
+                && !known[*i]
+            {
+                known[*i] = true;
+                self.origins[*i] = Origin::Signal(s, *a);
+                self.order.push(*i);
+            }
+        }
+        let mut defines = vec![false; n];
+        let mut at = 0;
+        while at < self.order.len() {
+            let row = self.order[at];
+            let lone =
+                points.iter().map(|p| lone(p.a.row(row).iter(), p.b.row(row).iter())).collect::<Option<Vec<_>>>();
+            if let Some([(i, a), (j, b)]) = lone.as_deref()
+                && i == j
+                && *a == 1.0
+                && *b == 1.0
+            {
+                defines[row] = true;
+                if !known[*i] {
+                    known[*i] = true;
+                    self.origins[*i] = Origin::Rate(row);
+                    self.order.push(*i);
+                }
+            }
+            at += 1;
+        }
+        self.driven = (0..n).filter(|&i| !defines[i]).collect();
+        known.iter().all(|k| *k).then_some(())
+    }
+
+    /// How the inputs act on the driven rates.
+    fn force_matrix(&self, b: &DMatrix<f64>, parameters: usize) -> DMatrix<f64> {
+        DMatrix::from_fn(self.driven.len(), self.inputs.len(), |i, k| b[(self.driven[i], parameters + k)])
+    }
+}
+
+const FORCE: Dimension = Dimension::new([1, 1, -2, 0, 0, 0, 0]);
+const TORQUE: Dimension = Dimension::new([1, 2, -2, 0, 0, 0, 0]);
+
+/// Per input of the model, in declaration order, its entry in the study; `None` where one is not driven.
+fn plan_inputs(problem: &Problem<'_>) -> Option<Vec<usize>> {
+    let all = (0..).map(VarId).zip(&problem.model.flat.variables).filter(|(_, v)| v.input);
+    all.map(|(v, _)| problem.bound.inputs.iter().position(|i| i.variable == v)).collect()
+}
+
+/// The one entry that is not zero, where the rest and `others` are.
+fn lone<'v>(row: impl Iterator<Item = &'v f64>, mut others: impl Iterator<Item = &'v f64>) -> Option<(usize, f64)> {
+    let mut entries = row.enumerate().filter(|(_, v)| **v != 0.0);
+    let (i, v) = entries.next()?;
+    (entries.next().is_none() && others.all(|v| *v == 0.0)).then_some((i, *v))
+}
+
+/// A recording's motion, as the equations want it.
+struct Motion {
+    times: Vec<f64>,
+    /// One column a state.
+    states: Vec<Vec<f64>>,
+    /// One column a driven state: its rate.
+    rates: Vec<Vec<f64>>,
+    /// One column an input.
+    forces: Vec<Vec<f64>>,
+    /// For the parallel filter.
+    low_pass: LowPass,
+    stride: usize,
+    /// Samples to leave out at both ends.
+    margin: usize,
+}
+
+/// The corner of the filter for the signals, as a part of the sampling rate.
+const SIGNAL_CORNER: f64 = 0.1;
+/// The parallel filter passes the band that holds this part of the force's power.
+const POWER: f64 = 0.99;
+
+/// Residual and derivatives of the inverse model along recordings.
+pub struct InverseModel<'a> {
+    problem: &'a Problem<'a>,
+    inverse: &'a Inverse,
+    motions: Vec<Motion>,
+    weights: Weights,
+    /// Thinned measured forces, in the order of the residual.
+    measured: Vec<f64>,
+}
+
+impl<'a> InverseModel<'a> {
+    /// Filters the recordings. `None` where one is too short.
+    pub fn new(problem: &'a Problem<'a>, inverse: &'a Inverse, recordings: &[Recording]) -> Option<Self> {
+        let motions: Vec<Motion> = recordings.iter().map(|r| motion(inverse, r)).collect::<Option<_>>()?;
+        let mut measured = Vec::new();
+        let mut series = Vec::new();
+        for (recording, motion) in motions.iter().enumerate() {
+            for (signal, forces) in motion.forces.iter().enumerate() {
+                let start = measured.len();
+                measured.extend(motion.thin(forces));
+                series.push(Series { recording, signal, rows: start..measured.len() });
+            }
+        }
+        let weights = Weights::new(series, vec![1.0; inverse.inputs.len()]);
+        Some(InverseModel { problem, inverse, motions, weights, measured })
+    }
+
+    /// The sum of squares of the measured forces of one input, to compare errors with.
+    pub fn power(&self, input: usize) -> f64 {
+        let of = self.weights.series.iter().filter(|s| s.signal == input);
+        of.flat_map(|s| &self.measured[s.rows.clone()]).map(|f| f * f).sum()
+    }
+
+    /// The forces along the first recording with the errors of `residual`.
+    pub fn trajectories(&self, residual: &[f64]) -> Vec<Trajectory> {
+        let one = |s: &Series| {
+            let input = &self.problem.bound.inputs[self.inverse.inputs[s.signal]];
+            let sigma = self.weights.sigma[s.signal];
+            Trajectory {
+                name: input.name.clone(),
+                unit: input.unit.clone(),
+                times: self.motions[0].thin_times(),
+                measured: self.measured[s.rows.clone()].to_vec(),
+                errors: residual[s.rows.clone()].iter().map(|r| r * sigma).collect(),
+            }
+        };
+        self.weights.series.iter().filter(|s| s.recording == 0).map(one).collect()
+    }
+
+    /// Thinned force errors of all recordings; `None` where few samples tell a force.
+    fn errors(&self, theta: &[f64]) -> Option<Vec<f64>> {
+        let mut out = Vec::new();
+        for motion in &self.motions {
+            for column in self.raw_errors(motion, theta)? {
+                let found = column.iter().filter(|v| v.is_finite()).count();
+                if found < column.len() / 2 {
+                    return None;
+                }
+                out.extend(motion.thin(&filled(&column)));
+            }
+        }
+        Some(out)
+    }
+
+    /// The force that the motion needs minus the measured one, at every sample; NaN where no force can be told, as where
+    /// friction holds.
+    fn raw_errors(&self, motion: &Motion, theta: &[f64]) -> Option<Vec<Vec<f64>>> {
+        let (n, k) = (motion.states.len(), motion.forces.len());
+        let mut columns = vec![vec![f64::NAN; motion.times.len()]; k];
+        let (mut x, mut u) = (vec![0.0; n], vec![0.0; k]);
+        let mut local = Local::start(self.inverse.plan.clone(), motion.times[0], theta, &u).ok()?;
+        for (t, &time) in motion.times.iter().enumerate() {
+            x.iter_mut().zip(&motion.states).for_each(|(x, s)| *x = s[t]);
+            u.iter_mut().zip(&motion.forces).for_each(|(u, f)| *u = f[t]);
+            if local.linearize(time, &x, theta, &u).is_err() {
+                continue;
+            }
+            let lacks = DVector::from_iterator(
+                k,
+                self.inverse.driven.iter().zip(&motion.rates).map(|(&i, rate)| rate[t] - local.rates[i]),
+            );
+            let acts = self.inverse.force_matrix(&local.linear.b, theta.len());
+            if let Some(error) = acts.lu().solve(&lacks).filter(|e| e.iter().all(|v| v.is_finite())) {
+                columns.iter_mut().zip(error.iter()).for_each(|(c, e)| c[t] = *e);
+            }
+        }
+        Some(columns)
+    }
+}
+
+impl LeastSquares for InverseModel<'_> {
+    fn residual(&mut self, z: &[f64]) -> Option<DVector<f64>> {
+        let mut all = self.errors(&values(self.problem, z))?;
+        self.weights.scale(&mut all);
+        all.extend(self.problem.priors(z));
+        Some(DVector::from_vec(all))
+    }
+
+    /// By differences: the force is affine or nearly so in most parameters.
+    fn jacobian(&mut self, z: &[f64], residual: &DVector<f64>) -> Option<DMatrix<f64>> {
+        let this = &*self;
+        let columns: Option<Vec<Vec<f64>>> = (0..z.len())
+            .into_par_iter()
+            .map(|j| {
+                let mut moved = z.to_vec();
+                moved[j] += STEP;
+                let mut column = this.errors(&values(this.problem, &moved))?;
+                this.weights.scale(&mut column);
+                Some(column)
+            })
+            .collect();
+        let mut jacobian = DMatrix::zeros(residual.len(), z.len());
+        for (j, column) in columns?.iter().enumerate() {
+            for (i, value) in column.iter().enumerate() {
+                jacobian[(i, j)] = (value - residual[i]) / STEP;
+            }
+        }
+        self.problem.prior_rows(&mut jacobian);
+        Some(jacobian)
+    }
+}
+
+impl Residuals for InverseModel<'_> {
+    fn weights(&mut self) -> &mut Weights {
+        &mut self.weights
+    }
+
+    fn unknowns(&self) -> usize {
+        self.problem.free.len()
+    }
+}
+
+/// Step of the differences in z.
+const STEP: f64 = 1e-5;
+
+fn values(problem: &Problem<'_>, z: &[f64]) -> Vec<f64> {
+    problem.parameters(z).into_iter().map(|p| p.1).collect()
+}
+
+impl Motion {
+    /// Filtered, thinned, without the ends.
+    fn thin(&self, values: &[f64]) -> Vec<f64> {
+        let filtered = self.low_pass.apply(values);
+        filtered[self.margin..filtered.len() - self.margin].iter().copied().step_by(self.stride).collect()
+    }
+
+    /// The times of thinned values.
+    fn thin_times(&self) -> Vec<f64> {
+        self.times[self.margin..self.times.len() - self.margin].iter().copied().step_by(self.stride).collect()
+    }
+}
+
+fn motion(inverse: &Inverse, recording: &Recording) -> Option<Motion> {
+    let times = &recording.times;
+    let step = (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64;
+    let forces: Vec<Vec<f64>> = inverse.inputs.iter().map(|&k| recording.inputs[k].clone()).collect();
+    let band = forces.iter().map(|f| band(f)).fold(0.0, f64::max);
+    let low_pass = LowPass::new(band);
+    let margin = (1.0 / band).ceil() as usize;
+    if times.len() < 4 * margin {
+        return None;
+    }
+    let smooth = LowPass::new(SIGNAL_CORNER);
+    let mut states = vec![Vec::new(); inverse.origins.len()];
+    for &i in &inverse.order {
+        states[i] = match inverse.origins[i] {
+            Origin::Signal(s, factor) => {
+                smooth.apply(&filled(&recording.signals[s])).into_iter().map(|v| v / factor).collect()
+            }
+            Origin::Rate(of) => derivative(&states[of], step),
+        };
+    }
+    let rates = inverse.driven.iter().map(|&i| derivative(&states[i], step)).collect();
+    let stride = ((0.4 / band) as usize).max(1);
+    Some(Motion { times: times.clone(), states, rates, forces, low_pass, stride, margin })
+}
+
+/// The frequency, as a part of the sampling rate, below which [`POWER`] of the force's variation lies. Found by
+/// low-passes, coarse to fine.
+fn band(force: &[f64]) -> f64 {
+    let mean = force.iter().sum::<f64>() / force.len() as f64;
+    let centred: Vec<f64> = force.iter().map(|f| f - mean).collect();
+    let power = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>();
+    let whole = power(&centred);
+    let mut corner = 0.4;
+    while corner > 1e-4 {
+        let next = corner / 1.25;
+        if power(&LowPass::new(next).apply(&centred)) < POWER * whole {
+            break;
+        }
+        corner = next;
+    }
+    corner
+}

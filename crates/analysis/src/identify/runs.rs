@@ -1,0 +1,213 @@
+//! Runs of a model along recordings, with the values at the times of the samples.
+
+use crate::study::{Bound, Recording};
+use bramah_circuit::compiled::CompiledModel;
+use bramah_expr::VarId;
+use bramah_model::structure::StateChoice;
+use bramah_solve::{self as solve, Control, End, Input, Settings, Sink, State};
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+/// A recording as a run needs it.
+#[derive(Clone, Debug)]
+pub struct Track {
+    /// Times of the samples in seconds.
+    pub times: Arc<[f64]>,
+    /// The driven inputs.
+    pub inputs: Vec<Input>,
+    /// Rows of the run lie this far apart: the usual distance of samples.
+    pub interval: f64,
+}
+
+impl Track {
+    /// For the inputs of a study.
+    pub fn new(bound: &Bound, recording: &Recording) -> Track {
+        let times: Arc<[f64]> = recording.times.as_slice().into();
+        let inputs = bound.inputs.iter().zip(&recording.inputs).map(|(input, values)| Input {
+            variable: input.variable,
+            times: times.clone(),
+            values: values.as_slice().into(),
+            interpolation: input.interpolation,
+        });
+        let mut steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
+        steps.sort_by(f64::total_cmp);
+        Track { inputs: inputs.collect(), interval: steps[steps.len() / 2], times }
+    }
+
+    /// The same up to a time, with at least one sample.
+    #[must_use]
+    pub fn until(&self, time: f64) -> Track {
+        let count = self.times.partition_point(|&t| t <= time).max(1);
+        Track { times: self.times[..count].into(), ..self.clone() }
+    }
+
+    /// The samples from one up to another, that one included.
+    #[must_use]
+    pub fn between(&self, first: usize, last: usize) -> Track {
+        Track { times: self.times[first..=last].into(), ..self.clone() }
+    }
+}
+
+/// Why a run gave no values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Broken {
+    /// The time reached, in seconds.
+    pub time: f64,
+    /// What the run said.
+    pub message: String,
+}
+
+/// Runs a model.
+#[derive(Clone, Copy, Debug)]
+pub struct Runner<'a> {
+    /// The model.
+    pub model: &'a CompiledModel,
+    /// Relative tolerance.
+    pub tolerance: f64,
+}
+
+impl Runner<'_> {
+    /// The state at the first sample, as the model's initial equations give it.
+    ///
+    /// # Errors
+    /// When they have no solution.
+    pub fn start(&self, track: &Track, parameters: &[(VarId, f64)]) -> Result<State, Broken> {
+        let first = track.times[0];
+        let mut rows = Samples::new(&[], &[]);
+        let settings = self.settings(first, first, 0.0, parameters, &[]);
+        self.simulate(&settings, &track.inputs, None, &mut rows)
+    }
+
+    /// The values of `wanted` at the samples, one column each.
+    ///
+    /// # Errors
+    /// When the run does not reach the last sample.
+    pub fn run(
+        &self,
+        track: &Track,
+        parameters: &[(VarId, f64)],
+        from: Option<&State>,
+        wanted: &[VarId],
+    ) -> Result<Vec<Vec<f64>>, Broken> {
+        self.run_on(track, parameters, from, wanted).map(|(columns, _)| columns)
+    }
+
+    /// The same with the state at the last sample.
+    ///
+    /// # Errors
+    /// As [`Runner::run`].
+    pub fn run_on(
+        &self,
+        track: &Track,
+        parameters: &[(VarId, f64)],
+        from: Option<&State>,
+        wanted: &[VarId],
+    ) -> Result<(Vec<Vec<f64>>, State), Broken> {
+        let mut rows = Samples::new(&track.times, wanted);
+        let (first, last) = (track.times[0], track.times[track.times.len() - 1]);
+        let settings = self.settings(first, last, track.interval, parameters, wanted);
+        let state = self.simulate(&settings, &track.inputs, from, &mut rows)?;
+        Ok((rows.finish(), state))
+    }
+
+    fn settings(
+        &self,
+        start: f64,
+        stop: f64,
+        interval: f64,
+        parameters: &[(VarId, f64)],
+        wanted: &[VarId],
+    ) -> Settings {
+        Settings {
+            start_time: start,
+            stop_time: stop,
+            interval,
+            tolerance: self.tolerance,
+            parameters: parameters.to_vec(),
+            wanted: wanted.to_vec(),
+            ..Settings::default()
+        }
+    }
+
+    fn simulate(
+        &self,
+        settings: &Settings,
+        inputs: &[Input],
+        from: Option<&State>,
+        rows: &mut Samples<'_>,
+    ) -> Result<State, Broken> {
+        let mut reselect = |choice: &StateChoice| self.model.with_states(choice);
+        let mut control = Control { reselect: Some(&mut reselect), ..Control::default() };
+        let run = solve::simulate(&self.model.system, settings, inputs, from, rows, &mut control);
+        if run.end == End::Reached {
+            return Ok(run.state);
+        }
+        let said = run.diagnostics.iter().find(|d| d.is_error()).map(|d| d.message.clone());
+        Err(Broken { time: run.time, message: said.unwrap_or_else(|| format!("it ended as {}", run.end.word())) })
+    }
+}
+
+/// Takes the rows of a run and keeps the values at given times: at an event those after it, between rows straight lines.
+pub(super) struct Samples<'a> {
+    times: &'a [f64],
+    next: usize,
+    before: Option<(f64, Vec<f64>)>,
+    columns: Vec<Vec<f64>>,
+}
+
+impl<'a> Samples<'a> {
+    /// For the columns of `wanted`.
+    pub(super) fn new(times: &'a [f64], wanted: &[VarId]) -> Self {
+        Samples { times, next: 0, before: None, columns: vec![Vec::with_capacity(times.len()); wanted.len()] }
+    }
+
+    fn slack(&self, k: usize) -> f64 {
+        let near = if k + 1 < self.times.len() { self.times[k + 1] - self.times[k] } else { 0.0 };
+        1e-6 * near.max(1e-9 * self.times[k].abs())
+    }
+
+    /// Fills the samples that lie clearly before `time`.
+    fn pass(&mut self, time: f64, values: &[f64]) {
+        while self.next < self.times.len() && self.times[self.next] + self.slack(self.next) < time {
+            let at = self.times[self.next];
+            let (t0, v0) = self.before.as_ref().map_or((time, values), |(t, v)| (*t, v.as_slice()));
+            let part = if time > t0 { ((at - t0) / (time - t0)).clamp(0.0, 1.0) } else { 0.0 };
+            let part = if part < 1e-5 { 0.0 } else { part };
+            for (column, (a, b)) in self.columns.iter_mut().zip(v0.iter().zip(values)) {
+                column.push(a + part * (b - a));
+            }
+            self.next += 1;
+        }
+    }
+
+    /// One column a variable, as long as the times.
+    pub(super) fn finish(mut self) -> Vec<Vec<f64>> {
+        if let Some((_, values)) = self.before.take() {
+            self.pass(f64::INFINITY, &values);
+        }
+        self.columns
+    }
+}
+
+impl Sink for Samples<'_> {
+    fn row(&mut self, time: f64, values: &[f64]) -> ControlFlow<()> {
+        self.pass(time, values);
+        self.before = Some((time, values.to_vec()));
+        ControlFlow::Continue(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_at_samples() {
+        let times = [0.0, 1.0, 2.5, 3.0];
+        let mut samples = Samples::new(&times, &[VarId(0)]);
+        for (t, v) in [(0.0, 1.0), (1.0, 2.0), (1.0, 5.0), (2.0, 6.0), (3.0, 8.0)] {
+            let _ = samples.row(t, &[v]);
+        }
+        assert_eq!(samples.finish(), [[1.0, 5.0, 7.0, 8.0]]);
+    }
+}

@@ -1,0 +1,288 @@
+//! The names of a study tied to the variables of a model.
+
+use super::table::at;
+use super::{Amount, InputColumn, ParameterEntry, RecordingFile, SignalColumn, Study};
+use bramah_expr::VarId;
+use bramah_expr::units::Unit;
+use bramah_model::flat::{FlatModel, Type, Variability, Variable};
+use bramah_solve::Interpolation;
+use bramah_syntax::diag::{Checked, Code, Diagnostic, Span, nearest};
+use std::path::PathBuf;
+
+/// A study whose names are variables of a model.
+#[derive(Clone, Debug)]
+pub struct Bound {
+    /// The driven inputs.
+    pub inputs: Vec<BoundInput>,
+    /// The measured signals.
+    pub signals: Vec<BoundSignal>,
+    /// The parameters the study speaks of.
+    pub parameters: Vec<BoundParameter>,
+    /// The folder of the study, for recordings where no other is given.
+    pub(super) folder: PathBuf,
+    pub(super) recordings: Vec<RecordingFile>,
+}
+
+/// An input and its column.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BoundInput {
+    /// The model's input.
+    pub variable: VarId,
+    /// Its name.
+    pub name: String,
+    /// Its unit; empty where it has none.
+    pub unit: String,
+    /// It is a difference of temperatures.
+    pub difference: bool,
+    /// Between samples.
+    pub interpolation: Interpolation,
+    /// The entry of the study.
+    pub entry: InputColumn,
+}
+
+/// A signal and its column.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BoundSignal {
+    /// The name that reports use.
+    pub name: String,
+    /// The model's variable.
+    pub variable: VarId,
+    /// The variable's unit; empty where it has none.
+    pub unit: String,
+    /// It is a difference of temperatures.
+    pub difference: bool,
+    /// The sensor's range in the variable's unit, where the study says it.
+    pub full_scale: Option<f64>,
+    /// One standard deviation of the sensor: of the full scale, or in the variable's unit.
+    pub accuracy: Option<Amount>,
+    /// The entry of the study.
+    pub entry: SignalColumn,
+}
+
+impl BoundSignal {
+    /// One standard deviation in the variable's unit, where the study says it.
+    pub fn deviation(&self, full_scale: f64) -> Option<f64> {
+        match self.accuracy {
+            Some(Amount::Part(part)) => Some(part * full_scale),
+            Some(Amount::Value(value, _)) => Some(value),
+            None => None,
+        }
+    }
+}
+
+/// What a data sheet says about a parameter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Knowledge {
+    /// It is never moved.
+    Exact,
+    /// One standard deviation as part of the value; log-normal where the value is positive.
+    Relative(f64),
+    /// One standard deviation in the parameter's unit.
+    Absolute(f64),
+    /// Nothing but its bounds.
+    Free,
+}
+
+/// A parameter of the study.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BoundParameter {
+    /// The model's parameter.
+    pub variable: VarId,
+    /// Its name.
+    pub name: String,
+    /// Its unit; empty where it has none.
+    pub unit: String,
+    /// How well it is known.
+    pub knowledge: Knowledge,
+    /// Lower bound in its unit.
+    pub min: Option<f64>,
+    /// Upper bound in its unit.
+    pub max: Option<f64>,
+    /// Where the study speaks of it.
+    pub span: Span,
+}
+
+impl Study {
+    /// Ties the study to a model.
+    ///
+    /// # Errors
+    /// [`Code::BadStudy`]: names that the model does not have, units that cannot be converted, parameters that cannot
+    /// be moved, bounds in the wrong order, inputs without a column or value.
+    pub fn bind(&self, model: &FlatModel) -> Checked<Bound> {
+        let mut binder = Binder { model, diagnostics: Vec::new() };
+        let bound = Bound {
+            inputs: self.inputs.iter().filter_map(|i| binder.input(i)).collect(),
+            signals: self.signals.iter().filter_map(|s| binder.signal(s)).collect(),
+            parameters: self.parameters.iter().filter_map(|p| binder.parameter(p)).collect(),
+            folder: self.folder.clone(),
+            recordings: self.recordings.clone(),
+        };
+        binder.check_inputs(self, &bound);
+        if binder.diagnostics.is_empty() {
+            Checked::new(bound, Vec::new())
+        } else {
+            Checked::failed(binder.diagnostics)
+        }
+    }
+}
+
+struct Binder<'a> {
+    model: &'a FlatModel,
+    diagnostics: Vec<Diagnostic>,
+}
+
+impl<'a> Binder<'a> {
+    fn report(&mut self, span: Span, message: impl Into<String>, label: impl Into<String>) {
+        self.diagnostics.push(at(span, message, label));
+    }
+
+    /// The variable of a name that `fits`, or a message with the nearest one that does.
+    fn find(
+        &mut self,
+        span: Span,
+        what: &str,
+        name: &str,
+        fits: fn(&Variable) -> bool,
+    ) -> Option<(VarId, &'a Variable)> {
+        let variables = &self.model.variables;
+        if let Some(i) = variables.iter().position(|v| v.name == name) {
+            let id = VarId(u32::try_from(i).expect("fewer than 2^32 variables"));
+            return Some((id, &variables[i]));
+        }
+        let mut d = at(span, format!("the model has no {what} `{name}`"), "not in the model");
+        let known: Vec<&str> = variables.iter().filter(|v| fits(v) && !v.hidden).map(|v| v.name.as_str()).collect();
+        if let Some(near) = nearest(name, known.iter().copied()) {
+            d = d.help(format!("did you mean `{near}`?"));
+        } else if known.len() <= 20 && !known.is_empty() {
+            d = d.help(format!("known: {}", known.join(", ")));
+        }
+        self.diagnostics.push(d);
+        None
+    }
+
+    fn input(&mut self, entry: &InputColumn) -> Option<BoundInput> {
+        let (variable, v) = self.find(entry.span, "input", &entry.name, |v| v.input)?;
+        if !v.input {
+            self.report(entry.span, format!("`{}` is not an input of the model", entry.name), "computed by the model");
+            return None;
+        }
+        let unit = v.unit.as_deref().unwrap_or("").to_owned();
+        self.check_unit(entry.span, entry.unit.as_deref(), &unit, &entry.name)?;
+        let held = entry.hold || v.ty != Type::Real;
+        let interpolation = if held { Interpolation::Held } else { Interpolation::Linear };
+        let (name, difference) = (entry.name.clone(), v.difference);
+        Some(BoundInput { variable, name, unit, difference, interpolation, entry: entry.clone() })
+    }
+
+    fn signal(&mut self, entry: &SignalColumn) -> Option<BoundSignal> {
+        let varies = |v: &Variable| v.variability > Variability::Parameter;
+        let (variable, v) = self.find(entry.span, "variable", &entry.variable, varies)?;
+        if !varies(v) {
+            self.report(entry.span, format!("`{}` does not change during a run", entry.variable), "a parameter");
+            return None;
+        }
+        let unit = v.unit.as_deref().unwrap_or("").to_owned();
+        self.check_unit(entry.span, entry.unit.as_deref(), &unit, &entry.variable)?;
+        let full_scale = self.amount(entry.span, entry.full_scale.as_ref(), &unit, entry.unit.as_deref());
+        let accuracy = match &entry.accuracy {
+            Some(Amount::Part(part)) => Some(Amount::Part(*part)),
+            other => {
+                self.amount(entry.span, other.as_ref(), &unit, entry.unit.as_deref()).map(|v| Amount::Value(v, None))
+            }
+        };
+        let (name, difference) = (entry.name.clone(), v.difference);
+        Some(BoundSignal { name, variable, unit, difference, full_scale, accuracy, entry: entry.clone() })
+    }
+
+    /// A difference in the variable's unit; a plain number is one in the column's unit.
+    fn amount(&mut self, span: Span, amount: Option<&Amount>, unit: &str, column: Option<&str>) -> Option<f64> {
+        let amount = match amount? {
+            Amount::Value(value, None) => Amount::Value(*value, column.map(str::to_owned)),
+            other => other.clone(),
+        };
+        match amount.difference_in_unit(unit, 0.0) {
+            Ok(value) => Some(value),
+            Err(why) => {
+                self.report(span, why, "in this entry");
+                None
+            }
+        }
+    }
+
+    fn check_unit(&mut self, span: Span, column: Option<&str>, unit: &str, name: &str) -> Option<()> {
+        match conversion(column.unwrap_or(""), unit) {
+            Ok(_) => Some(()),
+            Err(()) => {
+                let column = column.unwrap_or("");
+                let text = format!("the column is in `{column}`, `{name}` in `{unit}`");
+                let help = "give a `unit` of the same kind, or tie the column to another variable";
+                self.diagnostics.push(at(span, text, "cannot be converted").help(help));
+                None
+            }
+        }
+    }
+
+    fn parameter(&mut self, entry: &ParameterEntry) -> Option<BoundParameter> {
+        let parameter = |v: &Variable| v.variability == Variability::Parameter;
+        let (variable, v) = self.find(entry.span, "parameter", &entry.name, parameter)?;
+        match v.variability {
+            Variability::Parameter if v.ty == Type::Real => {}
+            Variability::Parameter => {
+                self.report(entry.span, format!("`{}` is not a real number", entry.name), "cannot be varied smoothly");
+                return None;
+            }
+            Variability::Constant if entry.exact => return None,
+            Variability::Constant => {
+                let text = format!("the structure of the model depends on `{}`", entry.name);
+                let d = at(entry.span, text, "it cannot be moved");
+                self.diagnostics.push(d.help("call it `\"exact\"`, or leave it out"));
+                return None;
+            }
+            _ => {
+                self.report(entry.span, format!("`{}` is not a parameter", entry.name), "it changes during a run");
+                return None;
+            }
+        }
+        let unit = v.unit.as_deref().unwrap_or("").to_owned();
+        let bound = |binder: &mut Self, b| binder.bound(entry, b, &unit, v.difference);
+        let (min, max) = (bound(self, &entry.min), bound(self, &entry.max));
+        if min.zip(max).is_some_and(|(a, b)| a >= b) {
+            self.report(entry.span, format!("`min` of `{}` does not lie below its `max`", entry.name), "here");
+        }
+        let knowledge = match &entry.sigma {
+            _ if entry.exact => Knowledge::Exact,
+            Some(Amount::Part(part)) => Knowledge::Relative(*part),
+            None => Knowledge::Free,
+            absolute => Knowledge::Absolute(self.amount(entry.span, absolute.as_ref(), &unit, None)?),
+        };
+        Some(BoundParameter { variable, name: entry.name.clone(), unit, knowledge, min, max, span: entry.span })
+    }
+
+    fn bound(&mut self, entry: &ParameterEntry, bound: &Option<Amount>, unit: &str, difference: bool) -> Option<f64> {
+        let bound = bound.as_ref()?;
+        let value = if difference { bound.difference_in_unit(unit, 0.0) } else { bound.in_unit(unit, 0.0) };
+        value.map_err(|why| self.report(entry.span, why, "a bound of this parameter")).ok()
+    }
+
+    /// Every input of the model has a column or a value of its own, and only one.
+    fn check_inputs(&mut self, study: &Study, bound: &Bound) {
+        for (i, v) in (0u32..).zip(&self.model.variables) {
+            let driven = bound.inputs.iter().any(|b| b.variable == VarId(i));
+            let named = study.inputs.iter().any(|e| e.name == v.name);
+            if v.input && !driven && !named && v.binding.is_none() && v.start.is_none() {
+                let d = Diagnostic::new(Code::BadStudy, format!("the input `{}` has no column", v.name))
+                    .help(format!("add to `[inputs]`: {} = {{ column = \"...\" }}", v.name));
+                self.diagnostics.push(d);
+            }
+        }
+    }
+}
+
+/// How values in a unit become values in another; `None` where they stay as they are.
+pub(super) fn conversion(from: &str, to: &str) -> Result<Option<(Unit, Unit)>, ()> {
+    if from.is_empty() || to.is_empty() || from == to {
+        return Ok(None);
+    }
+    let (from, to) = (Unit::parse(from).map_err(|_| ())?, Unit::parse(to).map_err(|_| ())?);
+    if from.convert(0.0, &to).is_some() { Ok(Some((from, to))) } else { Err(()) }
+}

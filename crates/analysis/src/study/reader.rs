@@ -1,0 +1,149 @@
+//! TOML values read one by one, with every mistake shown at its place.
+
+use std::ops::Range;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use bramah_syntax::diag::{Code, Diagnostic, FileId, Span, nearest};
+
+/// A value that knows its place.
+pub(super) type Value<'a> = Spanned<DeValue<'a>>;
+
+/// Reads values and collects what is wrong with them.
+pub(super) struct Reader {
+    file: FileId,
+    /// The mistakes found so far.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+impl Reader {
+    /// For the text `file`.
+    pub fn new(file: FileId) -> Self {
+        Reader { file, diagnostics: Vec::new() }
+    }
+
+    /// A stretch of the text.
+    pub fn span(&self, place: &Range<usize>) -> Span {
+        let byte = |at: usize| u32::try_from(at).unwrap_or(u32::MAX);
+        Span { file: self.file, start: byte(place.start), end: byte(place.end) }
+    }
+
+    /// Notes a mistake.
+    pub fn report(&mut self, place: &Range<usize>, message: impl Into<String>, label: impl Into<String>) {
+        self.add(Diagnostic::new(Code::BadStudy, message).at(self.span(place), label));
+    }
+
+    /// Notes a mistake that is already put into words.
+    pub fn add(&mut self, diagnostic: Diagnostic) {
+        self.diagnostics.push(diagnostic);
+    }
+
+    /// A value of another type than expected.
+    pub fn wrong_kind(&mut self, key: &str, value: &Value<'_>, expected: &str) {
+        let found = value.get_ref().type_str();
+        self.report(&value.span(), format!("`{key}` is {expected}"), format!("this is a value of type {found}"));
+    }
+
+    /// A key that means nothing here.
+    pub fn unknown(&mut self, key: &str, place: &Range<usize>, known: &[&str]) {
+        let diagnostic =
+            Diagnostic::new(Code::BadStudy, format!("there is no key `{key}`")).at(self.span(place), "unknown key");
+        let with_bars = key.replace('-', "_");
+        let same = known.iter().copied().find(|k| *k == with_bars);
+        self.add(match same.or_else(|| nearest(key, known.iter().copied())) {
+            Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
+            None => {
+                let list: Vec<String> = known.iter().map(|k| format!("`{k}`")).collect();
+                diagnostic.help(format!("known keys: {}", list.join(", ")))
+            }
+        });
+    }
+
+    /// A text in quotes.
+    pub fn text(&mut self, key: &str, value: &Value<'_>) -> Option<String> {
+        let text = value.get_ref().as_str().map(str::to_owned);
+        if text.is_none() {
+            self.wrong_kind(key, value, "a text in quotes");
+        }
+        text
+    }
+
+    /// `true` or `false`.
+    pub fn truth(&mut self, key: &str, value: &Value<'_>) -> Option<bool> {
+        let truth = value.get_ref().as_bool();
+        if truth.is_none() {
+            self.wrong_kind(key, value, "true or false");
+        }
+        truth
+    }
+
+    /// A finite number.
+    pub fn number(&mut self, key: &str, value: &Value<'_>) -> Option<f64> {
+        let number = number(value.get_ref()).filter(|x| x.is_finite());
+        if number.is_none() {
+            self.wrong_kind(key, value, "a number");
+        }
+        number
+    }
+
+    /// A list of texts.
+    pub fn list(&mut self, key: &str, value: &Value<'_>) -> Vec<String> {
+        let DeValue::Array(items) = value.get_ref() else {
+            self.wrong_kind(key, value, "a list of texts");
+            return Vec::new();
+        };
+        items.iter().filter_map(|item| self.text(key, item)).collect()
+    }
+
+    /// A table.
+    pub fn table<'v, 'a>(&mut self, key: &str, value: &'v Value<'a>) -> Option<&'v DeTable<'a>> {
+        let table = value.get_ref().as_table();
+        if table.is_none() {
+            self.wrong_kind(key, value, "a table");
+        }
+        table
+    }
+
+    /// The entries of a table whose keys are dotted names: `a.b = 1` arrives as a table in a table. A table is an entry
+    /// of its own when it holds anything but tables.
+    pub fn named<'v, 'a>(&mut self, key: &str, value: &'v Value<'a>) -> Vec<Named<'v, 'a>> {
+        let mut found = Vec::new();
+        if let Some(table) = self.table(key, value) {
+            self.collect("", table, &mut found);
+        }
+        found
+    }
+
+    fn collect<'v, 'a>(&self, prefix: &str, table: &'v DeTable<'a>, found: &mut Vec<Named<'v, 'a>>) {
+        for (key, value) in table {
+            let name =
+                if prefix.is_empty() { key.get_ref().to_string() } else { format!("{prefix}.{}", key.get_ref()) };
+            match value.get_ref().as_table() {
+                Some(inner) if !inner.is_empty() && inner.iter().all(|(_, v)| v.get_ref().is_table()) => {
+                    self.collect(&name, inner, found);
+                }
+                _ => found.push(Named { name, span: self.span(&key.span()), value }),
+            }
+        }
+    }
+}
+
+/// An entry of a table with its dotted name.
+pub(super) struct Named<'v, 'a> {
+    /// The dotted name.
+    pub name: String,
+    /// Where the name stands.
+    pub span: Span,
+    /// What it is set to.
+    pub value: &'v Value<'a>,
+}
+
+/// The number that a TOML value is.
+pub(super) fn number(value: &DeValue<'_>) -> Option<f64> {
+    match value {
+        DeValue::Integer(i) => i64::from_str_radix(i.as_str(), i.radix()).ok().map(|i| i as f64),
+        DeValue::Float(x) => x.as_str().parse().ok(),
+        _ => None,
+    }
+}

@@ -1,0 +1,326 @@
+//! The text of a study read.
+
+use std::path::Path;
+
+use toml::de::{DeTable, DeValue};
+
+use super::reader::{Named, Reader, Value, number};
+use super::{Amount, EffectChoice, InputColumn, ParameterEntry, RecordingFile, Role, SignalColumn, Study};
+use bramah_syntax::diag::{Checked, Code, Diagnostic, FileId, Sources, Span};
+
+const KEYS: &[&str] = &["version", "model", "class", "inputs", "signals", "recordings", "parameters", "effects"];
+const INPUT_KEYS: &[&str] = &["column", "unit", "hold", "kind"];
+const SIGNAL_KEYS: &[&str] = &["variable", "column", "unit", "sign", "full_scale", "accuracy"];
+const RECORDING_KEYS: &[&str] = &["file", "role", "time", "window", "optional", "pieces"];
+const PARAMETER_KEYS: &[&str] = &["sigma", "min", "max"];
+const EFFECT_KEYS: &[&str] = &["include", "exclude", "places", "folder"];
+
+/// Reads a study that was added to `sources`. Paths in it are as written.
+///
+/// # Errors
+/// [`Code::BadStudy`]: text that is not TOML, unknown keys, values of the wrong kind, nothing measured.
+pub fn parse(sources: &Sources, file: FileId) -> Checked<Study> {
+    let source = sources.get(file);
+    let (document, errors) = DeTable::parse_recoverable(&source.text);
+    let mut table = Table { reader: Reader::new(file), study: empty(Path::new(&source.path)), versioned: false };
+    for error in errors {
+        let message = format!("the text is not TOML: {}", error.message().lines().next().unwrap_or("unreadable"));
+        table.reader.report(&error.span().unwrap_or(0..0), message, "here");
+    }
+    if table.reader.diagnostics.is_empty() {
+        for (key, value) in document.get_ref() {
+            table.entry(key.get_ref(), &key.span(), value);
+        }
+    }
+    if table.reader.diagnostics.is_empty() {
+        table.check_whole();
+    }
+    let Table { reader, study, .. } = table;
+    if reader.diagnostics.is_empty() { Checked::new(study, Vec::new()) } else { Checked::failed(reader.diagnostics) }
+}
+
+fn empty(path: &Path) -> Study {
+    Study {
+        folder: path.parent().unwrap_or(Path::new("")).to_owned(),
+        model: None,
+        class: None,
+        inputs: Vec::new(),
+        signals: Vec::new(),
+        recordings: Vec::new(),
+        parameters: Vec::new(),
+        effects: EffectChoice::default(),
+    }
+}
+
+struct Table {
+    reader: Reader,
+    study: Study,
+    versioned: bool,
+}
+
+impl Table {
+    fn entry(&mut self, key: &str, place: &std::ops::Range<usize>, value: &Value<'_>) {
+        match key {
+            "version" => self.version(value),
+            "model" => self.study.model = self.reader.text(key, value),
+            "class" => self.study.class = self.reader.text(key, value),
+            "inputs" => self.inputs(value),
+            "signals" => self.signals(value),
+            "recordings" => self.recordings(value),
+            "parameters" => self.parameters(value),
+            "effects" => self.effects(value),
+            _ => self.reader.unknown(key, place, KEYS),
+        }
+    }
+
+    fn version(&mut self, value: &Value<'_>) {
+        self.versioned = true;
+        if number(value.get_ref()) != Some(1.0) {
+            self.reader.report(&value.span(), "the version of a study is 1", "this one is not known");
+        }
+    }
+
+    /// What the file as a whole must say.
+    fn check_whole(&mut self) {
+        let mut lacks = |what: &str, help: &str| {
+            let place = self.reader.span(&(0..0));
+            self.reader.add(Diagnostic::new(Code::BadStudy, what).at(place, "in this study").help(help));
+        };
+        if !self.versioned {
+            lacks("the study does not say its version", "begin with `version = 1`");
+        }
+        if self.study.model.is_none() && self.study.class.is_none() {
+            lacks("the study names no model", "add `model = \"Axis.mo\"`, or the `class` of a model that ships");
+        }
+        if self.study.signals.is_empty() {
+            lacks("the study has no signals", "add what was measured below `[signals]`");
+        }
+        if self.study.recordings.is_empty() {
+            lacks("the study has no recordings", "add the files below `[[recordings]]`");
+        }
+    }
+
+    fn inputs(&mut self, value: &Value<'_>) {
+        for Named { name, span, value } in self.reader.named("inputs", value) {
+            let mut input = InputColumn { column: name.clone(), name, unit: None, hold: true, measured: false, span };
+            self.fields(&input.name.clone(), value, INPUT_KEYS, |reader, key, value| match key {
+                "column" => input.column = reader.text(key, value).unwrap_or_default(),
+                "unit" => input.unit = unit(reader, key, value),
+                "kind" => input.measured = is_measured(reader, key, value),
+                _ => input.hold = reader.truth(key, value).unwrap_or(true),
+            });
+            self.study.inputs.push(input);
+        }
+    }
+
+    fn signals(&mut self, value: &Value<'_>) {
+        for Named { name, span, value } in self.reader.named("signals", value) {
+            let mut signal = SignalColumn {
+                variable: name.clone(),
+                column: name.clone(),
+                name,
+                unit: None,
+                sign: 1.0,
+                full_scale: None,
+                accuracy: None,
+                span,
+            };
+            self.fields(&signal.name.clone(), value, SIGNAL_KEYS, |reader, key, value| match key {
+                "variable" => signal.variable = reader.text(key, value).unwrap_or_default(),
+                "column" => signal.column = reader.text(key, value).unwrap_or_default(),
+                "unit" => signal.unit = unit(reader, key, value),
+                "sign" => signal.sign = sign(reader, key, value),
+                "full_scale" => signal.full_scale = positive(reader, key, value),
+                _ => signal.accuracy = positive(reader, key, value),
+            });
+            self.study.signals.push(signal);
+        }
+    }
+
+    fn recordings(&mut self, value: &Value<'_>) {
+        let DeValue::Array(items) = value.get_ref() else {
+            self.reader.wrong_kind("recordings", value, "a list of tables: `[[recordings]]`");
+            return;
+        };
+        for item in items {
+            self.recording(item);
+        }
+    }
+
+    fn recording(&mut self, item: &Value<'_>) {
+        let mut recording = RecordingFile {
+            file: String::new(),
+            role: Role::Train,
+            time: None,
+            window: None,
+            optional: false,
+            pieces: 1,
+            span: self.reader.span(&item.span()),
+        };
+        self.fields("recordings", item, RECORDING_KEYS, |reader, key, value| match key {
+            "file" => {
+                recording.file = reader.text(key, value).unwrap_or_default();
+                recording.span = reader.span(&value.span());
+            }
+            "role" => recording.role = role(reader, key, value),
+            "time" => recording.time = reader.text(key, value),
+            "window" => recording.window = window(reader, key, value),
+            "pieces" => recording.pieces = pieces(reader, key, value),
+            _ => recording.optional = reader.truth(key, value).unwrap_or(false),
+        });
+        if recording.file.is_empty() && item.get_ref().is_table() {
+            self.reader.report(&item.span(), "a recording without `file`", "this one");
+        }
+        if recording.pieces > 1 && recording.role == Role::Held {
+            self.reader.report(&item.span(), "a held recording is judged by one run: it has no `pieces`", "this one");
+        }
+        self.study.recordings.push(recording);
+    }
+
+    fn parameters(&mut self, value: &Value<'_>) {
+        for Named { name, span, value } in self.reader.named("parameters", value) {
+            let mut entry = ParameterEntry { name, exact: false, sigma: None, min: None, max: None, span };
+            if value.get_ref().as_str() == Some("exact") {
+                entry.exact = true;
+            } else if value.get_ref().is_table() {
+                self.fields("parameters", value, PARAMETER_KEYS, |reader, key, value| match key {
+                    "sigma" => entry.sigma = positive(reader, key, value),
+                    "min" => entry.min = bound(reader, key, value),
+                    _ => entry.max = bound(reader, key, value),
+                });
+            } else {
+                let message = format!("`{}` is `\"exact\"` or a table", entry.name);
+                let found = value.get_ref().type_str();
+                let d = Diagnostic::new(Code::BadStudy, message)
+                    .at(self.reader.span(&value.span()), format!("this is a value of type {found}"))
+                    .help("write `{ sigma = \"3 %\" }`, `{ min = 0.0, max = 1.0 }` or `\"exact\"`");
+                self.reader.add(d);
+            }
+            self.study.parameters.push(entry);
+        }
+    }
+
+    fn effects(&mut self, value: &Value<'_>) {
+        let mut effects = EffectChoice::default();
+        self.fields("effects", value, EFFECT_KEYS, |reader, key, value| match key {
+            "include" => effects.include = reader.list(key, value),
+            "exclude" => effects.exclude = reader.list(key, value),
+            "places" => effects.places = reader.list(key, value),
+            _ => effects.folder = reader.text(key, value),
+        });
+        self.study.effects = effects;
+    }
+
+    /// Hands each entry of a table with a known key to `take`.
+    fn fields(
+        &mut self,
+        name: &str,
+        value: &Value<'_>,
+        known: &[&str],
+        mut take: impl FnMut(&mut Reader, &str, &Value<'_>),
+    ) {
+        let Some(table) = self.reader.table(name, value) else { return };
+        for (key, value) in table {
+            if known.contains(&key.get_ref().as_ref()) {
+                take(&mut self.reader, key.get_ref(), value);
+            } else {
+                self.reader.unknown(key.get_ref(), &key.span(), known);
+            }
+        }
+    }
+}
+
+fn unit(reader: &mut Reader, key: &str, value: &Value<'_>) -> Option<String> {
+    let text = reader.text(key, value)?;
+    match bramah_expr::units::Unit::parse(&text) {
+        Ok(_) => Some(text),
+        Err(why) => {
+            reader.report(&value.span(), why.to_string(), "this unit");
+            None
+        }
+    }
+}
+
+fn sign(reader: &mut Reader, key: &str, value: &Value<'_>) -> f64 {
+    match number(value.get_ref()) {
+        Some(x) if x.abs() == 1.0 => x,
+        _ => {
+            reader.wrong_kind(key, value, "1 or -1");
+            1.0
+        }
+    }
+}
+
+fn is_measured(reader: &mut Reader, key: &str, value: &Value<'_>) -> bool {
+    match value.get_ref().as_str() {
+        Some("command") => false,
+        Some("measured") => true,
+        _ => {
+            reader.report(&value.span(), format!("`{key}` is `\"command\"` or `\"measured\"`"), "this is neither");
+            false
+        }
+    }
+}
+
+fn role(reader: &mut Reader, key: &str, value: &Value<'_>) -> Role {
+    match value.get_ref().as_str() {
+        Some("train") => Role::Train,
+        Some("held") => Role::Held,
+        _ => {
+            reader.report(&value.span(), format!("`{key}` is `\"train\"` or `\"held\"`"), "this is neither");
+            Role::Train
+        }
+    }
+}
+
+fn window(reader: &mut Reader, key: &str, value: &Value<'_>) -> Option<(f64, f64)> {
+    let ends: Option<Vec<f64>> =
+        value.get_ref().as_array().and_then(|a| a.iter().map(|v| number(v.get_ref())).collect());
+    match ends.as_deref() {
+        Some(&[from, to]) if from < to => Some((from, to)),
+        _ => {
+            reader.wrong_kind(key, value, "two growing times in seconds: `[0.0, 4.0]`");
+            None
+        }
+    }
+}
+
+fn pieces(reader: &mut Reader, key: &str, value: &Value<'_>) -> usize {
+    match number(value.get_ref()) {
+        Some(x) if (1.0..=1000.0).contains(&x) && x.fract() == 0.0 => x as usize,
+        _ => {
+            reader.wrong_kind(key, value, "a whole number from 1 to 1000");
+            1
+        }
+    }
+}
+
+fn amount(reader: &mut Reader, key: &str, value: &Value<'_>) -> Option<Amount> {
+    if let Some(text) = value.get_ref().as_str() {
+        return Amount::parse(text).map_err(|why| reader.report(&value.span(), why, format!("value of `{key}`"))).ok();
+    }
+    reader.number(key, value).map(|x| Amount::Value(x, None))
+}
+
+fn positive(reader: &mut Reader, key: &str, value: &Value<'_>) -> Option<Amount> {
+    let amount = amount(reader, key, value)?;
+    if amount.number() > 0.0 {
+        return Some(amount);
+    }
+    reader.report(&value.span(), format!("`{key}` must be positive"), "this is not");
+    None
+}
+
+fn bound(reader: &mut Reader, key: &str, value: &Value<'_>) -> Option<Amount> {
+    let amount = amount(reader, key, value)?;
+    if matches!(amount, Amount::Part(_)) {
+        reader.report(&value.span(), format!("`{key}` is a value, not a part"), "a percentage");
+        return None;
+    }
+    Some(amount)
+}
+
+/// A place in the text of a study, for messages of later stages.
+pub(super) fn at(span: Span, message: impl Into<String>, label: impl Into<String>) -> Diagnostic {
+    Diagnostic::new(Code::BadStudy, message).at(span, label)
+}

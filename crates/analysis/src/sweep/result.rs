@@ -1,0 +1,280 @@
+//! Scalar results of a run: `max(cyl.v)`, `settling(p, 0.05)`, `final(x) - initial(x)`.
+
+use bramah_results::Trajectory;
+
+/// What can be asked of a variable's trajectory.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Question {
+    Max,
+    Min,
+    Mean,
+    Rms,
+    Initial,
+    Final,
+    Integral,
+    TimeOfMax,
+    TimeOfMin,
+    /// Time from which on the variable stays near its final value, within a part of its whole change.
+    Settling,
+    /// How far it goes beyond its final value, as a part of its whole change.
+    Overshoot,
+}
+
+const QUESTIONS: &[(&str, Question)] = &[
+    ("max", Question::Max),
+    ("min", Question::Min),
+    ("mean", Question::Mean),
+    ("rms", Question::Rms),
+    ("initial", Question::Initial),
+    ("final", Question::Final),
+    ("integral", Question::Integral),
+    ("energy", Question::Integral),
+    ("time_of_max", Question::TimeOfMax),
+    ("time_of_min", Question::TimeOfMin),
+    ("settling", Question::Settling),
+    ("overshoot", Question::Overshoot),
+];
+
+/// An expression over questions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Expression {
+    root: Term,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Term {
+    Number(f64),
+    Ask(Question, String, f64),
+    Abs(Box<Term>),
+    Root(Box<Term>),
+    Pair(char, Box<Term>, Box<Term>),
+}
+
+impl Expression {
+    /// Reads an expression.
+    ///
+    /// # Errors
+    /// A sentence saying what is expected.
+    pub fn parse(text: &str) -> Result<Expression, String> {
+        let mut parser = Parser { text, rest: text };
+        let root = parser.sum(0)?;
+        if parser.rest.trim().is_empty() { Ok(Expression { root }) } else { Err(parser.unexpected()) }
+    }
+
+    /// The variables it reads.
+    pub fn variables(&self) -> Vec<String> {
+        let mut found = Vec::new();
+        collect(&self.root, &mut found);
+        found
+    }
+
+    /// Its value for a run; NaN where a variable was not recorded.
+    pub fn evaluate(&self, run: &Trajectory) -> f64 {
+        evaluate(&self.root, run)
+    }
+}
+
+fn collect(term: &Term, found: &mut Vec<String>) {
+    match term {
+        Term::Ask(_, name, _) if !found.contains(name) => found.push(name.clone()),
+        Term::Number(_) | Term::Ask(..) => {}
+        Term::Abs(a) | Term::Root(a) => collect(a, found),
+        Term::Pair(_, a, b) => {
+            collect(a, found);
+            collect(b, found);
+        }
+    }
+}
+
+fn evaluate(term: &Term, run: &Trajectory) -> f64 {
+    match term {
+        Term::Number(x) => *x,
+        Term::Ask(question, name, band) => {
+            run.column(name).map_or(f64::NAN, |values| answer(*question, &run.times, values, *band))
+        }
+        Term::Abs(a) => evaluate(a, run).abs(),
+        Term::Root(a) => evaluate(a, run).sqrt(),
+        Term::Pair(op, a, b) => {
+            let (a, b) = (evaluate(a, run), evaluate(b, run));
+            match op {
+                '+' => a + b,
+                '-' => a - b,
+                '*' => a * b,
+                '/' => a / b,
+                _ => a.powf(b),
+            }
+        }
+    }
+}
+
+fn answer(question: Question, times: &[f64], values: &[f64], band: f64) -> f64 {
+    let (Some(&first), Some(&last)) = (values.first(), values.last()) else { return f64::NAN };
+    let most = |sign: f64| (0..values.len()).max_by(|&a, &b| (sign * values[a]).total_cmp(&(sign * values[b])));
+    let extreme = |sign: f64| most(sign).map_or(f64::NAN, |k| values[k]);
+    let when = |sign: f64| {
+        let best = extreme(sign);
+        values.iter().position(|v| *v == best).map_or(f64::NAN, |k| times[k])
+    };
+    let duration = times[times.len() - 1] - times[0];
+    match question {
+        Question::Max => extreme(1.0),
+        Question::Min => extreme(-1.0),
+        Question::Initial => first,
+        Question::Final => last,
+        Question::Integral => integral(times, values, |v| v),
+        Question::Mean => integral(times, values, |v| v) / duration,
+        Question::Rms => (integral(times, values, |v| v * v) / duration).sqrt(),
+        Question::TimeOfMax => when(1.0),
+        Question::TimeOfMin => when(-1.0),
+        Question::Settling => {
+            let near = band * (last - first).abs();
+            let outside = values.iter().rposition(|v| (v - last).abs() > near);
+            outside.map_or(0.0, |k| times[(k + 1).min(times.len() - 1)] - times[0])
+        }
+        Question::Overshoot => {
+            let change = last - first;
+            (extreme(change.signum()) - last) / change
+        }
+    }
+}
+
+/// By trapezia; events have no width.
+fn integral(times: &[f64], values: &[f64], of: impl Fn(f64) -> f64) -> f64 {
+    let pairs = times.windows(2).zip(values.windows(2));
+    pairs.map(|(t, v)| 0.5 * (t[1] - t[0]) * (of(v[0]) + of(v[1]))).sum()
+}
+
+struct Parser<'a> {
+    text: &'a str,
+    rest: &'a str,
+}
+
+/// Brackets may be nested so deep.
+const DEEPEST: u32 = 50;
+
+impl Parser<'_> {
+    fn unexpected(&self) -> String {
+        let rest = self.rest.trim();
+        let at = if rest.is_empty() { "its end" } else { rest };
+        format!("the expression `{}` cannot be read from `{at}` on", self.text)
+    }
+
+    fn eat(&mut self, c: char) -> bool {
+        let found = self.rest.trim_start().strip_prefix(c);
+        if let Some(rest) = found {
+            self.rest = rest;
+        }
+        found.is_some()
+    }
+
+    fn pairs(
+        &mut self,
+        ops: [char; 2],
+        depth: u32,
+        next: fn(&mut Self, u32) -> Result<Term, String>,
+    ) -> Result<Term, String> {
+        let mut left = next(self, depth)?;
+        while let Some(op) = ops.into_iter().find(|&c| self.eat(c)) {
+            left = Term::Pair(op, Box::new(left), Box::new(next(self, depth)?));
+        }
+        Ok(left)
+    }
+
+    fn sum(&mut self, depth: u32) -> Result<Term, String> {
+        self.pairs(['+', '-'], depth, Self::product)
+    }
+
+    fn product(&mut self, depth: u32) -> Result<Term, String> {
+        self.pairs(['*', '/'], depth, Self::power)
+    }
+
+    fn power(&mut self, depth: u32) -> Result<Term, String> {
+        let base = self.factor(depth)?;
+        if self.eat('^') { Ok(Term::Pair('^', Box::new(base), Box::new(self.factor(depth)?))) } else { Ok(base) }
+    }
+
+    fn factor(&mut self, depth: u32) -> Result<Term, String> {
+        if depth > DEEPEST {
+            return Err(format!("the expression `{}` is nested too deeply", self.text));
+        }
+        if self.eat('-') {
+            return Ok(Term::Pair('-', Box::new(Term::Number(0.0)), Box::new(self.power(depth + 1)?)));
+        }
+        if self.eat('(') {
+            let inner = self.sum(depth + 1)?;
+            return if self.eat(')') { Ok(inner) } else { Err(self.unexpected()) };
+        }
+        self.rest = self.rest.trim_start();
+        let is_number = self.rest.starts_with(|c: char| c.is_ascii_digit() || c == '.');
+        if is_number { self.number() } else { self.call(depth) }
+    }
+
+    fn number(&mut self) -> Result<Term, String> {
+        let fits = |n: &usize| self.rest.is_char_boundary(*n) && self.rest[..*n].parse::<f64>().is_ok();
+        let length = (1..=self.rest.len().min(40)).rev().find(fits).ok_or_else(|| self.unexpected())?;
+        let (digits, rest) = self.rest.split_at(length);
+        self.rest = rest;
+        digits.trim().parse().map(Term::Number).map_err(|_| self.unexpected())
+    }
+
+    fn call(&mut self, depth: u32) -> Result<Term, String> {
+        let end = self.rest.find('(').ok_or_else(|| self.unexpected())?;
+        let (name, rest) = (self.rest[..end].trim(), &self.rest[end + 1..]);
+        if name == "abs" || name == "sqrt" {
+            self.rest = rest;
+            let inner = Box::new(self.sum(depth + 1)?);
+            let closed = self.eat(')');
+            let term = if name == "abs" { Term::Abs(inner) } else { Term::Root(inner) };
+            return if closed { Ok(term) } else { Err(self.unexpected()) };
+        }
+        let Some((_, question)) = QUESTIONS.iter().find(|q| q.0 == name) else {
+            let known: Vec<&str> = QUESTIONS.iter().map(|q| q.0).collect();
+            return Err(format!("`{name}` is not known; known are {}, abs, sqrt", known.join(", ")));
+        };
+        let close = rest.find(')').ok_or_else(|| self.unexpected())?;
+        let inside = &rest[..close];
+        let band = inside.rsplit_once(',').and_then(|(v, b)| Some((v, b.trim().parse::<f64>().ok()?)));
+        let (variable, band) = band.filter(|_| *question == Question::Settling).unwrap_or((inside, 0.05));
+        if variable.trim().is_empty() {
+            return Err(format!("`{name}` of which variable?"));
+        }
+        self.rest = &rest[close + 1..];
+        Ok(Term::Ask(*question, variable.trim().to_owned(), band))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bramah_results::Signal;
+
+    fn run() -> Trajectory {
+        let mut t = Trajectory::new(vec![Signal::new("v[1,2].p"), Signal::new("x")]);
+        for (time, p, x) in [(0.0, 0.0, 1.0), (1.0, 12.0, 1.0), (2.0, 9.0, 1.0), (3.0, 10.0, 1.0), (4.0, 10.0, 1.0)] {
+            t.push(time, &[p, x]);
+        }
+        t
+    }
+
+    #[test]
+    fn questions_and_arithmetic() {
+        let value = |text: &str| Expression::parse(text).expect(text).evaluate(&run());
+        assert_eq!(value("max(v[1,2].p) - 2*final(v[1,2].p)/4"), 7.0);
+        assert_eq!(value("overshoot(v[1,2].p)"), 0.2);
+        assert_eq!(value("settling(v[1,2].p, 0.05)"), 3.0);
+        assert_eq!(value("settling(v[1,2].p, 0.15)"), 2.0);
+        assert_eq!(value("time_of_max(v[1,2].p)"), 1.0);
+        assert_eq!((value("integral(x)"), value("mean(x)"), value("rms(x)")), (4.0, 1.0, 1.0));
+        assert_eq!(value("-(1 + 1e0)^2 + abs(-min(x)) + sqrt(4)"), -1.0);
+        assert!(value("max(unknown)").is_nan());
+        assert_eq!(Expression::parse("max(a.b) + min(a.b)").unwrap().variables(), ["a.b"]);
+    }
+
+    #[test]
+    fn mistakes() {
+        for bad in ["", "max", "max(", "max()", "foo(x)", "1 +", "(1", "1 2", "max(x))", "é"] {
+            assert!(Expression::parse(bad).is_err(), "{bad}");
+        }
+        assert!(Expression::parse(&"(".repeat(10_000)).is_err());
+    }
+}

@@ -1,0 +1,58 @@
+//! Functions of the caller's that a run calls: they may end it, and a panic of theirs becomes an error.
+
+use bramah_solve::Sink;
+use bramah_syntax::diag::{Code, Diagnostic};
+use std::ops::ControlFlow;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// What a callback did beside its work.
+#[derive(Debug, Default)]
+pub(super) struct Conduct {
+    /// It asked for the end.
+    pub stopped: bool,
+    /// The text of its panic.
+    pub panic: Option<String>,
+}
+
+impl Conduct {
+    /// Calls it; true when the run may go on.
+    pub fn call(&mut self, callback: impl FnOnce() -> bool) -> bool {
+        match catch_unwind(AssertUnwindSafe(callback)) {
+            Ok(go_on) => {
+                self.stopped |= !go_on;
+                go_on
+            }
+            Err(payload) => {
+                let text = payload.downcast_ref::<String>().cloned();
+                let text = text.or_else(|| payload.downcast_ref::<&str>().map(ToString::to_string));
+                self.panic = Some(text.unwrap_or_else(|| "no message".to_owned()));
+                false
+            }
+        }
+    }
+
+    /// E508, if it panicked.
+    pub fn complaint(&self, time: f64) -> Option<Diagnostic> {
+        let text = self.panic.as_ref()?;
+        Some(Diagnostic::new(Code::CallbackPanicked, format!("the callback panicked at time {time} s: {text}")))
+    }
+}
+
+/// Hands rows to a function.
+pub(super) struct Rows<'f> {
+    /// Takes the time and the values.
+    pub on_row: &'f mut (dyn FnMut(f64, &[f64]) -> ControlFlow<()> + Send),
+    /// How it behaved.
+    pub conduct: Conduct,
+}
+
+impl Sink for Rows<'_> {
+    fn row(&mut self, time: f64, values: &[f64]) -> ControlFlow<()> {
+        let Rows { on_row, conduct } = self;
+        if conduct.call(|| on_row(time, values).is_continue()) {
+            ControlFlow::Continue(())
+        } else {
+            ControlFlow::Break(())
+        }
+    }
+}

@@ -1,0 +1,531 @@
+//! What may be written at a place, found from the words before it: a text that is being written does not parse.
+
+use super::{View, words};
+use bramah_model::resolve::names::{self, Member, Target};
+use bramah_model::resolve::{ClassId, Library};
+use bramah_syntax::ast::{ClassKind, Variability};
+use bramah_syntax::diag::FileId;
+use bramah_syntax::lexer::lex;
+use bramah_syntax::symbol::Symbol;
+use bramah_syntax::token::{Token, TokenKind};
+use lsp_types::{CompletionItem, CompletionItemKind, Documentation, MarkupContent, MarkupKind};
+
+/// Units that engineers of such machines write, in the strings of `unit` and `displayUnit`.
+pub const UNITS: [&str; 40] = [
+    "Pa", "bar", "MPa", "m3/s", "l/min", "m3", "l", "ml", "rad/s", "rev/min", "rad", "deg", "m", "mm", "um", "m/s",
+    "mm/s", "m/s2", "N", "kN", "N.m", "kg", "kg.m2", "kg/m3", "s", "ms", "Hz", "W", "kW", "J", "K", "degC", "V", "A",
+    "Ohm", "H", "F", "W/K", "J/K", "1",
+];
+
+/// Attributes of the built-in types.
+const ATTRIBUTES: [(&str, &str); 9] = [
+    ("start", "Value at the start"),
+    ("fixed", "true: the start value holds at the start"),
+    ("min", "Least value"),
+    ("max", "Greatest value"),
+    ("nominal", "Usual size, for tolerances"),
+    ("unit", "Unit of the value"),
+    ("displayUnit", "Unit in which it is shown"),
+    ("quantity", "Kind of quantity"),
+    ("stateSelect", "Whether it should be a state"),
+];
+
+const ELEMENT_WORDS: [&str; 18] = [
+    "parameter",
+    "constant",
+    "input",
+    "output",
+    "inner",
+    "outer",
+    "extends",
+    "import",
+    "model",
+    "function",
+    "type",
+    "replaceable",
+    "final",
+    "protected",
+    "equation",
+    "algorithm",
+    "initial equation",
+    "annotation",
+];
+const EQUATION_WORDS: [&str; 11] =
+    ["connect", "if", "for", "when", "elsewhen", "else", "end", "initial equation", "algorithm", "assert", "reinit"];
+const EXPRESSION_WORDS: [&str; 24] = [
+    "der", "if", "then", "else", "and", "or", "not", "time", "true", "false", "pre", "initial", "noEvent", "smooth",
+    "sqrt", "abs", "sign", "sin", "cos", "exp", "log", "min", "max", "sum",
+];
+
+/// The words before a place.
+#[derive(Debug, Default)]
+pub(super) struct Context {
+    /// The word that has been begun.
+    pub prefix: String,
+    /// `a.b.` before it.
+    pub chain: Vec<String>,
+    /// The open brackets of the statement, outermost first.
+    pub calls: Vec<Call>,
+    place: Place,
+    section: Section,
+    /// Nothing of the statement stands before the chain.
+    begins: bool,
+    /// Nothing of the present argument stands before the chain.
+    begins_argument: bool,
+}
+
+/// An open bracket.
+#[derive(Debug)]
+pub(super) struct Call {
+    head: Head,
+    /// Commas behind it.
+    pub commas: usize,
+    /// The name before the `=` of the present argument.
+    pub named: Option<String>,
+}
+
+/// What stands before a bracket.
+#[derive(Clone, Debug, PartialEq)]
+enum Head {
+    /// `Type name(`
+    Element(Vec<String>, String),
+    /// `extends Path(`, `model M = Path(`
+    Type(Vec<String>),
+    /// `name(` in a modification.
+    Inner(Vec<String>),
+    /// `f(` in an expression.
+    Function(Vec<String>),
+    Connect,
+    Other,
+}
+
+#[derive(Debug, Default, PartialEq)]
+enum Place {
+    #[default]
+    Code,
+    Comment,
+    /// In a string, behind `name =`.
+    Text(Option<String>),
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+enum Section {
+    #[default]
+    Elements,
+    Equations,
+}
+
+impl Context {
+    /// The words before a byte.
+    pub fn at(text: &str, offset: u32) -> Context {
+        let all = lex(FileId(0), text).tokens;
+        let before = all.partition_point(|t| t.start < offset && t.kind != TokenKind::Eof);
+        let mut tokens = all[..before].to_vec();
+        let mut context = Context::default();
+        match tokens.last().copied() {
+            Some(last) if last.kind == TokenKind::String && offset < last.end => {
+                tokens.pop();
+                context.place = Place::Text(named_before(text, &tokens));
+            }
+            Some(last) if last.end >= offset && (last.kind == TokenKind::Ident || last.kind.is_keyword()) => {
+                context.prefix = text[last.start as usize..offset as usize].to_owned();
+                tokens.pop();
+            }
+            last => {
+                let gap = &text[last.map_or(0, |t| t.end as usize).min(offset as usize)..offset as usize];
+                let line = gap.rsplit('\n').next().unwrap_or("");
+                if line.contains("//") || gap.rfind("/*") > gap.rfind("*/") {
+                    context.place = Place::Comment;
+                } else if gap.contains('"') {
+                    context.place = Place::Text(named_before(text, &tokens));
+                }
+            }
+        }
+        while tokens.last().is_some_and(|t| t.kind == TokenKind::Dot) {
+            tokens.pop();
+            let (parts, rest) = chain_before(text, &tokens);
+            tokens.truncate(rest);
+            context.chain = parts;
+        }
+        context.read(text, &tokens);
+        context
+    }
+
+    fn read(&mut self, text: &str, tokens: &[Token]) {
+        let mut depth = 0;
+        let (mut start, mut argument) = (0, 0);
+        for (i, token) in tokens.iter().enumerate() {
+            match token.kind {
+                TokenKind::LeftParen => {
+                    let head = head(text, &tokens[start..i], self.calls.last().map(|c| &c.head));
+                    self.calls.push(Call { head, commas: 0, named: None });
+                    argument = i + 1;
+                }
+                TokenKind::LeftBracket | TokenKind::LeftBrace => depth += 1,
+                TokenKind::RightBracket | TokenKind::RightBrace => depth -= 1,
+                TokenKind::RightParen => _ = self.calls.pop(),
+                TokenKind::Comma if depth <= 0 => {
+                    if let Some(call) = self.calls.last_mut() {
+                        call.commas += 1;
+                        call.named = None;
+                        argument = i + 1;
+                    }
+                }
+                TokenKind::Equal => {
+                    if let Some(call) = self.calls.last_mut() {
+                        call.named = named_before(text, &tokens[..=i]);
+                    }
+                }
+                TokenKind::Semicolon if self.calls.is_empty() || depth <= 0 => {
+                    (start, depth) = (i + 1, 0);
+                    self.calls.clear();
+                }
+                TokenKind::Equation | TokenKind::Algorithm => {
+                    self.section = Section::Equations;
+                    start = i + 1;
+                }
+                TokenKind::Then | TokenKind::Loop | TokenKind::Else if self.calls.is_empty() => start = i + 1,
+                TokenKind::Protected | TokenKind::Public => {
+                    self.section = Section::Elements;
+                    start = i + 1;
+                }
+                TokenKind::End if i == start && tokens.get(i + 1).is_some_and(|t| t.kind == TokenKind::Ident) => {
+                    self.section = Section::Elements;
+                }
+                _ if i == start && token.kind.is_class_word() => self.section = Section::Elements,
+                _ => {}
+            }
+        }
+        let rest = &tokens[start..];
+        let header = matches!(rest, [class, name] if class.kind.is_class_word() && name.kind == TokenKind::Ident)
+            || matches!(rest, [class, name, said] if class.kind.is_class_word() && name.kind == TokenKind::Ident && said.kind == TokenKind::String);
+        self.begins = header || rest.iter().all(|t| is_prefix(t.kind));
+        self.begins_argument =
+            tokens[argument.min(tokens.len())..].iter().all(|t| matches!(t.kind, TokenKind::Each | TokenKind::Final));
+    }
+
+    /// The class whose elements are named in the first `n` open brackets.
+    pub fn class_of(&self, library: &mut Library<'_>, scope: ClassId, n: usize) -> Option<ClassId> {
+        match &self.calls.get(n.checked_sub(1)?)?.head {
+            Head::Element(path, _) | Head::Type(path) => named(library, scope, path),
+            Head::Function(path) => {
+                let target = meant(library, scope, path)?;
+                names::inside(library, target)
+            }
+            Head::Inner(path) => {
+                let around = self.class_of(library, scope, n - 1)?;
+                let target = along(library, around, path)?;
+                names::inside(library, target)
+            }
+            Head::Connect | Head::Other => None,
+        }
+    }
+
+    /// Whether a modification's arguments are being written, and the present one has just begun.
+    fn names_elements(&self) -> bool {
+        let modifies = |c: &Call| matches!(c.head, Head::Element(..) | Head::Type(_) | Head::Inner(_));
+        self.calls.last().is_some_and(modifies) && self.begins_argument
+    }
+}
+
+/// The full name of the element whose name ends at or after a byte, as the circuit has it.
+pub(super) fn full_name_at(text: &str, offset: u32) -> Option<String> {
+    let rest = &text[offset as usize..];
+    let end = offset as usize + rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len());
+    let context = Context::at(text, end as u32);
+    let mut parts: Vec<String> = Vec::new();
+    if context.names_elements() {
+        for call in &context.calls {
+            match &call.head {
+                Head::Element(_, name) => parts.push(name.clone()),
+                Head::Inner(path) => parts.extend(path.clone()),
+                _ => {}
+            }
+        }
+    }
+    parts.extend(context.chain);
+    parts.push(context.prefix);
+    (!parts.iter().any(String::is_empty)).then(|| parts.join("."))
+}
+
+/// What may be written at a byte.
+pub fn complete(view: &mut View<'_, '_>, offset: u32) -> Vec<CompletionItem> {
+    let context = Context::at(&view.text, offset);
+    match &context.place {
+        Place::Comment => return Vec::new(),
+        Place::Text(Some(name)) if name == "unit" || name == "displayUnit" => {
+            return UNITS.iter().map(|u| plain(u, CompletionItemKind::UNIT)).collect();
+        }
+        Place::Text(_) => return Vec::new(),
+        Place::Code => {}
+    }
+    let Some(scope) = view.class_at(offset) else { return words_for(&context) };
+    if context.names_elements() {
+        return arguments(view, &context, scope);
+    }
+    let connects = context.calls.last().is_some_and(|c| c.head == Head::Connect);
+    if !context.chain.is_empty() {
+        return members(view, &context, scope, connects);
+    }
+    let mut found = in_scope(view, scope, connects);
+    if let Some(function) = context.class_of(view.library, scope, context.calls.len())
+        && context.begins_argument
+    {
+        found.extend(elements(view, function, |m| m.component.prefix.causality.is_some()));
+    }
+    found.extend(words_for(&context));
+    found
+}
+
+fn words_for(context: &Context) -> Vec<CompletionItem> {
+    let words: &[&str] = match (context.begins, context.section) {
+        (true, Section::Elements) => &ELEMENT_WORDS,
+        (true, Section::Equations) => &EQUATION_WORDS,
+        _ => &EXPRESSION_WORDS,
+    };
+    words.iter().map(|w| plain(w, CompletionItemKind::KEYWORD)).collect()
+}
+
+/// Elements that a modification may name.
+fn arguments(view: &mut View<'_, '_>, context: &Context, scope: ClassId) -> Vec<CompletionItem> {
+    let class = context.class_of(view.library, scope, context.calls.len()).and_then(|class| {
+        context.chain.iter().try_fold(class, |class, part| {
+            let target = names::element(view.library, class, Symbol::new(part))?;
+            names::inside(view.library, target)
+        })
+    });
+    let mut found = match class {
+        Some(class) => elements(view, class, |m| !m.protected && !m.component.prefixes.final_),
+        None => Vec::new(),
+    };
+    if found.is_empty() {
+        let items = ATTRIBUTES.iter().map(|(name, said)| CompletionItem {
+            documentation: Some(Documentation::String((*said).to_owned())),
+            ..plain(name, CompletionItemKind::PROPERTY)
+        });
+        found.extend(items);
+    }
+    found
+}
+
+/// What stands behind a dot.
+fn members(view: &mut View<'_, '_>, context: &Context, scope: ClassId, connects: bool) -> Vec<CompletionItem> {
+    let Some(target) = meant(view.library, scope, &context.chain) else { return Vec::new() };
+    let Some(class) = names::inside(view.library, target) else { return Vec::new() };
+    if matches!(target, Target::Class(_)) {
+        let mut found = classes(view, class);
+        found.extend(elements(view, class, |m| m.component.prefix.variability == Some(Variability::Constant)));
+        if let bramah_syntax::ast::ClassBody::Enumeration(Some(literals)) = &view.library.class(class).body {
+            found.extend(literals.iter().map(|l| plain(l.name.name.as_str(), CompletionItemKind::ENUM_MEMBER)));
+        }
+        return found;
+    }
+    let ports: Vec<CompletionItem> =
+        if connects { elements_that(view, class, |view, m| !m.protected && is_port(view, m)) } else { Vec::new() };
+    if ports.is_empty() { elements(view, class, |m| !m.protected) } else { ports }
+}
+
+/// Names that need no dot: elements, those of the classes around, packages at the top.
+fn in_scope(view: &mut View<'_, '_>, scope: ClassId, connects: bool) -> Vec<CompletionItem> {
+    let mut found = elements(view, scope, |m| !connects || m.component.class.parts[0].name != "Real");
+    if connects {
+        return found;
+    }
+    let mut around = Some(scope);
+    while let Some(class) = around {
+        found.extend(classes(view, class));
+        around = view.library.parent(class);
+        if let Some(outer) = around {
+            found.extend(elements(view, outer, |m| m.component.prefix.variability == Some(Variability::Constant)));
+        }
+    }
+    let top = view.library.top_level();
+    found.extend(top.iter().map(|name| plain(name.as_str(), CompletionItemKind::MODULE)));
+    found.sort_by(|a, b| a.label.cmp(&b.label));
+    found.dedup_by(|a, b| a.label == b.label);
+    found
+}
+
+fn classes(view: &mut View<'_, '_>, class: ClassId) -> Vec<CompletionItem> {
+    let all = names::classes(view.library, class);
+    all.into_iter().map(|id| class_item(view.library, id)).collect()
+}
+
+fn class_item(library: &Library<'_>, id: ClassId) -> CompletionItem {
+    let class = library.class(id);
+    let kind = match class.kind {
+        ClassKind::Package => CompletionItemKind::MODULE,
+        ClassKind::Function { .. } | ClassKind::Operator => CompletionItemKind::FUNCTION,
+        ClassKind::Type => CompletionItemKind::TYPE_PARAMETER,
+        ClassKind::Connector { .. } => CompletionItemKind::INTERFACE,
+        ClassKind::Record { .. } => CompletionItemKind::STRUCT,
+        _ => CompletionItemKind::CLASS,
+    };
+    let documentation = words::documentation(library, id).map(|html| {
+        let value = words::markdown(html);
+        Documentation::MarkupContent(MarkupContent { kind: MarkupKind::Markdown, value })
+    });
+    CompletionItem {
+        detail: class.description.as_deref().map(str::to_owned),
+        documentation,
+        ..plain(class.name.name.as_str(), kind)
+    }
+}
+
+fn elements(view: &mut View<'_, '_>, class: ClassId, wanted: impl Fn(&Member<'_>) -> bool) -> Vec<CompletionItem> {
+    elements_that(view, class, |_, m| wanted(m))
+}
+
+fn elements_that(
+    view: &mut View<'_, '_>,
+    class: ClassId,
+    wanted: impl Fn(&mut View<'_, '_>, &Member<'_>) -> bool,
+) -> Vec<CompletionItem> {
+    let all = names::members(view.library, class);
+    let mut found: Vec<CompletionItem> = Vec::new();
+    for member in all {
+        if wanted(view, &member) {
+            found.push(element_item(view.library, member));
+        }
+    }
+    found
+}
+
+fn element_item<'a>(library: &mut Library<'a>, member: Member<'a>) -> CompletionItem {
+    let component = member.component;
+    let parameter = component.prefix.variability == Some(Variability::Parameter);
+    let kind = match component.prefix.variability {
+        Some(Variability::Parameter) => CompletionItemKind::PROPERTY,
+        Some(Variability::Constant) => CompletionItemKind::CONSTANT,
+        _ => CompletionItemKind::VARIABLE,
+    };
+    let unit = words::attribute(library, member, "unit").map(|u| format!(", in {u}")).unwrap_or_default();
+    let said = component.description.as_deref().unwrap_or_default();
+    CompletionItem {
+        detail: Some(words::declaration(library, component)),
+        documentation: Some(Documentation::String(format!("{said}{unit}"))),
+        sort_text: Some(format!("{}{}", if parameter { 0 } else { 1 }, component.name.name)),
+        ..plain(component.name.name.as_str(), kind)
+    }
+}
+
+fn is_port(view: &mut View<'_, '_>, member: &Member<'_>) -> bool {
+    names::type_of(view.library, *member).is_some_and(|class| names::is_connector(view.library, class))
+}
+
+fn plain(label: &str, kind: CompletionItemKind) -> CompletionItem {
+    CompletionItem { label: label.to_owned(), kind: Some(kind), ..CompletionItem::default() }
+}
+
+/// What dotted words stand for in a class.
+fn meant<'a>(library: &mut Library<'a>, scope: ClassId, path: &[String]) -> Option<Target<'a>> {
+    let (first, rest) = path.split_first()?;
+    let target = names::lookup(library, scope, Symbol::new(first))?;
+    if rest.is_empty() {
+        return Some(target);
+    }
+    let class = names::inside(library, target)?;
+    along(library, class, rest)
+}
+
+fn along<'a>(library: &mut Library<'a>, mut class: ClassId, path: &[String]) -> Option<Target<'a>> {
+    let (last, before) = path.split_last()?;
+    for part in before {
+        let target = names::element(library, class, Symbol::new(part))?;
+        class = names::inside(library, target)?;
+    }
+    names::element(library, class, Symbol::new(last))
+}
+
+fn named(library: &mut Library<'_>, scope: ClassId, path: &[String]) -> Option<ClassId> {
+    let parts: Vec<Symbol> = path.iter().map(|p| Symbol::new(p)).collect();
+    names::named(library, Some(scope), &parts, false)
+}
+
+/// `name` of `name =` at the end of some tokens.
+fn named_before(text: &str, tokens: &[Token]) -> Option<String> {
+    match tokens {
+        [.., name, equal] if equal.kind == TokenKind::Equal && name.kind == TokenKind::Ident => Some(word(text, name)),
+        _ => None,
+    }
+}
+
+fn word(text: &str, token: &Token) -> String {
+    text[token.start as usize..token.end as usize].to_owned()
+}
+
+/// The dotted name at the end of some tokens, indices left out, and how many tokens stand before it.
+fn chain_before(text: &str, tokens: &[Token]) -> (Vec<String>, usize) {
+    let mut parts = Vec::new();
+    let mut at = tokens.len();
+    loop {
+        let mut next = at;
+        if next > 0 && tokens[next - 1].kind == TokenKind::RightBracket {
+            let mut depth = 0;
+            while next > 0 {
+                next -= 1;
+                match tokens[next].kind {
+                    TokenKind::RightBracket => depth += 1,
+                    TokenKind::LeftBracket => depth -= 1,
+                    _ => {}
+                }
+                if depth == 0 {
+                    break;
+                }
+            }
+        }
+        if next == 0 || tokens[next - 1].kind != TokenKind::Ident {
+            break;
+        }
+        parts.push(word(text, &tokens[next - 1]));
+        at = next - 1;
+        if at == 0 || tokens[at - 1].kind != TokenKind::Dot {
+            break;
+        }
+        at -= 1;
+    }
+    parts.reverse();
+    (parts, at)
+}
+
+/// What a bracket behind these tokens of a statement belongs to.
+fn head(text: &str, tokens: &[Token], around: Option<&Head>) -> Head {
+    match tokens.last().map(|t| t.kind) {
+        Some(TokenKind::Connect) => return Head::Connect,
+        Some(TokenKind::Annotation) => return Head::Other,
+        _ => {}
+    }
+    let (path, rest) = chain_before(text, tokens);
+    if path.is_empty() {
+        return Head::Other;
+    }
+    let modifies = matches!(around, Some(Head::Element(..) | Head::Type(_) | Head::Inner(_)));
+    let before = &tokens[..rest];
+    match before.last().map(|t| t.kind) {
+        Some(TokenKind::Extends | TokenKind::Constrainedby) => Head::Type(path),
+        Some(TokenKind::Ident | TokenKind::RightBracket) if path.len() == 1 => {
+            Head::Element(chain_before(text, before).0, path.into_iter().next().unwrap_or_default())
+        }
+        Some(TokenKind::Equal) if matches!(before, [.., class, _, _] if class.kind.is_class_word()) => Head::Type(path),
+        Some(TokenKind::LeftParen | TokenKind::Comma | TokenKind::Each | TokenKind::Final) if modifies => {
+            Head::Inner(path)
+        }
+        Some(TokenKind::Comma) if around.is_none() => {
+            let words = tokens.iter().skip_while(|t| t.kind != TokenKind::Ident);
+            let first: Vec<Token> =
+                words.take_while(|t| matches!(t.kind, TokenKind::Ident | TokenKind::Dot)).copied().collect();
+            let (mut type_path, _) = chain_before(text, &first[..first.len().saturating_sub(1)]);
+            if type_path.is_empty() {
+                type_path = path.clone();
+            }
+            Head::Element(type_path, path.into_iter().next().unwrap_or_default())
+        }
+        _ => Head::Function(path),
+    }
+}
+
+fn is_prefix(kind: TokenKind) -> bool {
+    use TokenKind as T;
+    let of_type = matches!(kind, T::Parameter | T::Constant | T::Discrete | T::Input | T::Output | T::Flow | T::Stream);
+    of_type || kind.is_element_prefix()
+}

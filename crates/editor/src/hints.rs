@@ -1,0 +1,142 @@
+//! Values behind what is written: `V = 10 ml` where the text has an expression or a number in SI units.
+
+use super::View;
+use bramah_circuit::compiled::CompiledModel;
+use bramah_expr::VarId;
+use bramah_expr::types::Variability;
+use bramah_expr::units::Unit;
+use bramah_model::resolve::ClassId;
+use bramah_syntax::ast::{Argument, ArgumentKind, ElementKind, Expr, Modification};
+use lsp_types::{InlayHint, InlayHintLabel};
+use rustc_hash::FxHashMap;
+
+/// What compiled models say of their parameters, by class and by the parameter's full name.
+#[derive(Clone, Debug, Default)]
+pub struct Facts {
+    models: FxHashMap<String, FxHashMap<String, Value>>,
+}
+
+#[derive(Clone, Debug)]
+struct Value {
+    value: f64,
+    unit: String,
+    display: String,
+}
+
+impl Facts {
+    /// Takes the parameters of a model in place of those that it had.
+    pub fn learn(&mut self, model: &CompiledModel) {
+        let system = &model.system;
+        let mut values = system.layout.values();
+        system.evaluate_parameters(&mut values, &[]);
+        let known = model.flat.variables.iter().enumerate().filter(|(_, v)| v.variability <= Variability::Parameter);
+        let all = known.map(|(i, v)| {
+            let value = values[system.layout.var(VarId(i as u32))];
+            let text = |u: &Option<Box<str>>| u.as_deref().unwrap_or("").to_owned();
+            (v.name.clone(), Value { value, unit: text(&v.unit), display: text(&v.display_unit) })
+        });
+        self.models.insert(model.flat.class.clone(), all.collect());
+    }
+
+    /// The value of a parameter of a model, with its unit, and in the unit in which it is shown.
+    pub fn value(&self, model: &str, name: &str) -> Option<String> {
+        Some(self.models.get(model)?.get(name)?.shown(true))
+    }
+}
+
+impl Value {
+    fn shown(&self, both: bool) -> String {
+        let plain = format!("{} {}", bramah_results::number::text(self.value), self.unit).trim().to_owned();
+        match self.converted() {
+            Some(text) if both => format!("{plain} = {text}"),
+            Some(text) => text,
+            None => plain,
+        }
+    }
+
+    fn converted(&self) -> Option<String> {
+        if self.display.is_empty() || self.display == self.unit {
+            return None;
+        }
+        let (from, to) = (Unit::parse(&self.unit).ok()?, Unit::parse(&self.display).ok()?);
+        let value = from.convert(self.value, &to)?;
+        let rounded: f64 = format!("{value:.5e}").parse().ok()?;
+        Some(format!("{} {}", bramah_results::number::text(rounded), self.display))
+    }
+}
+
+/// Hints behind the values of parameters in a file.
+pub fn hints(view: &mut View<'_, '_>, facts: &Facts) -> Vec<InlayHint> {
+    let mut found = Vec::new();
+    for id in view.classes.clone() {
+        of_class(view, id, facts, &mut found);
+    }
+    found
+}
+
+fn of_class(view: &View<'_, '_>, id: ClassId, facts: &Facts, found: &mut Vec<InlayHint>) {
+    let Some(values) = facts.models.get(&view.library.full_name(id)) else { return };
+    let Some(body) = bramah_model::resolve::names::body(view.library.class(id)) else { return };
+    for element in &body.elements {
+        match &element.kind {
+            ElementKind::Component(c) => {
+                modification(view, values, c.name.name.as_str(), c.modification.as_ref(), found);
+            }
+            ElementKind::Extends(x) => {
+                let arguments = x.modification.iter().flat_map(|m| &m.arguments);
+                arguments.for_each(|a| argument(view, values, "", a, found));
+            }
+            _ => {}
+        }
+    }
+}
+
+fn modification(
+    view: &View<'_, '_>,
+    values: &FxHashMap<String, Value>,
+    name: &str,
+    modification: Option<&Modification>,
+    found: &mut Vec<InlayHint>,
+) {
+    let Some(modification) = modification else { return };
+    if let (Some(value), Some(written)) = (values.get(name), &modification.value) {
+        hint(view, value, written, found);
+    }
+    modification.arguments.iter().for_each(|a| argument(view, values, name, a, found));
+}
+
+fn argument(
+    view: &View<'_, '_>,
+    values: &FxHashMap<String, Value>,
+    around: &str,
+    argument: &Argument,
+    found: &mut Vec<InlayHint>,
+) {
+    if let ArgumentKind::Modify { path, modification: m, .. } = &argument.kind {
+        let name = if around.is_empty() { path.dotted() } else { format!("{around}.{}", path.dotted()) };
+        modification(view, values, &name, m.as_ref(), found);
+    }
+}
+
+/// A number in its own unit needs none.
+fn hint(view: &View<'_, '_>, value: &Value, written: &Expr, found: &mut Vec<InlayHint>) {
+    let is_number = written.as_number().is_some();
+    if is_number && value.unit.is_empty() || written.span.file != view.file {
+        return;
+    }
+    let label = match (is_number, value.converted()) {
+        (true, None) => value.unit.clone(),
+        (true, Some(text)) => format!("{} = {text}", value.unit),
+        (false, _) => format!("= {}", value.shown(false)),
+    };
+    found.push(InlayHint {
+        position: view.position(written.span.end),
+        label: InlayHintLabel::String(label),
+        kind: None,
+        text_edits: None,
+        tooltip: None,
+        padding_left: Some(true),
+        padding_right: None,
+        data: None,
+    });
+}

@@ -1,0 +1,49 @@
+//! What is said under the pointer: declaration, unit, value in the circuit, documentation.
+
+use super::hints::Facts;
+use super::navigate::occurrence_at;
+use super::{View, words};
+use bramah_model::resolve::names::Target;
+use lsp_types::{Hover, HoverContents, MarkupContent, MarkupKind};
+
+/// What the name at a byte stands for.
+pub fn hover(view: &mut View<'_, '_>, offset: u32, facts: &Facts) -> Option<Hover> {
+    let occurrence = occurrence_at(view, offset)?;
+    let target = occurrence.target?;
+    let mut text = match target {
+        Target::Class(id) => code(&words::class_line(view.library, id)),
+        Target::Component(member) => {
+            let mut line = words::declaration(view.library, member.component);
+            if let Some(unit) = words::attribute(view.library, member, "unit") {
+                line.push_str(&format!("  // in {unit}"));
+            }
+            code(&line)
+        }
+        Target::Literal(id, literal) => code(&format!("{}.{}", view.library.full_name(id), literal.name.name)),
+        Target::Iterator(ident) => code(&format!("for {}", ident.name)),
+    };
+    if let Some(said) = words::description(view.library, target) {
+        text.push_str(said);
+        text.push('\n');
+    }
+    let model = view.library.full_name(occurrence.scope);
+    if let Some(value) = path_at(view, offset).and_then(|path| facts.value(&model, &path)) {
+        text.push_str(&format!("\nHere `{value}`\n"));
+    }
+    if let Target::Class(id) = target
+        && let Some(html) = words::documentation(view.library, id)
+    {
+        text.push_str(&format!("\n{}\n", words::markdown(html)));
+    }
+    let contents = HoverContents::Markup(MarkupContent { kind: MarkupKind::Markdown, value: text });
+    Some(Hover { contents, range: Some(view.range(occurrence.ident.span)) })
+}
+
+fn code(line: &str) -> String {
+    format!("```modelica\n{line}\n```\n")
+}
+
+/// The full name of the element at a byte as the circuit has it: of `V` in `pump(V = 1)`, `pump.V`.
+fn path_at(view: &mut View<'_, '_>, offset: u32) -> Option<String> {
+    super::complete::full_name_at(&view.text, offset)
+}

@@ -1,0 +1,81 @@
+//! Places as editors count them: lines and UTF-16 units from 0.
+
+use bramah_syntax::diag::Span;
+use lsp_types::{Position, Range};
+
+/// First byte of each line of a text, for many places in it.
+#[derive(Clone, Debug)]
+pub struct Lines(Vec<u32>);
+
+impl Lines {
+    /// Finds the lines of a text.
+    pub fn new(text: &str) -> Lines {
+        let breaks = text.bytes().enumerate().filter(|(_, b)| *b == b'\n');
+        Lines(std::iter::once(0).chain(breaks.map(|(i, _)| i as u32 + 1)).collect())
+    }
+
+    /// Where a byte of the same text stands; one beyond the end stands at the end.
+    pub fn position(&self, text: &str, offset: u32) -> Position {
+        let mut at = (offset as usize).min(text.len());
+        while !text.is_char_boundary(at) {
+            at -= 1;
+        }
+        let line = self.0.partition_point(|&s| s as usize <= at) - 1;
+        let column: usize = text[self.0[line] as usize..at].chars().map(char::len_utf16).sum();
+        Position::new(line as u32, column as u32)
+    }
+
+    /// The range of a span of the same text.
+    pub fn range(&self, text: &str, span: Span) -> Range {
+        Range::new(self.position(text, span.start), self.position(text, span.end))
+    }
+}
+
+/// Where a byte stands; one beyond the end stands at the end.
+pub fn position(text: &str, offset: u32) -> Position {
+    Lines::new(text).position(text, offset)
+}
+
+/// The byte at a place; one beyond the end of a line stands at its end.
+pub fn offset(text: &str, position: Position) -> u32 {
+    let mut start = 0;
+    for _ in 0..position.line {
+        match text[start..].find('\n') {
+            Some(i) => start += i + 1,
+            None => return text.len() as u32,
+        }
+    }
+    let line = text[start..].split('\n').next().unwrap_or("");
+    let line = line.strip_suffix('\r').unwrap_or(line);
+    let mut units = 0;
+    for (i, c) in line.char_indices() {
+        if units >= position.character as usize {
+            return (start + i) as u32;
+        }
+        units += c.len_utf16();
+    }
+    (start + line.len()) as u32
+}
+
+/// The range of a span.
+pub fn range(text: &str, span: Span) -> Range {
+    Lines::new(text).range(text, span)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{offset, position};
+    use lsp_types::Position;
+
+    #[test]
+    fn bytes_and_places_meet() {
+        let text = "a\u{e4}\u{1f600}b\r\nzwei\n";
+        for (byte, line, column) in [(0, 0, 0), (1, 0, 1), (3, 0, 2), (7, 0, 4), (8, 0, 5), (10, 1, 0), (15, 2, 0)] {
+            assert_eq!(position(text, byte), Position::new(line, column), "{byte}");
+            assert_eq!(offset(text, Position::new(line, column)), byte, "{line}:{column}");
+        }
+        assert_eq!(offset(text, Position::new(1, 99)), 14);
+        assert_eq!(offset(text, Position::new(9, 0)), text.len() as u32);
+        assert_eq!(offset(text, Position::new(0, 99)), 8);
+    }
+}

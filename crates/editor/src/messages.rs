@@ -1,0 +1,158 @@
+//! What is said of a file: every model in it goes the way of `check`.
+
+use super::actions::{Correction, correction};
+use super::hints::Facts;
+use super::{Texts, is_shipped, lines};
+use bramah_circuit::compiled::compile;
+use bramah_model::compile::{Request, runnable};
+use bramah_model::resolve::{Library, names};
+use bramah_solve::lower::Options;
+use bramah_syntax::diag::{Code, Diagnostic, FileId, Severity, Sources};
+use lsp_types::{DiagnosticRelatedInformation, DiagnosticSeverity, Location, NumberOrString, Range, Uri};
+use std::path::{Path, PathBuf};
+
+/// More models of one file are not looked at while it is edited.
+const MOST_MODELS: usize = 12;
+
+/// A message in a file, with the correction it proposes.
+#[derive(Clone, Debug)]
+pub struct Message {
+    /// The file.
+    pub path: PathBuf,
+    /// As editors know it.
+    pub diagnostic: lsp_types::Diagnostic,
+    /// The change of the text that it proposes.
+    pub correction: Option<Correction>,
+}
+
+/// What the parser says.
+pub fn of_syntax(path: &Path, text: &str) -> Vec<Message> {
+    let mut sources = Sources::default();
+    let file = sources.add(path.display().to_string(), text);
+    let parsed = bramah_syntax::parse(file, text);
+    parsed.diagnostics.iter().filter_map(|d| message(&sources, d, path, &no_link)).collect()
+}
+
+/// What the pipeline says of the models in a file, in turn; `go_on` is asked before each.
+pub fn of_models(
+    texts: &Texts<'_>,
+    path: &Path,
+    link: &dyn Fn(&Path) -> Option<Uri>,
+    facts: &mut Facts,
+    go_on: &dyn Fn() -> bool,
+) -> Vec<Message> {
+    let request = Request { source: path.to_path_buf(), libraries: texts.libraries.to_vec(), ..Request::default() };
+    let names = runnable(texts.world, &request).unwrap_or_default();
+    let mut found: Vec<Message> = Vec::new();
+    for name in names.into_iter().take(MOST_MODELS).map(|r| r.class) {
+        if !go_on() {
+            return found;
+        }
+        let one = Request { model: Some(name.clone()), ..request.clone() };
+        let outcome = compile(texts.world, &one, &Options::INTERPRETED);
+        if let Some(model) = &outcome.value {
+            facts.learn(model);
+        }
+        let unsure = outcome.diagnostics.iter().any(|d| hangs_on_use(d.code, Ports::Flows));
+        let ports = if unsure { ports(texts, path, &name) } else { Ports::None };
+        for diagnostic in outcome.diagnostics.iter().filter(|d| !hangs_on_use(d.code, ports)) {
+            let Some(message) = message(&outcome.sources, diagnostic, path, link) else { continue };
+            let same = |m: &Message| m.path == message.path && m.diagnostic == message.diagnostic;
+            if !is_shipped(&message.path) && !found.iter().any(same) {
+                found.push(message);
+            }
+        }
+    }
+    found
+}
+
+/// What a class is joined by where it is used.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Ports {
+    None,
+    /// Inputs and outputs.
+    Signals,
+    /// Connectors with flows.
+    Flows,
+}
+
+fn ports(texts: &Texts<'_>, path: &Path, name: &str) -> Ports {
+    let found = texts.look(path, |view| {
+        let id = view.library.find(name)?;
+        let kind = |m: names::Member<'_>, library: &mut Library<'_>| {
+            let class = names::type_of(library, m).filter(|c| names::is_connector(library, *c));
+            class.map_or(Ports::None, |class| {
+                let flows = names::members(library, class).iter().any(|m| m.component.prefix.flow);
+                if flows { Ports::Flows } else { Ports::Signals }
+            })
+        };
+        names::members(view.library, id).into_iter().map(|m| kind(m, view.library)).max()
+    });
+    found.flatten().unwrap_or(Ports::None)
+}
+
+/// What is said only because ports of a component are open: its use decides.
+fn hangs_on_use(code: Code, ports: Ports) -> bool {
+    let id = code.id();
+    let structure = code == Code::OpenPort || id.starts_with("E3") || id.starts_with("E4");
+    let start = matches!(code, Code::InitialUnder | Code::IndexReduction | Code::AutomaticInner | Code::NoInput);
+    ports == Ports::Flows && structure || ports >= Ports::Signals && start
+}
+
+fn no_link(_: &Path) -> Option<Uri> {
+    None
+}
+
+fn message(sources: &Sources, d: &Diagnostic, asked: &Path, link: &dyn Fn(&Path) -> Option<Uri>) -> Option<Message> {
+    // a place in the file asked about, if there is one
+    let shown = asked.display().to_string();
+    let primary = d.labels.iter().find(|l| sources.get(l.span.file).path == shown).or(d.labels.first());
+    let (path, range) = match primary {
+        Some(label) => {
+            let source = sources.get(label.span.file);
+            (PathBuf::from(&source.path), lines::range(&source.text, label.span))
+        }
+        None => (asked.to_path_buf(), Range::default()),
+    };
+    let mut text = d.message.clone();
+    if let Some(label) = primary.filter(|l| !l.text.is_empty() && !d.message.contains(&l.text)) {
+        text.push_str(&format!("\n{}", label.text));
+    }
+    d.notes.iter().for_each(|n| text.push_str(&format!("\n{n}")));
+    d.help.iter().for_each(|h| text.push_str(&format!("\nhelp: {h}")));
+    let others = d.labels.iter().filter(|l| Some(l.span) != primary.map(|p| p.span));
+    let related: Vec<DiagnosticRelatedInformation> = others
+        .filter_map(|l| {
+            related(sources, l.span.file, lines::range(&sources.get(l.span.file).text, l.span), &l.text, link)
+        })
+        .collect();
+    Some(Message {
+        correction: correction(sources, d)
+            .filter(|_| d.fix.as_ref().is_some_and(|f| sources.get(f.span.file).path == path.display().to_string())),
+        path,
+        diagnostic: lsp_types::Diagnostic {
+            range,
+            severity: Some(match d.severity {
+                Severity::Error => DiagnosticSeverity::ERROR,
+                Severity::Warning => DiagnosticSeverity::WARNING,
+                Severity::Note => DiagnosticSeverity::INFORMATION,
+            }),
+            code: Some(NumberOrString::String(d.code.id().to_owned())),
+            source: Some("bramah".to_owned()),
+            message: text,
+            related_information: (!related.is_empty()).then_some(related),
+            ..lsp_types::Diagnostic::default()
+        },
+    })
+}
+
+fn related(
+    sources: &Sources,
+    file: FileId,
+    range: Range,
+    text: &str,
+    link: &dyn Fn(&Path) -> Option<Uri>,
+) -> Option<DiagnosticRelatedInformation> {
+    let uri = link(Path::new(&sources.get(file).path))?;
+    Some(DiagnosticRelatedInformation { location: Location { uri, range }, message: text.to_owned() })
+}

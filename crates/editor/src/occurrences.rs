@@ -1,0 +1,386 @@
+//! Every name of a text with what it stands for: what definition, references, renaming and colours are made of.
+
+use bramah_model::resolve::names::{self, Target};
+use bramah_model::resolve::{ClassId, Library};
+use bramah_syntax::ast::{
+    Argument, ArgumentKind, Class, ClassBody, Component, ElementKind, Equation, EquationKind, Expr, ExprKind, Extends,
+    Ident, Import, Iterator, Modification, Path, Reference, Statement, StatementKind, Subscript,
+};
+
+/// A name at a place.
+#[derive(Clone, Copy, Debug)]
+pub struct Occurrence<'a> {
+    /// The word and where it stands.
+    pub ident: Ident,
+    /// What it stands for; `None` for built-in names and for what is not there.
+    pub target: Option<Target<'a>>,
+    /// Whether it is declared here.
+    pub declares: bool,
+    /// The class around it.
+    pub scope: ClassId,
+}
+
+/// The names in a class that are wanted, in the order of the syntax tree.
+pub fn of_class<'a>(library: &mut Library<'a>, id: ClassId, wanted: &dyn Fn(&Ident) -> bool) -> Vec<Occurrence<'a>> {
+    let mut walk = Walk { library, wanted, found: Vec::new(), locals: Vec::new() };
+    walk.class(id);
+    walk.found
+}
+
+/// The names behind `within` in the file of a class.
+pub fn of_within<'a>(library: &mut Library<'a>, id: ClassId, wanted: &dyn Fn(&Ident) -> bool) -> Vec<Occurrence<'a>> {
+    let file = library.class(id).span.file;
+    let text = &library.sources.get(file).text;
+    let head = text.find(';').map_or("", |end| &text[..=end]);
+    let Some(path) = bramah_syntax::parse(file, head).tree.within else { return Vec::new() };
+    let mut found = Vec::new();
+    for (i, part) in path.parts.iter().enumerate().filter(|(_, part)| wanted(part)) {
+        let parts: Vec<_> = path.parts[..=i].iter().map(|p| p.name).collect();
+        let target = names::named(library, None, &parts, true).map(Target::Class);
+        found.push(Occurrence { ident: *part, target, declares: false, scope: id });
+    }
+    found
+}
+
+/// Whose elements a modifier names; made out only where it is asked for.
+#[derive(Clone, Copy)]
+enum Modified<'a, 'c> {
+    /// Those of a class, named in another.
+    Type(ClassId, &'a Path),
+    /// Those of an element of what is modified around it.
+    Element(&'c Modified<'a, 'c>, &'a Path),
+    /// Those of a class that has been found.
+    Class(ClassId),
+}
+
+struct Walk<'l, 'a> {
+    library: &'l mut Library<'a>,
+    wanted: &'l dyn Fn(&Ident) -> bool,
+    found: Vec<Occurrence<'a>>,
+    /// Variables of the loops around.
+    locals: Vec<Ident>,
+}
+
+impl<'a> Walk<'_, 'a> {
+    fn add(&mut self, scope: ClassId, ident: Ident, target: impl FnOnce(&mut Self) -> Option<Target<'a>>) {
+        if (self.wanted)(&ident) {
+            let target = target(self);
+            self.found.push(Occurrence { ident, target, declares: false, scope });
+        }
+    }
+
+    fn declare(&mut self, scope: ClassId, ident: Ident, target: Target<'a>) {
+        if (self.wanted)(&ident) {
+            self.found.push(Occurrence { ident, target: Some(target), declares: true, scope });
+        }
+    }
+
+    fn class(&mut self, id: ClassId) {
+        let class: &'a Class = self.library.class(id);
+        self.declare(id, class.name, Target::Class(id));
+        if let Some(constraint) = &class.constraint {
+            self.path(id, &constraint.path);
+            self.modification(id, Modified::Type(id, &constraint.path), constraint.modification.as_ref());
+        }
+        match &class.body {
+            ClassBody::Long(body) => {
+                for element in &body.elements {
+                    self.element(id, &element.kind);
+                }
+                self.equations(id, &body.equations);
+                self.equations(id, &body.initial_equations);
+                for statements in body.algorithms.iter().chain(&body.initial_algorithms) {
+                    self.statements(id, statements);
+                }
+                self.end_name(id, class);
+            }
+            ClassBody::Short { base, subscripts, modification, .. } => {
+                let around = self.library.parent(id).unwrap_or(id);
+                self.path(around, base);
+                self.subscripts(around, subscripts);
+                self.modification(around, Modified::Type(around, base), modification.as_ref());
+            }
+            ClassBody::Enumeration(literals) => {
+                for literal in literals.iter().flatten() {
+                    self.declare(id, literal.name, Target::Literal(id, literal));
+                }
+            }
+            ClassBody::Derivative { function, .. } => self.path(id, function),
+        }
+    }
+
+    /// The name after `end`.
+    fn end_name(&mut self, id: ClassId, class: &Class) {
+        let name = class.name.name;
+        let length = name.as_str().len() as u32;
+        let mut span = class.span;
+        span.start = span.end.saturating_sub(length);
+        if span.start > class.name.span.end && self.library.sources.text(span) == name.as_str() {
+            self.declare(id, Ident { name, span }, Target::Class(id));
+        }
+    }
+
+    fn element(&mut self, scope: ClassId, kind: &'a ElementKind) {
+        match kind {
+            ElementKind::Import(import) => self.import(scope, import),
+            ElementKind::Extends(Extends { base, modification }) => {
+                self.path(scope, base);
+                self.modification(scope, Modified::Type(scope, base), modification.as_ref());
+            }
+            ElementKind::Class(class) => {
+                let id = self.library.enter(class, Some(scope));
+                self.class(id);
+            }
+            ElementKind::Component(component) => {
+                self.declared(scope, component);
+                self.component(scope, component);
+            }
+        }
+    }
+
+    fn declared(&mut self, scope: ClassId, component: &'a Component) {
+        if (self.wanted)(&component.name)
+            && let Some(target) = names::element(self.library, scope, component.name.name)
+        {
+            self.declare(scope, component.name, target);
+        }
+    }
+
+    /// All of a component but its name.
+    fn component(&mut self, scope: ClassId, component: &'a Component) {
+        self.path(scope, &component.class);
+        self.subscripts(scope, &component.subscripts);
+        let modified = Modified::Type(scope, &component.class);
+        self.modification(scope, modified, component.modification.as_ref());
+        component.condition.iter().for_each(|e| self.expression(scope, e));
+        if let Some(constraint) = &component.constraint {
+            self.path(scope, &constraint.path);
+            self.modification(scope, Modified::Type(scope, &constraint.path), constraint.modification.as_ref());
+        }
+    }
+
+    fn import(&mut self, scope: ClassId, import: &'a Import) {
+        match import {
+            Import::Single { path, .. } | Import::All(path) => self.dotted(scope, path, true),
+            Import::Some(path, names) => {
+                self.dotted(scope, path, true);
+                for name in names {
+                    let parts: Vec<_> = path.parts.iter().map(|p| p.name).chain([name.name]).collect();
+                    self.add(scope, *name, |w| names::named(w.library, None, &parts, true).map(Target::Class));
+                }
+            }
+        }
+    }
+
+    /// The name of a class, part by part.
+    fn path(&mut self, scope: ClassId, path: &'a Path) {
+        self.dotted(scope, path, path.global);
+    }
+
+    fn dotted(&mut self, scope: ClassId, path: &'a Path, global: bool) {
+        for (i, part) in path.parts.iter().enumerate() {
+            self.add(scope, *part, |w| {
+                let parts: Vec<_> = path.parts[..=i].iter().map(|p| p.name).collect();
+                names::named(w.library, Some(scope), &parts, global).map(Target::Class)
+            });
+        }
+    }
+
+    fn modification(&mut self, scope: ClassId, of: Modified<'a, '_>, modification: Option<&'a Modification>) {
+        let Some(modification) = modification else { return };
+        for argument in &modification.arguments {
+            self.argument(scope, of, argument);
+        }
+        modification.value.iter().for_each(|e| self.expression(scope, e));
+    }
+
+    fn argument(&mut self, scope: ClassId, of: Modified<'a, '_>, argument: &'a Argument) {
+        match &argument.kind {
+            ArgumentKind::Modify { path, modification, .. } => {
+                for (i, part) in path.parts.iter().enumerate() {
+                    self.add(scope, *part, |w| w.element_of(of, &path.parts[..=i]));
+                }
+                self.modification(scope, Modified::Element(&of, path), modification.as_ref());
+            }
+            ArgumentKind::Component(component) => {
+                self.add(scope, component.name, |w| w.element_of(of, &[component.name]));
+                self.component(scope, component);
+            }
+            ArgumentKind::Class(class) => {
+                self.add(scope, class.name, |w| w.element_of(of, &[class.name]));
+                if let ClassBody::Short { base, modification, .. } = &class.body {
+                    self.path(scope, base);
+                    self.modification(scope, Modified::Type(scope, base), modification.as_ref());
+                }
+            }
+            ArgumentKind::BreakComponent(name) => self.add(scope, *name, |w| w.element_of(of, &[*name])),
+            ArgumentKind::BreakConnect(a, b) => {
+                self.expression(scope, a);
+                self.expression(scope, b);
+            }
+        }
+    }
+
+    fn element_of(&mut self, of: Modified<'a, '_>, parts: &[Ident]) -> Option<Target<'a>> {
+        let mut class = self.modified(of)?;
+        let (last, before) = parts.split_last()?;
+        for part in before {
+            let target = names::element(self.library, class, part.name)?;
+            class = names::inside(self.library, target)?;
+        }
+        names::element(self.library, class, last.name)
+    }
+
+    fn modified(&mut self, of: Modified<'a, '_>) -> Option<ClassId> {
+        match of {
+            Modified::Type(scope, path) => names::resolve(self.library, scope, path),
+            Modified::Element(around, path) => {
+                let target = self.element_of(*around, &path.parts)?;
+                names::inside(self.library, target)
+            }
+            Modified::Class(id) => Some(id),
+        }
+    }
+
+    fn subscripts(&mut self, scope: ClassId, subscripts: &'a [Subscript]) {
+        for subscript in subscripts {
+            if let Subscript::Expr(e) = subscript {
+                self.expression(scope, e);
+            }
+        }
+    }
+
+    fn reference(&mut self, scope: ClassId, reference: &'a Reference) {
+        for (i, part) in reference.parts.iter().enumerate() {
+            self.add(scope, part.name, |w| w.meant(scope, reference, i));
+            self.subscripts(scope, &part.subscripts);
+        }
+    }
+
+    /// What the parts of a reference up to one stand for.
+    fn meant(&mut self, scope: ClassId, reference: &Reference, last: usize) -> Option<Target<'a>> {
+        let first = reference.parts[0].name;
+        let local = self.locals.iter().rev().find(|l| l.name == first.name && !reference.global);
+        let mut target = match local {
+            Some(local) => Target::Iterator(*local),
+            None if reference.global => Target::Class(self.library.top(first.name)?),
+            None => names::lookup(self.library, scope, first.name)?,
+        };
+        for part in &reference.parts[1..=last] {
+            let class = names::inside(self.library, target)?;
+            target = names::element(self.library, class, part.name.name)?;
+        }
+        Some(target)
+    }
+
+    fn expression(&mut self, scope: ClassId, e: &'a Expr) {
+        match &e.kind {
+            ExprKind::Reference(reference) => self.reference(scope, reference),
+            ExprKind::Call { function, args, named } => {
+                self.reference(scope, function);
+                args.iter().for_each(|a| self.expression(scope, a));
+                self.named(scope, |w| w.meant(scope, function, function.parts.len() - 1), named);
+            }
+            ExprKind::Comprehension { function, body, iterators } => {
+                function.iter().for_each(|f| self.reference(scope, f));
+                self.within(scope, iterators, |w| w.expression(scope, body));
+            }
+            ExprKind::PartialApplication { function, named } => {
+                self.path(scope, function);
+                let of = |w: &mut Self| names::resolve(w.library, scope, function).map(Target::Class);
+                self.named(scope, of, named);
+            }
+            _ => e.each_child(&mut |inner| self.expression(scope, inner)),
+        }
+    }
+
+    /// Arguments that name an input of a function.
+    fn named(
+        &mut self,
+        scope: ClassId,
+        function: impl Fn(&mut Self) -> Option<Target<'a>>,
+        named: &'a [(Ident, Expr)],
+    ) {
+        for (name, value) in named {
+            self.add(scope, *name, |w| {
+                let target = function(w)?;
+                let class = names::inside(w.library, target)?;
+                w.element_of(Modified::Class(class), &[*name])
+            });
+            self.expression(scope, value);
+        }
+    }
+
+    fn within(&mut self, scope: ClassId, iterators: &'a [Iterator], body: impl FnOnce(&mut Self)) {
+        let outside = self.locals.len();
+        for iterator in iterators {
+            iterator.range.iter().for_each(|r| self.expression(scope, r));
+            self.locals.push(iterator.name);
+            self.declare(scope, iterator.name, Target::Iterator(iterator.name));
+        }
+        body(self);
+        self.locals.truncate(outside);
+    }
+
+    fn equations(&mut self, scope: ClassId, equations: &'a [Equation]) {
+        for equation in equations {
+            match &equation.kind {
+                EquationKind::Equal(a, b) | EquationKind::Connect(a, b) => {
+                    self.expression(scope, a);
+                    self.expression(scope, b);
+                }
+                EquationKind::If { branches, otherwise } => {
+                    self.branches(scope, branches, Self::equations);
+                    self.equations(scope, otherwise);
+                }
+                EquationKind::For { iterators, body } => {
+                    self.within(scope, iterators, |w| w.equations(scope, body));
+                }
+                EquationKind::When(branches) => self.branches(scope, branches, Self::equations),
+                EquationKind::Call(e) => self.expression(scope, e),
+            }
+        }
+    }
+
+    fn statements(&mut self, scope: ClassId, statements: &'a [Statement]) {
+        for statement in statements {
+            match &statement.kind {
+                StatementKind::Assign(a, b) => {
+                    self.expression(scope, a);
+                    self.expression(scope, b);
+                }
+                StatementKind::AssignTuple(left, right) => {
+                    left.iter().flatten().for_each(|e| self.expression(scope, e));
+                    self.expression(scope, right);
+                }
+                StatementKind::Call(e) => self.expression(scope, e),
+                StatementKind::If { branches, otherwise } => {
+                    self.branches(scope, branches, Self::statements);
+                    self.statements(scope, otherwise);
+                }
+                StatementKind::For { iterators, body } => {
+                    self.within(scope, iterators, |w| w.statements(scope, body));
+                }
+                StatementKind::While(condition, body) => {
+                    self.expression(scope, condition);
+                    self.statements(scope, body);
+                }
+                StatementKind::When(branches) => self.branches(scope, branches, Self::statements),
+                StatementKind::Break | StatementKind::Return => {}
+            }
+        }
+    }
+
+    /// Conditions with what they guard.
+    fn branches<T>(
+        &mut self,
+        scope: ClassId,
+        branches: &'a [(Expr, Vec<T>)],
+        body: impl Fn(&mut Self, ClassId, &'a [T]),
+    ) {
+        for (condition, guarded) in branches {
+            self.expression(scope, condition);
+            body(self, scope, guarded);
+        }
+    }
+}

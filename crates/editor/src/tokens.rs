@@ -1,0 +1,70 @@
+//! Colours by meaning: types, parameters, variables, functions.
+
+use super::View;
+use super::occurrences::{self, Occurrence};
+use bramah_model::resolve::Library;
+use bramah_model::resolve::names::Target;
+use bramah_syntax::ast::{ClassKind, Variability};
+use lsp_types::{SemanticToken, SemanticTokenModifier, SemanticTokenType};
+
+/// The types that are used, in the order of their numbers.
+pub const TYPES: [SemanticTokenType; 8] = [
+    SemanticTokenType::NAMESPACE,
+    SemanticTokenType::CLASS,
+    SemanticTokenType::TYPE,
+    SemanticTokenType::FUNCTION,
+    SemanticTokenType::PARAMETER,
+    SemanticTokenType::VARIABLE,
+    SemanticTokenType::PROPERTY,
+    SemanticTokenType::ENUM_MEMBER,
+];
+
+/// Modifiers, in the order of their bits.
+pub const MODIFIERS: [SemanticTokenModifier; 2] = [SemanticTokenModifier::DECLARATION, SemanticTokenModifier::READONLY];
+
+/// All names of a file with what they mean, as differences from one to the next.
+pub fn tokens(view: &mut View<'_, '_>) -> Vec<SemanticToken> {
+    let file = view.file;
+    let own = |ident: &bramah_syntax::ast::Ident| ident.span.file == file;
+    let mut found: Vec<Occurrence<'_>> =
+        view.classes.clone().into_iter().flat_map(|id| occurrences::of_class(view.library, id, &own)).collect();
+    found.sort_by_key(|o| o.ident.span.start);
+    found.dedup_by_key(|o| o.ident.span.start);
+    let mut before = lsp_types::Position::new(0, 0);
+    let mut out = Vec::new();
+    for occurrence in found {
+        let Some((token_type, readonly)) = occurrence.target.and_then(|t| kind(view.library, t)) else { continue };
+        let range = view.range(occurrence.ident.span);
+        let delta_line = range.start.line - before.line;
+        let start = range.start.character;
+        out.push(SemanticToken {
+            delta_line,
+            delta_start: if delta_line == 0 { start - before.character } else { start },
+            length: range.end.character.saturating_sub(start),
+            token_type,
+            token_modifiers_bitset: u32::from(occurrence.declares) | (u32::from(readonly) << 1),
+        });
+        before = range.start;
+    }
+    out
+}
+
+/// The number in [`TYPES`], and whether it is constant.
+fn kind(library: &Library<'_>, target: Target<'_>) -> Option<(u32, bool)> {
+    Some(match target {
+        Target::Class(id) => match library.class(id).kind {
+            ClassKind::Package => (0, false),
+            ClassKind::Type => (2, false),
+            ClassKind::Function { .. } | ClassKind::Operator => (3, false),
+            _ => (1, false),
+        },
+        Target::Component(member) => match member.component.prefix.variability {
+            Some(Variability::Constant) => (4, true),
+            Some(Variability::Parameter) => (4, false),
+            _ if member.component.class.parts.len() == 1 => (5, false),
+            _ => (6, false),
+        },
+        Target::Literal(..) => (7, true),
+        Target::Iterator(_) => (5, false),
+    })
+}

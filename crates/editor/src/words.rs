@@ -1,0 +1,123 @@
+//! What the words of a declaration say, as text for people.
+
+use bramah_model::resolve::names::{self, Member, Target};
+use bramah_model::resolve::{ClassId, Library};
+use bramah_syntax::ast::{
+    ArgumentKind, Causality, ClassKind, Component, ExprKind, Modification, Prefixes, TypePrefix, Variability,
+};
+
+/// An attribute that is a text, such as `unit`.
+pub(super) fn attribute<'a>(library: &mut Library<'a>, member: Member<'a>, name: &str) -> Option<String> {
+    match &names::attribute(library, member, name)?.kind {
+        ExprKind::String(text) => Some(text.to_string()),
+        _ => None,
+    }
+}
+
+/// `parameter SI.Volume V = 1e-5`, as declared but for brackets.
+pub(super) fn declaration(library: &Library<'_>, component: &Component) -> String {
+    let mut out = prefixes(&component.prefixes, &component.prefix);
+    out.push_str(&component.class.dotted());
+    out.push(' ');
+    out.push_str(component.name.name.as_str());
+    if !component.subscripts.is_empty() {
+        out.push_str(&format!("[{}]", vec![":"; component.subscripts.len()].join(", ")));
+    }
+    if let Some(value) = component.modification.as_ref().and_then(|m| m.value.as_ref()) {
+        out.push_str(&format!(" = {}", library.sources.text(value.span)));
+    }
+    if let Some(condition) = &component.condition {
+        out.push_str(&format!(" if {}", library.sources.text(condition.span)));
+    }
+    out
+}
+
+fn prefixes(all: &Prefixes, prefix: &TypePrefix) -> String {
+    let words = [
+        (all.final_, "final "),
+        (all.inner, "inner "),
+        (all.outer, "outer "),
+        (all.replaceable, "replaceable "),
+        (prefix.flow, "flow "),
+        (prefix.stream, "stream "),
+        (prefix.variability == Some(Variability::Constant), "constant "),
+        (prefix.variability == Some(Variability::Parameter), "parameter "),
+        (prefix.variability == Some(Variability::Discrete), "discrete "),
+        (prefix.causality == Some(Causality::Input), "input "),
+        (prefix.causality == Some(Causality::Output), "output "),
+    ];
+    words.iter().filter(|(is_there, _)| *is_there).map(|(_, word)| *word).collect()
+}
+
+/// `model Hydraulic.Pump`
+pub(super) fn class_line(library: &Library<'_>, id: ClassId) -> String {
+    let class = library.class(id);
+    let partial = if class.prefixes.partial { "partial " } else { "" };
+    format!("{partial}{} {}", class.kind.word(), library.full_name(id))
+}
+
+/// The description of what is declared.
+pub(super) fn description<'a>(library: &Library<'a>, target: Target<'a>) -> Option<&'a str> {
+    match target {
+        Target::Class(id) => library.class(id).description.as_deref(),
+        Target::Component(member) => member.component.description.as_deref(),
+        Target::Literal(_, literal) => literal.description.as_deref(),
+        Target::Iterator(_) => None,
+    }
+}
+
+/// The text of `Documentation(info = ...)`.
+pub(super) fn documentation<'a>(library: &Library<'a>, id: ClassId) -> Option<&'a str> {
+    let annotation = library.class(id).annotation.as_ref()?;
+    let info = inner(inner(annotation, "Documentation")?, "info")?;
+    match &info.value.as_ref()?.kind {
+        ExprKind::String(text) => Some(text),
+        _ => None,
+    }
+}
+
+fn inner<'m>(modification: &'m Modification, name: &str) -> Option<&'m Modification> {
+    modification.arguments.iter().find_map(|a| match &a.kind {
+        ArgumentKind::Modify { path, modification: Some(m), .. } if path.parts[0].name == name => Some(m),
+        _ => None,
+    })
+}
+
+/// HTML of a documentation as Markdown, roughly: paragraphs, lists, code.
+pub(super) fn markdown(html: &str) -> String {
+    let mut out = String::new();
+    let mut rest = html;
+    while let Some(at) = rest.find('<') {
+        out.push_str(&entities(&rest[..at]));
+        let Some(end) = rest[at..].find('>') else { break };
+        let tag = rest[at + 1..at + end].split_whitespace().next().unwrap_or("").to_lowercase();
+        out.push_str(match tag.as_str() {
+            "p" | "/p" | "br" | "br/" | "/ul" | "/ol" | "/table" | "/h4" | "/tr" => "\n\n",
+            "li" => "\n- ",
+            "code" | "/code" => "`",
+            "em" | "/em" | "i" | "/i" => "*",
+            "b" | "/b" | "strong" | "/strong" => "**",
+            "h1" | "h2" | "h3" | "h4" => "\n\n### ",
+            "td" | "th" => " ",
+            _ => "",
+        });
+        rest = &rest[at + end + 1..];
+    }
+    out.push_str(&entities(rest));
+    let mut lines = Vec::new();
+    for line in out.lines().map(str::trim) {
+        if !(line.is_empty() && lines.last().is_none_or(|l: &&str| l.is_empty())) {
+            lines.push(line);
+        }
+    }
+    lines.join("\n").trim_end().to_owned()
+}
+
+fn entities(text: &str) -> String {
+    text.replace("&lt;", "<").replace("&gt;", ">").replace("&quot;", "\"").replace("&nbsp;", " ").replace("&amp;", "&")
+}
+
+/// Whether elements of a class are its inputs.
+pub(super) fn is_function(library: &Library<'_>, id: ClassId) -> bool {
+    matches!(library.class(id).kind, ClassKind::Function { .. })
+}

@@ -1,0 +1,128 @@
+//! Affine expressions: `e = coefficient*leaf + rest` with both free of the leaf, and equations solved for a leaf.
+
+use super::{Binary, ExprId, Exprs, Node, Unary};
+use rustc_hash::FxHashMap;
+
+/// `coefficient*leaf + rest`
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Affine {
+    /// The factor of the leaf.
+    pub coefficient: ExprId,
+    /// What is added.
+    pub rest: ExprId,
+}
+
+impl Exprs {
+    /// `e` as an affine expression of `leaf`, if its structure shows that it is one. The coefficient is 0 when `e` does
+    /// not depend on the leaf.
+    pub fn linear_in(&mut self, e: ExprId, leaf: ExprId) -> Option<Affine> {
+        // A part that is not in the map is free of the leaf.
+        let mut parts: FxHashMap<ExprId, Affine> = FxHashMap::default();
+        parts.insert(leaf, Affine { coefficient: Self::ONE, rest: Self::ZERO });
+        // No node below the leaf's id can hold it.
+        for node in self.reachable(&[e], |node| node > leaf) {
+            let operands = self.operands(node);
+            if operands.as_slice().iter().any(|operand| parts.contains_key(operand)) {
+                let part = self.affine_node(node, &parts)?;
+                parts.insert(node, part);
+            }
+        }
+        Some(parts.get(&e).copied().unwrap_or(Affine { coefficient: Self::ZERO, rest: e }))
+    }
+
+    /// The value of `leaf` that fulfils `lhs = rhs`, and the coefficient that was divided by, when the equation is affine
+    /// in the leaf and the coefficient is not the number 0. The value is meaningless where the coefficient vanishes.
+    pub fn solve_for(&mut self, lhs: ExprId, rhs: ExprId, leaf: ExprId) -> Option<(ExprId, ExprId)> {
+        let left = self.linear_in(lhs, leaf)?;
+        let right = self.linear_in(rhs, leaf)?;
+        let coefficient = self.sub(left.coefficient, right.coefficient);
+        if coefficient == Self::ZERO {
+            return None;
+        }
+        let rest = self.sub(right.rest, left.rest);
+        Some((self.div(rest, coefficient), coefficient))
+    }
+
+    fn affine_node(&mut self, node: ExprId, parts: &FxHashMap<ExprId, Affine>) -> Option<Affine> {
+        let of = |e: ExprId| parts.get(&e).copied().unwrap_or(Affine { coefficient: Self::ZERO, rest: e });
+        let free = |e: ExprId| !parts.contains_key(&e);
+        match self.node(node) {
+            Node::Unary(Unary::Neg, a) => Some(self.each_part(of(a), of(a), |pool, x, _| pool.neg(x))),
+            Node::Binary(op @ (Binary::Add | Binary::Sub), a, b) => {
+                Some(self.each_part(of(a), of(b), |pool, x, y| pool.binary(op, x, y)))
+            }
+            Node::Binary(Binary::Mul, a, b) if free(b) => {
+                Some(self.each_part(of(a), of(a), |pool, x, _| pool.mul(x, b)))
+            }
+            Node::Binary(Binary::Mul, a, b) if free(a) => {
+                Some(self.each_part(of(b), of(b), |pool, x, _| pool.mul(a, x)))
+            }
+            Node::Binary(Binary::Div, a, b) if free(b) => {
+                Some(self.each_part(of(a), of(a), |pool, x, _| pool.div(x, b)))
+            }
+            Node::If(c, a, b) if free(c) => Some(self.each_part(of(a), of(b), |pool, x, y| pool.if_(c, x, y))),
+            Node::Homotopy(a, b) => Some(self.each_part(of(a), of(b), Exprs::homotopy)),
+            _ => None,
+        }
+    }
+
+    fn each_part(
+        &mut self,
+        a: Affine,
+        b: Affine,
+        mut change: impl FnMut(&mut Exprs, ExprId, ExprId) -> ExprId,
+    ) -> Affine {
+        Affine { coefficient: change(self, a.coefficient, b.coefficient), rest: change(self, a.rest, b.rest) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Rel, VarId};
+
+    fn vars(p: &mut Exprs) -> (ExprId, ExprId, ExprId) {
+        (p.var(VarId(0)), p.var(VarId(1)), p.var(VarId(2)))
+    }
+
+    #[test]
+    fn lone_leaves_and_free_expressions() {
+        let mut p = Exprs::default();
+        let (x, a, _) = vars(&mut p);
+        assert_eq!(p.linear_in(x, x), Some(Affine { coefficient: Exprs::ONE, rest: Exprs::ZERO }));
+        assert_eq!(p.linear_in(a, x), Some(Affine { coefficient: Exprs::ZERO, rest: a }));
+        assert_eq!(p.solve_for(x, a, x), Some((a, Exprs::ONE)));
+        assert_eq!(p.solve_for(a, a, x), None);
+    }
+
+    #[test]
+    fn sums_and_products_solve() {
+        let mut p = Exprs::default();
+        let (x, a, b) = vars(&mut p);
+        let product = p.mul(a, x);
+        let left = p.sub(product, b);
+        let (value, coefficient) = p.solve_for(left, Exprs::ZERO, x).expect("affine");
+        let expected = p.div(b, a);
+        assert_eq!((value, coefficient), (expected, a));
+        let sum = p.add(a, b);
+        let minus_x = p.neg(x);
+        let minus_sum = p.neg(sum);
+        assert_eq!(p.solve_for(minus_x, sum, x).map(|found| found.0), Some(minus_sum));
+    }
+
+    #[test]
+    fn branches_stay_affine_and_conditions_do_not() {
+        let mut p = Exprs::default();
+        let (x, a, b) = vars(&mut p);
+        let c = p.rel(Rel::Lt, a, b);
+        let branch = p.if_(c, x, a);
+        let affine = p.linear_in(branch, x).expect("affine");
+        let coefficient = p.if_(c, Exprs::ONE, Exprs::ZERO);
+        assert_eq!(affine.coefficient, coefficient);
+        let on_x = p.rel(Rel::Lt, x, b);
+        let kink = p.if_(on_x, x, a);
+        assert_eq!(p.linear_in(kink, x), None);
+        let square = p.mul(x, x);
+        assert_eq!(p.linear_in(square, x), None);
+    }
+}

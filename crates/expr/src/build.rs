@@ -1,0 +1,410 @@
+//! Constructors that simplify.
+//!
+//! What they may do, and nothing else: fold numbers when the result is finite (`1/0` stays as written, so that the run
+//! can name it), drop neutral elements, cancel `x - x` and double negations, move signs outwards, choose the branch of
+//! an `if` with a known condition. A product with the number 0 and a quotient of the number 0 are 0 whatever the other
+//! side is at run time: a structural zero. The sign of a zero is not kept. Nothing is reassociated, so rounding is as written; of two commutative
+//! spellings the one that came first into the pool is shared.
+
+use super::math;
+use super::{Binary, ExprId, Exprs, Node, Rel, Unary};
+
+impl Exprs {
+    /// The negative.
+    pub fn neg(&mut self, a: ExprId) -> ExprId {
+        match self.node(a) {
+            Node::Num(bits) => self.num(-f64::from_bits(bits)),
+            Node::Unary(Unary::Neg, inner) => inner,
+            Node::Binary(Binary::Sub, x, y) => self.sub(y, x),
+            Node::Binary(op @ (Binary::Mul | Binary::Div), x, y) => match self.as_num(x) {
+                Some(c) => {
+                    let minus = self.num(-c);
+                    self.binary(op, minus, y)
+                }
+                None => self.intern(Node::Unary(Unary::Neg, a)),
+            },
+            _ => self.intern(Node::Unary(Unary::Neg, a)),
+        }
+    }
+
+    /// Logical negation.
+    pub fn not(&mut self, a: ExprId) -> ExprId {
+        match self.node(a) {
+            Node::Num(bits) => self.boolean(f64::from_bits(bits) == 0.0),
+            Node::Unary(Unary::Not, inner) if self.is_truth(inner) => inner,
+            _ => self.intern(Node::Unary(Unary::Not, a)),
+        }
+    }
+
+    /// True when the value can only be 0 or 1. Variables are not known to be.
+    fn is_truth(&self, e: ExprId) -> bool {
+        match self.node(e) {
+            Node::Rel(..) | Node::EventRel(..) | Node::Sample(..) | Node::Initial | Node::Terminal => true,
+            Node::Unary(op, _) => op == Unary::Not,
+            Node::Binary(op, ..) => matches!(op, Binary::And | Binary::Or),
+            // A variable under `not` is Boolean: the type check has seen to it.
+            Node::Var(_) | Node::Pre(_) => true,
+            _ => e == Self::ZERO || e == Self::ONE,
+        }
+    }
+
+    /// The sum.
+    pub fn add(&mut self, a: ExprId, b: ExprId) -> ExprId {
+        if a == Self::ZERO {
+            return b;
+        }
+        if b == Self::ZERO {
+            return a;
+        }
+        if let Some(folded) = self.fold(Binary::Add, a, b) {
+            return folded;
+        }
+        if let Some(positive) = self.negative_of(b) {
+            return self.sub(a, positive);
+        }
+        match self.node(a) {
+            Node::Unary(Unary::Neg, x) => self.sub(b, x),
+            _ => self.commutative(Binary::Add, a, b),
+        }
+    }
+
+    /// The difference.
+    pub fn sub(&mut self, a: ExprId, b: ExprId) -> ExprId {
+        if b == Self::ZERO {
+            return a;
+        }
+        if a == b {
+            return Self::ZERO;
+        }
+        if a == Self::ZERO {
+            return self.neg(b);
+        }
+        if let Some(folded) = self.fold(Binary::Sub, a, b) {
+            return folded;
+        }
+        if let Some(positive) = self.negative_of(b) {
+            return self.add(a, positive);
+        }
+        self.intern(Node::Binary(Binary::Sub, a, b))
+    }
+
+    /// The product.
+    pub fn mul(&mut self, a: ExprId, b: ExprId) -> ExprId {
+        if a == Self::ZERO || b == Self::ZERO {
+            return Self::ZERO;
+        }
+        if a == Self::ONE {
+            return b;
+        }
+        if b == Self::ONE {
+            return a;
+        }
+        if let Some(folded) = self.fold(Binary::Mul, a, b) {
+            return folded;
+        }
+        if self.as_num(a) == Some(-1.0) {
+            return self.neg(b);
+        }
+        if self.as_num(b) == Some(-1.0) {
+            return self.neg(a);
+        }
+        match (self.node(a), self.node(b)) {
+            (Node::Unary(Unary::Neg, x), Node::Unary(Unary::Neg, y)) => self.mul(x, y),
+            (Node::Unary(Unary::Neg, x), _) => self.negated(Binary::Mul, x, b),
+            (_, Node::Unary(Unary::Neg, y)) => self.negated(Binary::Mul, a, y),
+            _ => self.commutative(Binary::Mul, a, b),
+        }
+    }
+
+    /// The quotient.
+    pub fn div(&mut self, a: ExprId, b: ExprId) -> ExprId {
+        if b == Self::ONE || (a == Self::ZERO && b != Self::ZERO) {
+            return a;
+        }
+        if let Some(folded) = self.fold(Binary::Div, a, b) {
+            return folded;
+        }
+        if self.as_num(b) == Some(-1.0) {
+            return self.neg(a);
+        }
+        match (self.node(a), self.node(b)) {
+            (Node::Unary(Unary::Neg, x), Node::Unary(Unary::Neg, y)) => self.div(x, y),
+            (Node::Unary(Unary::Neg, x), _) => self.negated(Binary::Div, x, b),
+            (_, Node::Unary(Unary::Neg, y)) => self.negated(Binary::Div, a, y),
+            _ => self.intern(Node::Binary(Binary::Div, a, b)),
+        }
+    }
+
+    /// `a^b`
+    pub fn pow(&mut self, a: ExprId, b: ExprId) -> ExprId {
+        if b == Self::ZERO || a == Self::ONE {
+            return Self::ONE;
+        }
+        if b == Self::ONE {
+            return a;
+        }
+        self.folded(Binary::Pow, a, b)
+    }
+
+    /// The smaller one.
+    pub fn min(&mut self, a: ExprId, b: ExprId) -> ExprId {
+        if a == b { a } else { self.folded(Binary::Min, a, b) }
+    }
+
+    /// The larger one.
+    pub fn max(&mut self, a: ExprId, b: ExprId) -> ExprId {
+        if a == b { a } else { self.folded(Binary::Max, a, b) }
+    }
+
+    /// The angle of the point `(x, y)`.
+    pub fn atan2(&mut self, y: ExprId, x: ExprId) -> ExprId {
+        self.folded(Binary::Atan2, y, x)
+    }
+
+    /// Both.
+    pub fn and(&mut self, a: ExprId, b: ExprId) -> ExprId {
+        match (self.as_num(a), self.as_num(b)) {
+            (Some(0.0), _) | (_, Some(0.0)) => Self::ZERO,
+            (Some(_), _) => b,
+            (_, Some(_)) => a,
+            _ if a == b => a,
+            _ => self.commutative(Binary::And, a, b),
+        }
+    }
+
+    /// At least one.
+    pub fn or(&mut self, a: ExprId, b: ExprId) -> ExprId {
+        match (self.as_num(a), self.as_num(b)) {
+            (Some(0.0), _) => b,
+            (_, Some(0.0)) => a,
+            (Some(_), _) | (_, Some(_)) => Self::ONE,
+            _ if a == b => a,
+            _ => self.commutative(Binary::Or, a, b),
+        }
+    }
+
+    /// The second wherever the first holds.
+    pub fn implies(&mut self, a: ExprId, b: ExprId) -> ExprId {
+        let not = self.not(a);
+        self.or(not, b)
+    }
+
+    /// Any function of two arguments, simplified.
+    pub fn binary(&mut self, op: Binary, a: ExprId, b: ExprId) -> ExprId {
+        match op {
+            Binary::Add => self.add(a, b),
+            Binary::Sub => self.sub(a, b),
+            Binary::Mul => self.mul(a, b),
+            Binary::Div => self.div(a, b),
+            Binary::Pow => self.pow(a, b),
+            Binary::Atan2 => self.atan2(a, b),
+            Binary::Min => self.min(a, b),
+            Binary::Max => self.max(a, b),
+            Binary::And => self.and(a, b),
+            Binary::Or => self.or(a, b),
+        }
+    }
+
+    /// Any function of one argument, simplified.
+    pub fn unary(&mut self, op: Unary, a: ExprId) -> ExprId {
+        match op {
+            Unary::Neg => return self.neg(a),
+            Unary::Not => return self.not(a),
+            _ => {}
+        }
+        if let Some(x) = self.as_num(a) {
+            let value = math::unary(op, x);
+            if value.is_finite() {
+                return self.num(value);
+            }
+        }
+        match (op, self.node(a)) {
+            (Unary::Abs, Node::Unary(Unary::Neg, x)) => self.unary(Unary::Abs, x),
+            (Unary::Abs, Node::Unary(Unary::Abs | Unary::Sqrt | Unary::Exp, _)) => a,
+            _ => self.intern(Node::Unary(op, a)),
+        }
+    }
+
+    /// Absolute value.
+    pub fn abs(&mut self, a: ExprId) -> ExprId {
+        self.unary(Unary::Abs, a)
+    }
+
+    /// Square root.
+    pub fn sqrt(&mut self, a: ExprId) -> ExprId {
+        self.unary(Unary::Sqrt, a)
+    }
+
+    /// Largest whole number not above the argument; makes no event.
+    pub fn floor(&mut self, a: ExprId) -> ExprId {
+        self.unary(Unary::Floor, a)
+    }
+
+    /// Largest whole number not above the argument; a change is an event.
+    pub fn event_floor(&mut self, a: ExprId) -> ExprId {
+        if self.as_num(a).is_some() { self.floor(a) } else { self.intern(Node::EventFloor(a)) }
+    }
+
+    /// A relation that makes no event.
+    pub fn rel(&mut self, rel: Rel, a: ExprId, b: ExprId) -> ExprId {
+        self.known_rel(rel, a, b).unwrap_or_else(|| self.intern(Node::Rel(rel, a, b)))
+    }
+
+    /// A relation whose change is an event.
+    pub fn event_rel(&mut self, rel: Rel, a: ExprId, b: ExprId) -> ExprId {
+        self.known_rel(rel, a, b).unwrap_or_else(|| self.intern(Node::EventRel(rel, a, b)))
+    }
+
+    fn known_rel(&mut self, rel: Rel, a: ExprId, b: ExprId) -> Option<ExprId> {
+        if a == b {
+            return Some(self.boolean(matches!(rel, Rel::Le | Rel::Ge | Rel::Eq)));
+        }
+        let (x, y) = (self.as_num(a)?, self.as_num(b)?);
+        Some(self.boolean(math::holds(rel, x, y)))
+    }
+
+    /// `if c then a else b`
+    pub fn if_(&mut self, c: ExprId, a: ExprId, b: ExprId) -> ExprId {
+        if let Some(known) = self.as_num(c) {
+            return if known == 0.0 { b } else { a };
+        }
+        if a == b {
+            return a;
+        }
+        match self.node(c) {
+            Node::Unary(Unary::Not, inner) => self.if_(inner, b, a),
+            _ => self.intern(Node::If(c, a, b)),
+        }
+    }
+
+    /// `homotopy(actual, simplified)`
+    pub fn homotopy(&mut self, actual: ExprId, simplified: ExprId) -> ExprId {
+        if actual == simplified { actual } else { self.intern(Node::Homotopy(actual, simplified)) }
+    }
+
+    /// `sample(start, interval)`
+    pub fn sample(&mut self, start: ExprId, interval: ExprId) -> ExprId {
+        self.intern(Node::Sample(start, interval))
+    }
+
+    /// `delay(a, time)`
+    pub fn delay(&mut self, a: ExprId, time: ExprId) -> ExprId {
+        match self.node(a) {
+            Node::Num(_) => a,
+            _ => self.intern(Node::Delay(a, time)),
+        }
+    }
+
+    /// `a*a`, written as a power.
+    pub fn square(&mut self, a: ExprId) -> ExprId {
+        let two = self.num(2.0);
+        self.pow(a, two)
+    }
+
+    /// The sum of all, from left to right; 0 when there are none.
+    pub fn sum(&mut self, terms: &[ExprId]) -> ExprId {
+        terms.iter().fold(Self::ZERO, |sum, &term| self.add(sum, term))
+    }
+
+    /// `x` when the expression is `-x` or a negative number.
+    fn negative_of(&mut self, e: ExprId) -> Option<ExprId> {
+        match self.node(e) {
+            Node::Unary(Unary::Neg, x) => Some(x),
+            Node::Num(bits) if f64::from_bits(bits) < 0.0 => Some(self.num(-f64::from_bits(bits))),
+            _ => None,
+        }
+    }
+
+    fn negated(&mut self, op: Binary, a: ExprId, b: ExprId) -> ExprId {
+        let positive = self.binary(op, a, b);
+        self.neg(positive)
+    }
+
+    /// The number, when both are numbers and the result is finite.
+    fn fold(&mut self, op: Binary, a: ExprId, b: ExprId) -> Option<ExprId> {
+        let value = math::binary(op, self.as_num(a)?, self.as_num(b)?);
+        value.is_finite().then(|| self.num(value))
+    }
+
+    fn folded(&mut self, op: Binary, a: ExprId, b: ExprId) -> ExprId {
+        self.fold(op, a, b).unwrap_or_else(|| self.intern(Node::Binary(op, a, b)))
+    }
+
+    /// Shares `b op a` if that spelling is in the pool.
+    fn commutative(&mut self, op: Binary, a: ExprId, b: ExprId) -> ExprId {
+        self.find(&Node::Binary(op, b, a)).unwrap_or_else(|| self.intern(Node::Binary(op, a, b)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::VarId;
+
+    fn pool() -> (Exprs, ExprId, ExprId) {
+        let mut pool = Exprs::default();
+        let (x, y) = (pool.var(VarId(0)), pool.var(VarId(1)));
+        (pool, x, y)
+    }
+
+    #[test]
+    fn numbers_fold_only_to_finite_ones() {
+        let (mut p, ..) = pool();
+        let (two, three) = (p.num(2.0), p.num(3.0));
+        let six = p.mul(two, three);
+        assert_eq!(p.as_num(six), Some(6.0));
+        let infinite = p.div(two, Exprs::ZERO);
+        assert_eq!(p.node(infinite), Node::Binary(Binary::Div, two, Exprs::ZERO));
+        let minus = p.num(-2.0);
+        let root = p.sqrt(minus);
+        assert_eq!(p.node(root), Node::Unary(Unary::Sqrt, minus));
+        let nothing = p.div(Exprs::ZERO, Exprs::ZERO);
+        assert_eq!(p.as_num(nothing), None);
+    }
+
+    #[test]
+    fn neutral_elements_vanish() {
+        let (mut p, x, y) = pool();
+        assert_eq!(p.add(x, Exprs::ZERO), x);
+        assert_eq!(p.mul(Exprs::ONE, x), x);
+        assert_eq!(p.mul(Exprs::ZERO, x), Exprs::ZERO);
+        assert_eq!(p.sub(x, x), Exprs::ZERO);
+        assert_eq!(p.div(x, Exprs::ONE), x);
+        assert_eq!(p.pow(x, Exprs::ONE), x);
+        let (a, b) = (p.add(x, y), p.add(y, x));
+        assert_eq!(a, b);
+    }
+
+    #[test]
+    fn signs_move_outwards() {
+        let (mut p, x, y) = pool();
+        let minus_y = p.neg(y);
+        assert_eq!(p.neg(minus_y), y);
+        let difference = p.sub(x, y);
+        assert_eq!(p.add(x, minus_y), difference);
+        assert_eq!(p.add(minus_y, x), difference);
+        let turned = p.sub(y, x);
+        assert_eq!(p.neg(difference), turned);
+        let product = p.mul(x, y);
+        let minus_product = p.neg(product);
+        assert_eq!(p.mul(x, minus_y), minus_product);
+        let quotient = p.div(x, y);
+        let minus_x = p.neg(x);
+        assert_eq!(p.div(minus_x, minus_y), quotient);
+    }
+
+    #[test]
+    fn truth_values_fold() {
+        let (mut p, x, y) = pool();
+        let c = p.rel(Rel::Lt, x, y);
+        assert_eq!(p.and(c, Exprs::ONE), c);
+        assert_eq!(p.and(Exprs::ZERO, c), Exprs::ZERO);
+        assert_eq!(p.or(c, Exprs::ONE), Exprs::ONE);
+        let no = p.not(c);
+        assert_eq!(p.not(no), c);
+        let (left, right) = (p.if_(no, x, y), p.if_(c, y, x));
+        assert_eq!(left, right);
+        assert_eq!(p.if_(Exprs::ONE, x, y), x);
+        assert_eq!(p.event_rel(Rel::Le, x, x), Exprs::ONE);
+    }
+}

@@ -1,0 +1,97 @@
+//! Expressions from text, for tests.
+
+use super::{Binary, ExprId, Exprs, Rel, Unary, VarId};
+use bramah_syntax::ast::{BinaryOp, Expr, ExprKind, Reference, UnaryOp};
+use bramah_syntax::diag::FileId;
+
+/// The expression that a text describes. Panics on what it does not know.
+pub fn read(pool: &mut Exprs, text: &str, find: &dyn Fn(&str) -> VarId) -> ExprId {
+    let tree = bramah_syntax::parse_expression(FileId(0), text).value.unwrap_or_else(|| panic!("cannot read {text}"));
+    build(pool, &tree, find)
+}
+
+fn build(pool: &mut Exprs, tree: &Expr, find: &dyn Fn(&str) -> VarId) -> ExprId {
+    match &tree.kind {
+        #[allow(clippy::cast_precision_loss, reason = "small numbers")]
+        ExprKind::Integer(value) => pool.num(*value as f64),
+        ExprKind::Real(value) => pool.num(*value),
+        ExprKind::Boolean(value) => pool.boolean(*value),
+        ExprKind::Reference(reference) => match name(reference) {
+            "time" => pool.time(),
+            "pi" => pool.num(std::f64::consts::PI),
+            name => pool.var(find(name)),
+        },
+        ExprKind::Unary(op, a) => {
+            let a = build(pool, a, find);
+            if *op == UnaryOp::Not { pool.not(a) } else { pool.neg(a) }
+        }
+        ExprKind::Binary(op, a, b) => {
+            let (a, b) = (build(pool, a, find), build(pool, b, find));
+            binary(pool, *op, a, b)
+        }
+        ExprKind::If { branches, otherwise } => {
+            branches.iter().rev().fold(build(pool, otherwise, find), |rest, (c, a)| {
+                let (c, a) = (build(pool, c, find), build(pool, a, find));
+                pool.if_(c, a, rest)
+            })
+        }
+        ExprKind::Tuple(parts) => build(pool, parts[0].as_ref().expect("a part"), find),
+        ExprKind::Call { function, args, .. } => call(pool, name(function), args, find),
+        other => panic!("not in tests: {other:?}"),
+    }
+}
+
+fn name(reference: &Reference) -> &'static str {
+    reference.parts[0].name.name.as_str()
+}
+
+fn binary(pool: &mut Exprs, op: BinaryOp, a: ExprId, b: ExprId) -> ExprId {
+    let rel = match op {
+        BinaryOp::Lt => Rel::Lt,
+        BinaryOp::Le => Rel::Le,
+        BinaryOp::Gt => Rel::Gt,
+        BinaryOp::Ge => Rel::Ge,
+        BinaryOp::Eq => Rel::Eq,
+        BinaryOp::Ne => Rel::Ne,
+        BinaryOp::Add => return pool.add(a, b),
+        BinaryOp::Sub => return pool.sub(a, b),
+        BinaryOp::Mul => return pool.mul(a, b),
+        BinaryOp::Div => return pool.div(a, b),
+        BinaryOp::Pow => return pool.pow(a, b),
+        BinaryOp::And => return pool.and(a, b),
+        BinaryOp::Or => return pool.or(a, b),
+        other => panic!("not in tests: {other:?}"),
+    };
+    pool.event_rel(rel, a, b)
+}
+
+fn call(pool: &mut Exprs, function: &str, args: &[Expr], find: &dyn Fn(&str) -> VarId) -> ExprId {
+    if let ("der" | "pre", ExprKind::Reference(reference)) = (function, &args[0].kind) {
+        let v = find(name(reference));
+        return if function == "der" { pool.der(v) } else { pool.pre(v) };
+    }
+    let args: Vec<ExprId> = args.iter().map(|arg| build(pool, arg, find)).collect();
+    let op = match function {
+        "min" => return pool.binary(Binary::Min, args[0], args[1]),
+        "max" => return pool.binary(Binary::Max, args[0], args[1]),
+        "atan2" => return pool.binary(Binary::Atan2, args[0], args[1]),
+        "abs" => Unary::Abs,
+        "sign" => Unary::Sign,
+        "sqrt" => Unary::Sqrt,
+        "exp" => Unary::Exp,
+        "log" => Unary::Log,
+        "log10" => Unary::Log10,
+        "sin" => Unary::Sin,
+        "cos" => Unary::Cos,
+        "tan" => Unary::Tan,
+        "asin" => Unary::Asin,
+        "acos" => Unary::Acos,
+        "atan" => Unary::Atan,
+        "sinh" => Unary::Sinh,
+        "cosh" => Unary::Cosh,
+        "tanh" => Unary::Tanh,
+        "floor" => Unary::Floor,
+        other => panic!("not in tests: {other}"),
+    };
+    pool.unary(op, args[0])
+}

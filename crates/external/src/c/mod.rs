@@ -1,0 +1,302 @@
+//! C functions of a user: what stands behind `external "C"` of his own library, compiled with a wrapper that takes all
+//! arguments as numbers, and called there (MLS 12.9).
+//!
+//! Such a function counts as pure: same arguments, same results. Its slopes are differences.
+
+mod native;
+
+use bramah_expr::function::External;
+use bramah_syntax::world::CompiledC;
+use std::fmt::Write as _;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// A difference reaches this part of an argument's size to either side: the cube root of the rounding error.
+const REACH: f64 = 6e-6;
+/// The size of an argument that is near 0.
+const SMALL: f64 = 1e-3;
+
+/// What numbers are in C.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// `double`
+    Real,
+    /// `int`: integers, truth values, enumerations
+    Integer,
+}
+
+impl Kind {
+    fn c(self) -> &'static str {
+        match self {
+            Kind::Real => "double",
+            Kind::Integer => "int",
+        }
+    }
+}
+
+/// An argument of the C function.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Argument {
+    /// A number that is given, or an array of so many.
+    Input(Kind, Option<usize>),
+    /// A number that is found, or an array of so many.
+    Output(Kind, Option<usize>),
+    /// A text that is known before the run.
+    Text(String),
+    /// A number written out.
+    Number(f64),
+    /// The size of an array.
+    Size(usize),
+}
+
+/// How a C function is called.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Signature {
+    /// Its name.
+    pub name: String,
+    /// What it gives back.
+    pub result: Option<Kind>,
+    /// Its arguments.
+    pub arguments: Vec<Argument>,
+    /// Text that declares it, from the `Include` annotation; without any it is declared by these types.
+    pub include: String,
+}
+
+impl Signature {
+    /// How many numbers come out: the result, and the outputs among the arguments.
+    pub fn outputs(&self) -> usize {
+        let of = |a: &Argument| if let Argument::Output(_, n) = a { n.unwrap_or(1) } else { 0 };
+        usize::from(self.result.is_some()) + self.arguments.iter().map(of).sum::<usize>()
+    }
+
+    /// The C text of a function `bramah_call(in, out)` that calls it.
+    pub fn wrapper(&self) -> String {
+        let (mut before, mut after, mut passed, mut types) = (String::new(), String::new(), Vec::new(), Vec::new());
+        let (mut read, mut written) = (0, 0);
+        if self.result.is_some() {
+            after += "  out[0] = result;\n";
+            written = 1;
+        }
+        for (k, argument) in self.arguments.iter().enumerate() {
+            let name = format!("a{k}");
+            match argument {
+                Argument::Text(text) => {
+                    passed.push(literal(text));
+                    types.push("const char *".to_owned());
+                    continue;
+                }
+                Argument::Number(x) => {
+                    passed.push(format!("{x}"));
+                    types.push(if x.fract() == 0.0 { "int" } else { "double" }.to_owned());
+                    continue;
+                }
+                Argument::Size(n) => {
+                    passed.push(format!("{n}"));
+                    types.push("size_t".to_owned());
+                    continue;
+                }
+                Argument::Input(kind, None) => {
+                    let _ = writeln!(before, "  {0} {name} = ({0}) in[{read}];", kind.c());
+                    read += 1;
+                    types.push(kind.c().to_owned());
+                }
+                Argument::Input(kind, Some(n)) => {
+                    let _ = writeln!(before, "  static {0} {name}[{1}];", kind.c(), n.max(&1));
+                    let _ = writeln!(before, "  for (i = 0; i < {n}; i++) {name}[i] = ({}) in[{read} + i];", kind.c());
+                    read += n;
+                    types.push(format!("const {} *", kind.c()));
+                }
+                Argument::Output(kind, n) => {
+                    let count = n.unwrap_or(1);
+                    let _ = writeln!(before, "  static {0} {name}[{1}];", kind.c(), count.max(1));
+                    let _ = writeln!(after, "  for (i = 0; i < {count}; i++) out[{written} + i] = {name}[i];");
+                    written += count;
+                    types.push(format!("{} *", kind.c()));
+                }
+            }
+            passed.push(name);
+        }
+        let result = self.result.map_or("void", Kind::c);
+        let parameters = if types.is_empty() { "void".to_owned() } else { types.join(", ") };
+        let declared = match self.include.is_empty() {
+            true => format!("extern {result} {}({parameters});\n", self.name),
+            false => format!("{}\n", self.include),
+        };
+        let call = format!("{}({})", self.name, passed.join(", "));
+        let (local, call) = match self.result {
+            Some(kind) => (format!("  {} result;\n", kind.c()), format!("result = {call}")),
+            None => (String::new(), call),
+        };
+        format!(
+            "{HEAD}{declared}\nint bramah_call(const double *in, double *out) {{\n  int i;\n{local}{before}  (void) in; (void) out; (void) i;\n  \
+             if (setjmp(bramah_back)) return 1;\n  {call};\n{after}  return 0;\n}}\n"
+        )
+    }
+}
+
+/// What every wrapper begins with: the functions of `ModelicaUtilities.h` (MLS 12.9.6), of which errors end the call.
+const HEAD: &str = "#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+static jmp_buf bramah_back;
+static char bramah_words[1000];
+const char *bramah_trouble(void) { return bramah_words; }
+void ModelicaVFormatError(const char *text, va_list args) { vsnprintf(bramah_words, sizeof bramah_words, text, args); longjmp(bramah_back, 1); }
+void ModelicaFormatError(const char *text, ...) { va_list args; va_start(args, text); ModelicaVFormatError(text, args); }
+void ModelicaError(const char *text) { ModelicaFormatError(\"%s\", text); }
+void ModelicaVFormatMessage(const char *text, va_list args) { vfprintf(stderr, text, args); }
+void ModelicaFormatMessage(const char *text, ...) { va_list args; va_start(args, text); ModelicaVFormatMessage(text, args); va_end(args); }
+void ModelicaMessage(const char *text) { ModelicaFormatMessage(\"%s\", text); }
+void ModelicaFormatWarning(const char *text, ...) { va_list args; va_start(args, text); ModelicaVFormatMessage(text, args); va_end(args); }
+void ModelicaWarning(const char *text) { ModelicaFormatMessage(\"%s\", text); }
+char *ModelicaAllocateStringWithErrorReturn(size_t length) { return (char *) calloc(length + 1, 1); }
+char *ModelicaAllocateString(size_t length) {
+  char *text = ModelicaAllocateStringWithErrorReturn(length);
+  if (!text) ModelicaError(\"no memory\");
+  return text;
+}
+";
+
+/// The header that C sources of a user may include; every wrapper defines what it declares.
+pub const UTILITIES: &str = "#ifndef MODELICA_UTILITIES_H
+#define MODELICA_UTILITIES_H
+#include <stdarg.h>
+#include <stddef.h>
+void ModelicaMessage(const char *text);
+void ModelicaFormatMessage(const char *text, ...);
+void ModelicaVFormatMessage(const char *text, va_list args);
+void ModelicaWarning(const char *text);
+void ModelicaFormatWarning(const char *text, ...);
+void ModelicaError(const char *text);
+void ModelicaFormatError(const char *text, ...);
+void ModelicaVFormatError(const char *text, va_list args);
+char *ModelicaAllocateString(size_t length);
+char *ModelicaAllocateStringWithErrorReturn(size_t length);
+#endif
+";
+
+/// A text as C writes it.
+fn literal(text: &str) -> String {
+    let mut out = String::from("\"");
+    for byte in text.bytes() {
+        match byte {
+            b'"' | b'\\' => out.extend(['\\', byte as char]),
+            b' '..=b'~' => out.push(byte as char),
+            _ => {
+                let _ = write!(out, "\\{byte:03o}");
+            }
+        }
+    }
+    out + "\""
+}
+
+/// A compiled function of numbers, with its name for messages.
+///
+/// # Errors
+/// Why the library cannot be loaded.
+pub fn bind(compiled: CompiledC, signature: &Signature) -> Result<Arc<dyn External>, String> {
+    let smooth = signature.arguments.iter().flat_map(|argument| match argument {
+        Argument::Input(kind, n) => vec![*kind == Kind::Real; n.unwrap_or(1)],
+        _ => Vec::new(),
+    });
+    let called = Called { native: native::Native::load(compiled)?, last: None, trouble: None };
+    let (smooth, outputs) = (smooth.collect(), signature.outputs());
+    let library = Arc::new(Library { name: signature.name.clone(), outputs, smooth, called: Mutex::new(called) });
+    Ok(Arc::new(Function { library, by: None }))
+}
+
+/// The compiled code.
+#[derive(Debug)]
+struct Library {
+    name: String,
+    /// How many numbers come out.
+    outputs: usize,
+    /// By number that goes in: whether it may take any value.
+    smooth: Vec<bool>,
+    called: Mutex<Called>,
+}
+
+/// C code need not be fit for several threads at once.
+#[derive(Debug)]
+struct Called {
+    native: native::Native,
+    /// The last call: each output is asked for by itself.
+    last: Option<(Vec<u64>, Vec<f64>)>,
+    trouble: Option<String>,
+}
+
+impl Library {
+    fn value(&self, output: usize, args: &[f64]) -> f64 {
+        let bits: Vec<u64> = args.iter().map(|x| x.to_bits()).collect();
+        let mut called = self.called.lock().unwrap_or_else(PoisonError::into_inner);
+        if called.last.as_ref().is_none_or(|(of, _)| *of != bits) {
+            let mut found = vec![f64::NAN; self.outputs];
+            if let Err(words) = called.native.call(args, &mut found) {
+                found.fill(f64::NAN);
+                called.trouble = Some(format!("`{}`: {words}", self.name));
+            }
+            called.last = Some((bits, found));
+        }
+        called.last.as_ref().and_then(|(_, found)| found.get(output).copied()).unwrap_or(f64::NAN)
+    }
+}
+
+/// The function, or its differences by one number that goes in.
+#[derive(Debug)]
+struct Function {
+    library: Arc<Library>,
+    by: Option<usize>,
+}
+
+impl External for Function {
+    fn value(&self, output: usize, args: &[f64]) -> f64 {
+        let Some(by) = self.by else { return self.library.value(output, args) };
+        let reach = REACH * args[by].abs().max(SMALL);
+        let mut beside = args.to_vec();
+        let mut at = |x: f64| {
+            beside[by] = x;
+            self.library.value(output, &beside)
+        };
+        (at(args[by] + reach) - at(args[by] - reach)) / (2.0 * reach)
+    }
+
+    fn partial(&self, input: usize) -> Option<Arc<dyn External>> {
+        let smooth = self.by.is_none() && self.library.smooth.get(input) == Some(&true);
+        smooth.then(|| Arc::new(Function { library: self.library.clone(), by: Some(input) }) as Arc<dyn External>)
+    }
+
+    fn trouble(&self) -> Option<String> {
+        self.library.called.lock().unwrap_or_else(PoisonError::into_inner).trouble.clone()
+    }
+
+    fn failure(&self) -> Option<String> {
+        self.trouble()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arguments_keep_their_order_and_texts_are_written_out() {
+        let signature = Signature {
+            name: "f".into(),
+            result: Some(Kind::Real),
+            arguments: vec![
+                Argument::Input(Kind::Real, None),
+                Argument::Input(Kind::Integer, Some(2)),
+                Argument::Size(2),
+                Argument::Output(Kind::Real, Some(3)),
+                Argument::Text("a\"b".into()),
+            ],
+            include: String::new(),
+        };
+        let text = signature.wrapper();
+        assert!(text.contains("extern double f(double, const int *, size_t, double *, const char *);"), "{text}");
+        assert!(text.contains(r#"result = f(a0, a1, 2, a3, "a\"b");"#), "{text}");
+        assert_eq!(signature.outputs(), 4);
+    }
+}

@@ -1,0 +1,364 @@
+//! Functions of others' C code that are carried out in Rust: what stands behind `external "C"` of the Modelica Standard
+//! Library's tables, texts and random numbers, and behind units of other tools (`mockup`). [`builtin`] has them by the names
+//! of the C functions.
+
+#[cfg(feature = "fmi")]
+pub mod c;
+mod curve;
+mod fourier;
+mod linear;
+#[cfg(feature = "fmi")]
+pub mod mockup;
+mod options;
+mod random;
+mod strings;
+mod surface;
+mod time_table;
+
+use bramah_expr::function::External;
+use curve::Curve;
+use options::{Extrapolation, Smoothness, TimeEvents};
+use random::{Draw, Generator};
+use std::sync::Arc;
+use surface::Surface;
+use time_table::TimeTable;
+
+/// A value given to such a function, or by it.
+#[derive(Clone, Debug)]
+pub enum Given {
+    /// A text.
+    Text(String),
+    /// A number, truth value or literal, or an array of these, row by row; `None` for what is not known before the run.
+    Numbers {
+        /// Sizes; none for a single one.
+        dims: Vec<usize>,
+        /// The values.
+        values: Vec<Option<f64>>,
+    },
+    /// An external object.
+    Object(Object),
+}
+
+/// What an external object holds.
+#[derive(Clone, Debug)]
+pub enum Object {
+    /// Columns over one argument.
+    Curves(Arc<Vec<Curve>>),
+    /// Columns over time.
+    Times(Arc<TimeTable>),
+    /// A map.
+    Surface(Arc<Surface>),
+    /// A unit of another tool.
+    #[cfg(feature = "fmi")]
+    MockUp(Arc<mockup::Pool>),
+}
+
+impl Object {
+    /// Where it lies: the same for the same object.
+    pub fn address(&self) -> usize {
+        match self {
+            Object::Curves(table) => Arc::as_ptr(table).addr(),
+            Object::Times(table) => Arc::as_ptr(table).addr(),
+            Object::Surface(table) => Arc::as_ptr(table).addr(),
+            #[cfg(feature = "fmi")]
+            Object::MockUp(pool) => Arc::as_ptr(pool).addr(),
+        }
+    }
+}
+
+/// How a C function is carried out.
+#[derive(Clone, Copy)]
+pub enum Builtin {
+    /// It makes an object of what is known before the run. The first arguments are the names of a file and of a table in
+    /// it, and the table where there is no file.
+    Object(fn(&[Given]) -> Result<Object, String>),
+    /// A function of all numbers that are not part of an object, in order; results and output arguments are its outputs.
+    Function(fn(&[Given]) -> Option<Arc<dyn External>>),
+    /// It makes values of known values: the result, then the output arguments.
+    Values(fn(&[Given]) -> Option<Vec<Given>>),
+    /// It makes an object of a unit of another tool: its file, kind and texts.
+    MockUp,
+    /// It does something that no model can see.
+    Nothing,
+}
+
+/// The name of a file, or of a table, where there is none.
+pub const NO_NAME: &str = "NoName";
+
+/// A C function by its name.
+pub fn builtin(name: &str) -> Option<Builtin> {
+    use Builtin::{Function, MockUp, Nothing, Object, Values};
+    Some(match name {
+        "bramah_mockup" => MockUp,
+        "bramah_mockup_free" => Nothing,
+        #[cfg(feature = "fmi")]
+        "bramah_mockup_begin" => Function(|g| of_mockup(g, mockup::Task::Begin)),
+        #[cfg(feature = "fmi")]
+        "bramah_mockup_start" => Function(|g| of_mockup(g, mockup::Task::Start)),
+        #[cfg(feature = "fmi")]
+        "bramah_mockup_advance" => Function(|g| of_mockup(g, mockup::Task::Advance)),
+        #[cfg(feature = "fmi")]
+        "bramah_mockup_evaluate" => Function(|g| of_mockup(g, mockup::Task::Evaluate)),
+        #[cfg(feature = "fmi")]
+        "bramah_mockup_event" => Function(|g| of_mockup(g, mockup::Task::Event)),
+        "ModelicaStandardTables_CombiTable1D_init2" | "ModelicaStandardTables_CombiTable1D_init3" => Object(curves),
+        "ModelicaStandardTables_CombiTimeTable_init2" | "ModelicaStandardTables_CombiTimeTable_init3" => Object(times),
+        "ModelicaStandardTables_CombiTable2D_init2" | "ModelicaStandardTables_CombiTable2D_init3" => Object(map),
+        "ModelicaStandardTables_CombiTable1D_getValue" => {
+            Function(|g| curves_of(g).map(|table| Arc::new(OfCurves { table, order: 0 }) as Arc<dyn External>))
+        }
+        "ModelicaStandardTables_CombiTimeTable_getValue" => {
+            Function(|g| times_of(g).map(|table| Arc::new(OfTime { table, order: 0 }) as Arc<dyn External>))
+        }
+        "ModelicaStandardTables_CombiTimeTable_nextTimeEvent" => {
+            Function(|g| times_of(g).map(|table| Arc::new(NextEvent(table)) as Arc<dyn External>))
+        }
+        "ModelicaStandardTables_CombiTable2D_getValue" => {
+            Function(|g| map_of(g).map(|table| Arc::new(OfMap { table, orders: [0, 0] }) as Arc<dyn External>))
+        }
+        "ModelicaStandardTables_CombiTable1D_minimumAbscissa" => Values(|g| one(curves_of(g)?[0].from())),
+        "ModelicaStandardTables_CombiTable1D_maximumAbscissa" => Values(|g| one(curves_of(g)?[0].to())),
+        "ModelicaStandardTables_CombiTimeTable_minimumTime" => Values(|g| one(times_of(g)?.curves[0].from())),
+        "ModelicaStandardTables_CombiTimeTable_maximumTime" => Values(|g| one(times_of(g)?.curves[0].to())),
+        "ModelicaStandardTables_CombiTable2D_minimumAbscissa" => Values(|g| row(&map_of(g)?.range()[0])),
+        "ModelicaStandardTables_CombiTable2D_maximumAbscissa" => Values(|g| row(&map_of(g)?.range()[1])),
+        "ModelicaRandom_xorshift64star" => Function(|_| Some(Arc::new(Draw(Generator::Star64)))),
+        "ModelicaRandom_xorshift128plus" => Function(|_| Some(Arc::new(Draw(Generator::Plus128)))),
+        "ModelicaRandom_xorshift1024star" => Function(|_| Some(Arc::new(Draw(Generator::Star1024)))),
+        "ModelicaRandom_setInternalState_xorshift1024star" | "ModelicaInternal_print" => Nothing,
+        "ModelicaFFT_kiss_fftr" => Function(|_| Some(Arc::new(fourier::Spectrum::default()))),
+        "dgesv" => Function(|_| Some(Arc::new(linear::Solve::default()))),
+        "dgelsy" => Values(linear::least_squares),
+        "ModelicaStrings_length" => Values(|g| one(text(g, 0)?.len() as f64)),
+        "ModelicaStrings_substring" => {
+            Values(|g| Some(vec![Given::Text(strings::substring(text(g, 0)?, number(g, 1)?, number(g, 2)?))]))
+        }
+        "ModelicaStrings_compare" => Values(|g| one(strings::compare(text(g, 0)?, text(g, 1)?, number(g, 2)? != 0.0))),
+        "ModelicaStrings_skipWhiteSpace" => Values(|g| one(strings::skip_white_space(text(g, 0)?, number(g, 1)?))),
+        "ModelicaStrings_scanIdentifier" => Values(|g| scanned(g, strings::identifier)),
+        "ModelicaStrings_scanString" => Values(|g| scanned(g, strings::quoted)),
+        "ModelicaStrings_scanInteger" => Values(|g| {
+            let unsigned = number(g, 2)? != 0.0;
+            scanned_number(g, |t| strings::integer(t, unsigned))
+        }),
+        "ModelicaStrings_scanReal" => Values(|g| {
+            let unsigned = number(g, 2)? != 0.0;
+            scanned_number(g, |t| strings::real(t, unsigned))
+        }),
+        "ModelicaStrings_hashString" => Values(|g| one(strings::hash(text(g, 0)?))),
+        _ => return None,
+    })
+}
+
+/// A single known number.
+fn one(x: f64) -> Option<Vec<Given>> {
+    Some(vec![Given::Numbers { dims: Vec::new(), values: vec![Some(x)] }])
+}
+
+/// A row of known numbers.
+fn row(x: &[f64]) -> Option<Vec<Given>> {
+    Some(vec![Given::Numbers { dims: vec![x.len()], values: x.iter().copied().map(Some).collect() }])
+}
+
+fn text(given: &[Given], k: usize) -> Option<&str> {
+    match given.get(k)? {
+        Given::Text(text) => Some(text),
+        _ => None,
+    }
+}
+
+fn number(given: &[Given], k: usize) -> Option<f64> {
+    match given.get(k)? {
+        Given::Numbers { values, .. } => *values.first()?,
+        _ => None,
+    }
+}
+
+fn scanned(given: &[Given], token: impl Fn(&str) -> Option<(usize, String)>) -> Option<Vec<Given>> {
+    let (next, found) = strings::scan(text(given, 0)?, number(given, 1)?, token);
+    Some(vec![one(next)?.remove(0), Given::Text(found.unwrap_or_default())])
+}
+
+fn scanned_number(given: &[Given], token: impl Fn(&str) -> Option<(usize, f64)>) -> Option<Vec<Given>> {
+    let (next, found) = strings::scan(text(given, 0)?, number(given, 1)?, token);
+    Some(vec![one(next)?.remove(0), one(found.unwrap_or(0.0))?.remove(0)])
+}
+
+fn curves_of(given: &[Given]) -> Option<Arc<Vec<Curve>>> {
+    match given.first()? {
+        Given::Object(Object::Curves(table)) => Some(table.clone()),
+        _ => None,
+    }
+}
+
+fn times_of(given: &[Given]) -> Option<Arc<TimeTable>> {
+    match given.first()? {
+        Given::Object(Object::Times(table)) => Some(table.clone()),
+        _ => None,
+    }
+}
+
+fn map_of(given: &[Given]) -> Option<Arc<Surface>> {
+    match given.first()? {
+        Given::Object(Object::Surface(table)) => Some(table.clone()),
+        _ => None,
+    }
+}
+
+#[cfg(feature = "fmi")]
+fn of_mockup(given: &[Given], task: mockup::Task) -> Option<Arc<dyn External>> {
+    match given.first()? {
+        Given::Object(Object::MockUp(pool)) => Some(Arc::new(mockup::Function::new(pool.clone(), task))),
+        _ => None,
+    }
+}
+
+/// A table as it was given: columns that all have as many numbers.
+struct Columns(Vec<Vec<f64>>);
+
+impl Columns {
+    fn of(given: &[Given]) -> Result<Self, String> {
+        let Some(Given::Numbers { dims, values }) = given.get(2) else { return Err("it has no table".into()) };
+        let &[rows, columns] = dims.as_slice() else { return Err("its table is no matrix".into()) };
+        let known: Option<Vec<f64>> = values.iter().copied().collect();
+        let known = known.ok_or("its table is not known before the run")?;
+        if rows == 0 || columns < 2 {
+            return Err(format!(
+                "its table has {rows} rows and {columns} columns, and at least one row and two columns are needed"
+            ));
+        }
+        Ok(Columns((0..columns).map(|j| (0..rows).map(|i| known[i * columns + j]).collect()).collect()))
+    }
+
+    /// The columns that were asked for, by their numbers from 1.
+    fn chosen(&self, given: &[Given], k: usize) -> Result<Vec<Vec<f64>>, String> {
+        let Some(Given::Numbers { values, .. }) = given.get(k) else { return Err("it says no columns".into()) };
+        let chosen = values.iter().map(|x| {
+            let at = x.ok_or("its columns are not known before the run")? as usize;
+            let column = self.0.get(at.wrapping_sub(1));
+            column.cloned().ok_or(format!("its table has {} columns and no column {at}", self.0.len()))
+        });
+        chosen.collect()
+    }
+}
+
+fn grows(x: &[f64], strictly: bool) -> Result<(), String> {
+    let wrong = |w: &[f64]| w[1] < w[0] || strictly && w[1] == w[0];
+    match x.windows(2).find(|w| wrong(w)) {
+        Some(w) => Err(format!("its abscissae do not increase: {} follows {}", w[1], w[0])),
+        None => Ok(()),
+    }
+}
+
+fn option<T>(given: &[Given], k: usize, of: fn(f64) -> Option<T>, what: &str) -> Result<T, String> {
+    number(given, k).and_then(of).ok_or(format!("its {what} is not known"))
+}
+
+fn curves(given: &[Given]) -> Result<Object, String> {
+    let columns = Columns::of(given)?;
+    let smoothness = option(given, 7, Smoothness::from_number, "smoothness")?;
+    let extrapolation = option(given, 8, Extrapolation::from_number, "extrapolation").unwrap_or(Extrapolation::Slope);
+    grows(&columns.0[0], true)?;
+    let curve = |y: &Vec<f64>| Curve::new(&columns.0[0], y, smoothness, extrapolation);
+    Ok(Object::Curves(Arc::new(columns.chosen(given, 5)?.iter().map(curve).collect())))
+}
+
+fn times(given: &[Given]) -> Result<Object, String> {
+    let columns = Columns::of(given)?;
+    let options = (
+        option(given, 8, Smoothness::from_number, "smoothness")?,
+        option(given, 9, Extrapolation::from_number, "extrapolation")?,
+        option(given, 11, TimeEvents::from_number, "kind of time events").unwrap_or(TimeEvents::Always),
+    );
+    let (start, shift) = (option(given, 5, Some, "start time")?, option(given, 10, Some, "shift of time")?);
+    grows(&columns.0[0], false)?;
+    Ok(Object::Times(Arc::new(TimeTable::new(&columns.0[0], &columns.chosen(given, 6)?, options, (start, shift)))))
+}
+
+fn map(given: &[Given]) -> Result<Object, String> {
+    let columns = Columns::of(given)?;
+    if columns.0[0].len() < 2 {
+        return Err("its table has one row, and at least two are needed".into());
+    }
+    let smoothness = option(given, 5, Smoothness::from_number, "smoothness")?;
+    let extrapolation = option(given, 6, Extrapolation::from_number, "extrapolation").unwrap_or(Extrapolation::Slope);
+    let first = columns.0[0][1..].to_vec();
+    let second: Vec<f64> = columns.0[1..].iter().map(|c| c[0]).collect();
+    grows(&first, true)?;
+    grows(&second, true)?;
+    let values: Vec<f64> = (1..=first.len()).flat_map(|i| columns.0[1..].iter().map(move |c| c[i])).collect();
+    Ok(Object::Surface(Arc::new(Surface::new([first, second], &values, smoothness, extrapolation))))
+}
+
+/// A column by its number, over an argument.
+#[derive(Debug)]
+struct OfCurves {
+    table: Arc<Vec<Curve>>,
+    order: usize,
+}
+
+impl External for OfCurves {
+    fn value(&self, _: usize, args: &[f64]) -> f64 {
+        let curve = self.table.get((args[0] as usize).wrapping_sub(1));
+        curve.map_or(f64::NAN, |c| c.value(args[1], self.order, false))
+    }
+
+    fn partial(&self, input: usize) -> Option<Arc<dyn External>> {
+        (input == 1)
+            .then(|| Arc::new(OfCurves { table: self.table.clone(), order: self.order + 1 }) as Arc<dyn External>)
+    }
+}
+
+/// A column by its number, over time, the next event and what that was before.
+#[derive(Debug)]
+struct OfTime {
+    table: Arc<TimeTable>,
+    order: usize,
+}
+
+impl External for OfTime {
+    fn value(&self, _: usize, args: &[f64]) -> f64 {
+        let column = (args[0] as usize).wrapping_sub(1);
+        if column >= self.table.curves.len() {
+            return f64::NAN;
+        }
+        self.table.value(column, [args[1], args[2], args[3]], self.order)
+    }
+
+    fn partial(&self, input: usize) -> Option<Arc<dyn External>> {
+        (input == 1).then(|| Arc::new(OfTime { table: self.table.clone(), order: self.order + 1 }) as Arc<dyn External>)
+    }
+}
+
+/// The next event of a table, over time.
+#[derive(Debug)]
+struct NextEvent(Arc<TimeTable>);
+
+impl External for NextEvent {
+    fn value(&self, _: usize, args: &[f64]) -> f64 {
+        self.0.next_event(args[0])
+    }
+
+    fn partial(&self, _: usize) -> Option<Arc<dyn External>> {
+        None
+    }
+}
+
+/// A map over two arguments.
+#[derive(Debug)]
+struct OfMap {
+    table: Arc<Surface>,
+    orders: [usize; 2],
+}
+
+impl External for OfMap {
+    fn value(&self, _: usize, args: &[f64]) -> f64 {
+        self.table.value([args[0], args[1]], self.orders)
+    }
+
+    fn partial(&self, input: usize) -> Option<Arc<dyn External>> {
+        let mut orders = self.orders;
+        orders[input] += 1;
+        Some(Arc::new(OfMap { table: self.table.clone(), orders }))
+    }
+}

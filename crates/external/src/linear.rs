@@ -1,0 +1,168 @@
+//! LAPACK's solvers of linear equations and least squares, by faer.
+
+use super::Given;
+use bramah_expr::function::External;
+use faer::Mat;
+use faer::linalg::solvers::Solve as _;
+use std::sync::Arc;
+
+/// Singular values below this part of the largest count as zero where the caller gives no limit: some rounding errors.
+const RANK_LIMIT: f64 = 1e-14;
+
+/// `dgesv`: X of A*X = B, or its derivative by some of the arguments, and `info`.
+///
+/// The arguments are n, nrhs, A, lda, B and ldb, matrices row by row.
+#[derive(Debug, Default)]
+pub struct Solve {
+    /// Numbers of the arguments by which X is differentiated.
+    by: Vec<usize>,
+}
+
+/// Where the matrices stand among the arguments.
+struct Places {
+    n: usize,
+    columns: usize,
+}
+
+impl Places {
+    fn of(args: &[f64]) -> Option<Self> {
+        let places = Places { n: *args.first()? as usize, columns: *args.get(1)? as usize };
+        (args.len() >= places.right_side() + places.n * places.columns).then_some(places)
+    }
+
+    fn right_side(&self) -> usize {
+        2 + self.n * self.n + 1
+    }
+
+    /// Row and column of an argument that is part of A.
+    fn of_matrix(&self, argument: usize) -> Option<(usize, usize)> {
+        let at = argument.checked_sub(2).filter(|at| *at < self.n * self.n)?;
+        Some((at / self.n, at % self.n))
+    }
+}
+
+impl Solve {
+    /// A*X_S = B_S - sum of E_i*X_{S without i}, for both sides are linear in their elements.
+    fn derivative(
+        places: &Places,
+        args: &[f64],
+        lu: &faer::linalg::solvers::PartialPivLu<f64>,
+        by: &[usize],
+    ) -> Mat<f64> {
+        let (n, first) = (places.n, places.right_side());
+        let mut right = Mat::from_fn(n, places.columns, |i, j| {
+            let at = first + i * places.columns + j;
+            match by {
+                [] => args[at],
+                [one] if *one == at => 1.0,
+                _ => 0.0,
+            }
+        });
+        for (k, &argument) in by.iter().enumerate() {
+            let Some((row, column)) = places.of_matrix(argument) else { continue };
+            let rest: Vec<usize> = by.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, a)| *a).collect();
+            let inner = Self::derivative(places, args, lu, &rest);
+            for j in 0..places.columns {
+                right[(row, j)] -= inner[(column, j)];
+            }
+        }
+        lu.solve(&right)
+    }
+}
+
+impl External for Solve {
+    fn value(&self, output: usize, args: &[f64]) -> f64 {
+        let Some(places) = Places::of(args) else { return f64::NAN };
+        let (n, count) = (places.n, places.n * places.columns);
+        let matrix = Mat::from_fn(n, n, |i, j| args[2 + i * n + j]);
+        let lu = matrix.partial_piv_lu();
+        if output >= count {
+            // `info` of LAPACK: which pivot is zero
+            let upper = lu.U();
+            let zero = (0..n).find(|&i| upper[(i, i)] == 0.0).map_or(0.0, |i| i as f64 + 1.0);
+            return if self.by.is_empty() { zero } else { 0.0 };
+        }
+        let found = Self::derivative(&places, args, &lu, &self.by);
+        found[(output / places.columns, output % places.columns)]
+    }
+
+    fn partial(&self, input: usize) -> Option<Arc<dyn External>> {
+        let by = self.by.iter().copied().chain([input]).collect();
+        (input >= 2).then(|| Arc::new(Solve { by }) as Arc<dyn External>)
+    }
+}
+
+/// `dgelsy`: the shortest least-squares solution, `rank` and `info`. The arguments are those of the C call: nrow, ncol, nrhs,
+/// A, nrow, B, nx, jpvt, rcond, rank, work, lwork, info.
+pub fn least_squares(given: &[Given]) -> Option<Vec<Given>> {
+    let known = |k: usize| match given.get(k)? {
+        Given::Numbers { dims, values } => Some((dims.clone(), values.iter().copied().collect::<Option<Vec<f64>>>()?)),
+        _ => None,
+    };
+    let count = |k: usize| known(k)?.1.first().map(|&x| x as usize);
+    let (rows, columns, sides) = (count(0)?, count(1)?, count(2)?);
+    let (_, a) = known(3)?;
+    let (shape, b) = known(5)?;
+    let limit = known(8).and_then(|(_, v)| v.first().copied()).unwrap_or(0.0).max(RANK_LIMIT);
+    let matrix = Mat::from_fn(rows, columns, |i, j| a[i * columns + j]);
+    let right = Mat::from_fn(rows, sides, |i, j| b[i * sides + j]);
+    let svd = matrix.thin_svd().ok()?;
+    let (u, s, v) = (svd.U(), svd.S().column_vector(), svd.V());
+    let largest = (0..s.nrows()).map(|k| s[k]).fold(0.0, f64::max);
+    let rank = (0..s.nrows()).filter(|&k| s[k] > limit * largest).count();
+    let mut values = vec![Some(0.0); shape.iter().product()];
+    for j in 0..sides {
+        for k in 0..rank {
+            let along: f64 = (0..rows).map(|i| u[(i, k)] * right[(i, j)]).sum::<f64>() / s[k];
+            for i in 0..columns {
+                let at = &mut values[i * sides + j];
+                *at = at.map(|x| x + v[(i, k)] * along);
+            }
+        }
+    }
+    let single = |x: f64| Given::Numbers { dims: Vec::new(), values: vec![Some(x)] };
+    Some(vec![Given::Numbers { dims: shape, values }, single(rank as f64), single(0.0)])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn derivatives_are_those_of_differences() {
+        let args = [2.0, 1.0, 3.0, 1.0, -1.0, 2.0, 2.0, 5.0, 4.0, 2.0];
+        let solve = Solve::default();
+        assert!((3.0 * solve.value(0, &args) + solve.value(1, &args) - 5.0).abs() < 1e-14);
+        assert_eq!(solve.value(2, &args), 0.0);
+        for input in [2, 3, 4, 5, 7, 8] {
+            let partial = solve.partial(input).expect("depends on it");
+            for output in 0..2 {
+                let mut moved = [args, args];
+                moved[0][input] -= 1e-5;
+                moved[1][input] += 1e-5;
+                let difference = (solve.value(output, &moved[1]) - solve.value(output, &moved[0])) / 2e-5;
+                assert!((partial.value(output, &args) - difference).abs() < 1e-8);
+                // and once more by the first element of the matrix
+                let second = partial.partial(2).expect("depends on it");
+                let mut moved = [args, args];
+                moved[0][2] -= 1e-5;
+                moved[1][2] += 1e-5;
+                let difference = (partial.value(output, &moved[1]) - partial.value(output, &moved[0])) / 2e-5;
+                assert!((second.value(output, &args) - difference).abs() < 1e-8);
+            }
+        }
+    }
+
+    #[test]
+    fn a_line_through_points() {
+        let of = |dims: Vec<usize>, v: &[f64]| Given::Numbers { dims, values: v.iter().copied().map(Some).collect() };
+        let one = |x: f64| of(Vec::new(), &[x]);
+        let nothing = || of(Vec::new(), &[]);
+        let a = of(vec![3, 2], &[0.0, 1.0, 1.0, 1.0, 2.0, 1.0]);
+        let b = of(vec![3], &[1.0, 3.0, 5.0]);
+        let given = [one(3.0), one(2.0), one(1.0), a, one(3.0), b, one(3.0), nothing(), one(0.0)];
+        let found = least_squares(&given).expect("all is known");
+        let Given::Numbers { values, .. } = &found[0] else { panic!("numbers") };
+        assert!((values[0].unwrap_or(0.0) - 2.0).abs() < 1e-12 && (values[1].unwrap_or(0.0) - 1.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,194 @@
+//! A unit's file: a ZIP archive with the description, libraries for some machines and resources. What comes out of it is
+//! bounded, and stays below the folder it is unpacked to.
+
+use super::Trouble;
+use super::description::Version;
+use bramah_syntax::world::Folder;
+use std::borrow::Cow;
+use std::io::{Cursor, Read};
+use std::path::PathBuf;
+
+/// Bytes of the description at most.
+const MOST_TEXT: u64 = 256 << 20;
+/// Bytes unpacked in all at most.
+const MOST_BYTES: u64 = 4 << 30;
+/// Files at most.
+const MOST_FILES: usize = 100_000;
+
+/// An archive in memory.
+pub struct Archive<'a> {
+    zip: zip::ZipArchive<Cursor<&'a [u8]>>,
+}
+
+/// What is needed of an archive, on the disk.
+#[derive(Debug)]
+pub struct Unpacked {
+    /// Goes when the last user goes.
+    pub folder: Folder,
+    /// The library.
+    pub library: PathBuf,
+    /// The folder of resources, if the unit has one.
+    pub resources: Option<PathBuf>,
+}
+
+impl<'a> Archive<'a> {
+    /// Looks at a file.
+    ///
+    /// # Errors
+    /// It is no archive, or holds too much.
+    pub fn open(bytes: &'a [u8]) -> Result<Self, Trouble> {
+        let zip = zip::ZipArchive::new(Cursor::new(bytes)).map_err(|why| format!("it is no ZIP archive: {why}"))?;
+        if zip.len() > MOST_FILES {
+            return Err(format!("it holds {} files, more than {MOST_FILES}", zip.len()).into());
+        }
+        Ok(Archive { zip })
+    }
+
+    /// The text of `modelDescription.xml`.
+    ///
+    /// # Errors
+    /// It is missing, damaged or too long.
+    pub fn description(&mut self) -> Result<String, Trouble> {
+        let file = self.zip.by_name("modelDescription.xml");
+        let file = file.map_err(|why| format!("its `modelDescription.xml` cannot be read: {why}"))?;
+        let mut text = String::new();
+        let read = file.take(MOST_TEXT + 1).read_to_string(&mut text);
+        read.map_err(|why| format!("its `modelDescription.xml` cannot be read: {why}"))?;
+        if text.len() as u64 > MOST_TEXT {
+            return Err(format!("its `modelDescription.xml` has more than {} MB", MOST_TEXT >> 20).into());
+        }
+        Ok(text)
+    }
+
+    /// The folder with the library for this machine, and its name.
+    ///
+    /// # Errors
+    /// There is none.
+    pub fn library(&self, version: Version, identifier: &str) -> Result<[String; 2], Trouble> {
+        let names: Vec<String> = self.zip.file_names().filter_map(Result::ok).map(Cow::into_owned).collect();
+        let file = format!("{identifier}{}", std::env::consts::DLL_SUFFIX);
+        let folder = |platform: &str| format!("binaries/{platform}/");
+        let has = |folder: &String| names.contains(&format!("{folder}{file}"));
+        match platforms(version).into_iter().map(folder).find(has) {
+            Some(folder) => Ok([folder, file]),
+            None => Err(no_library(version, &file, &names)),
+        }
+    }
+
+    /// Unpacks the library for this machine with what lies beside it, and the resources.
+    ///
+    /// # Errors
+    /// There is no library for this machine, a path leads out of the archive, or the disk does not take it.
+    pub fn unpack(&mut self, version: Version, identifier: &str) -> Result<Unpacked, Trouble> {
+        let [beside, library] = self.library(version, identifier)?;
+        let wanted = [&*beside, "resources/"];
+        let folder = Folder::new().map_err(|why| format!("it cannot be unpacked: {why}"))?;
+        let (mut left, mut resources) = (MOST_BYTES, None);
+        for i in 0..self.zip.len() {
+            let file = self.zip.by_index(i).map_err(|why| format!("it is damaged: {why}"))?;
+            let name = file.name().map_err(|why| format!("it is damaged: {why}"))?.into_owned();
+            if !wanted.iter().any(|w| name.starts_with(*w)) || file.is_dir() {
+                continue;
+            }
+            let Some(inside) = file.enclosed_name() else {
+                return Err(format!("its file `{name}` leads out of the archive").into());
+            };
+            let mut bytes = Vec::new();
+            file.take(left + 1)
+                .read_to_end(&mut bytes)
+                .map_err(|why| format!("its file `{name}` is damaged: {why}"))?;
+            left = left
+                .checked_sub(bytes.len() as u64)
+                .ok_or_else(|| format!("it unpacks to more than {} GB", MOST_BYTES >> 30))?;
+            folder.write(&inside, &bytes).map_err(|why| format!("it cannot be unpacked: {why}"))?;
+            if name.starts_with("resources/") {
+                resources = Some(folder.path().join("resources"));
+            }
+        }
+        let library = folder.path().join(beside).join(library);
+        Ok(Unpacked { folder, library, resources })
+    }
+}
+
+/// The folders in which a library for this machine may lie.
+fn platforms(version: Version) -> Vec<&'static str> {
+    let (two, three) = match (std::env::consts::OS, std::env::consts::ARCH) {
+        ("linux", "x86_64") => ("linux64", "x86_64-linux"),
+        ("linux", "aarch64") => ("aarch64-linux", "aarch64-linux"),
+        ("macos", "x86_64") => ("darwin64", "x86_64-darwin"),
+        ("macos", "aarch64") => ("darwin64", "aarch64-darwin"),
+        ("windows", "x86_64") => ("win64", "x86_64-windows"),
+        _ => return Vec::new(),
+    };
+    match version {
+        // later tools write the names of 3.0 into units of 2.0 too
+        Version::Two => vec![two, three],
+        Version::Three => vec![three],
+    }
+}
+
+fn no_library(version: Version, file: &str, names: &[String]) -> Trouble {
+    let mut has: Vec<&str> =
+        names.iter().filter_map(|n| n.strip_prefix("binaries/")?.split_once('/')).map(|(p, _)| p).collect();
+    has.sort_unstable();
+    has.dedup();
+    let has = match has.as_slice() {
+        [] if names.iter().any(|n| n.starts_with("sources/")) => "it holds sources only".to_owned(),
+        [] => "it holds none".to_owned(),
+        list => format!("it holds libraries for {}", list.join(", ")),
+    };
+    let here = platforms(version).first().copied().unwrap_or("this machine");
+    format!("it has no library `{file}` for {here}; {has}").into()
+}
+
+#[cfg(test)]
+#[allow(clippy::disallowed_methods, reason = "looks at what was unpacked")]
+mod tests {
+    use super::*;
+    use std::io::Write;
+
+    /// An archive of these files.
+    fn packed(files: &[(&str, &[u8])]) -> Vec<u8> {
+        let mut zip = zip::ZipWriter::new(Cursor::new(Vec::new()));
+        for (name, bytes) in files {
+            zip.start_file(*name, zip::write::SimpleFileOptions::default()).unwrap();
+            zip.write_all(bytes).unwrap();
+        }
+        zip.finish().unwrap().into_inner()
+    }
+
+    fn here() -> String {
+        format!("binaries/{}/m{}", platforms(Version::Three)[0], std::env::consts::DLL_SUFFIX)
+    }
+
+    #[test]
+    fn what_is_needed_is_unpacked() {
+        let bytes = packed(&[(&here(), b"code"), ("resources/a/b.txt", b"x"), ("sources/m.c", b"")]);
+        let unpacked = Archive::open(&bytes).unwrap().unpack(Version::Three, "m").unwrap();
+        assert!(unpacked.library.is_file() && unpacked.resources.as_ref().unwrap().join("a/b.txt").is_file());
+        assert!(!unpacked.folder.path().join("sources").exists());
+        let folder = unpacked.folder.path().to_owned();
+        drop(unpacked);
+        assert!(!folder.exists());
+    }
+
+    #[test]
+    fn damaged_and_hostile_archives_say_why() {
+        let says = |bytes: &[u8]| match Archive::open(bytes) {
+            Err(why) => why.to_string(),
+            Ok(mut archive) => archive.unpack(Version::Three, "m").unwrap_err().to_string(),
+        };
+        assert!(says(b"PK no archive").contains("no ZIP archive"));
+        assert!(says(&packed(&[("sources/m.c", b"")])).contains("sources only"));
+        assert!(says(&packed(&[("binaries/x/m", b"")])).contains("libraries for x"));
+        let out = format!("{}/../../../../m", here().rsplit_once('/').unwrap().0);
+        assert!(says(&packed(&[(&here(), b""), (&out, b"")])).contains("leads out"));
+        let mut cut = packed(&[(&here(), &[7; 5000])]);
+        let at = cut.windows(4).position(|w| w == [7; 4]).unwrap_or(60);
+        cut[at] ^= 0xff;
+        let said = says(&cut);
+        assert!(said.contains("damaged") || said.contains("archive"), "{said}");
+        let mut empty = Archive::open(&cut).unwrap();
+        assert!(empty.description().unwrap_err().to_string().contains("modelDescription.xml"));
+    }
+}

@@ -1,0 +1,589 @@
+//! `modelDescription.xml` of FMI 2.0 and 3.0: what a unit says of itself. Numbers are kept in the unit's own units;
+//! [`Scale`] leads to SI. Source: the standards' sections on the model description.
+
+use super::Trouble;
+use bramah_expr::units::Unit;
+use roxmltree::{Document, Node, ParsingOptions};
+use rustc_hash::FxHashMap;
+
+/// A version of the standard.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Version {
+    /// 2.0
+    Two,
+    /// 3.0
+    Three,
+}
+
+/// A way to run a unit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// The unit brings its own solver and is taken from one communication point to the next.
+    CoSimulation,
+    /// The unit gives derivatives, which are solved with the circuit.
+    ModelExchange,
+}
+
+impl Kind {
+    /// As the standards call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Kind::CoSimulation => "Co-Simulation",
+            Kind::ModelExchange => "Model Exchange",
+        }
+    }
+}
+
+/// What a unit offers in one of the two ways.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Offer {
+    /// The name of its library.
+    pub identifier: String,
+    /// A process can hold one instance at most.
+    pub only_once: bool,
+    /// It computes directional derivatives.
+    pub derivatives: bool,
+}
+
+/// The type of a variable as the functions of the standard pass it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the types of the standard by their names")]
+pub enum Passed {
+    Float64,
+    Float32,
+    Int8,
+    UInt8,
+    Int16,
+    UInt16,
+    Int32,
+    UInt32,
+    Int64,
+    UInt64,
+    Boolean,
+    String,
+}
+
+impl Passed {
+    fn of(version: Version, element: &str) -> Option<Self> {
+        Some(match (version, element) {
+            (Version::Two, "Real") | (Version::Three, "Float64") => Passed::Float64,
+            (Version::Two, "Integer" | "Enumeration") | (Version::Three, "Int32") => Passed::Int32,
+            (_, "Boolean") => Passed::Boolean,
+            (_, "String") => Passed::String,
+            (Version::Two, _) => return None,
+            (_, "Float32") => Passed::Float32,
+            (_, "Int8") => Passed::Int8,
+            (_, "UInt8") => Passed::UInt8,
+            (_, "Int16") => Passed::Int16,
+            (_, "UInt16") => Passed::UInt16,
+            (_, "UInt32") => Passed::UInt32,
+            (_, "Int64" | "Enumeration") => Passed::Int64,
+            (_, "UInt64") => Passed::UInt64,
+            _ => return None,
+        })
+    }
+
+    /// Whether it is a number with a unit.
+    pub fn is_real(self) -> bool {
+        matches!(self, Passed::Float64 | Passed::Float32)
+    }
+}
+
+/// From numbers of the unit to SI: `factor*x + offset`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scale {
+    /// The SI unit as Modelica writes it; empty where none is known.
+    pub si: String,
+    /// The unit in which numbers are shown.
+    pub shown: String,
+    /// How many SI units one is.
+    pub factor: f64,
+    /// Where its zero lies.
+    pub offset: f64,
+}
+
+impl Default for Scale {
+    fn default() -> Self {
+        Scale { si: String::new(), shown: String::new(), factor: 1.0, offset: 0.0 }
+    }
+}
+
+/// What a variable is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Causality {
+    /// Set before the start.
+    Parameter,
+    /// Set from outside.
+    Input,
+    /// Meant for others.
+    Output,
+    /// Anything else.
+    Other,
+}
+
+/// A variable of a unit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Variable {
+    /// Its name.
+    pub name: String,
+    /// What it means.
+    pub description: String,
+    /// The number by which functions name it.
+    pub reference: u32,
+    /// Its type.
+    pub passed: Passed,
+    /// What it is for.
+    pub causality: Causality,
+    /// Whether it changes between events.
+    pub continuous: bool,
+    /// Sizes, empty for a scalar.
+    pub dims: Vec<usize>,
+    /// Numbers at the start, in the unit's own units; none where the unit computes them.
+    pub start: Vec<f64>,
+    /// The start of a text.
+    pub text: String,
+    /// Least and greatest value, and its usual size.
+    pub limits: [Option<f64>; 3],
+    /// To SI.
+    pub scale: Scale,
+    /// Of a derivative: the state, as the description names it, then as an index.
+    state: Option<usize>,
+    /// Sizes as the description has them.
+    sizes: Vec<Size>,
+}
+
+/// One size of an array.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Size {
+    Given(usize),
+    /// The start of the variable with this value reference.
+    Of(u32),
+}
+
+impl Variable {
+    /// How many numbers it holds.
+    pub fn size(&self) -> usize {
+        self.dims.iter().product()
+    }
+}
+
+/// What a unit says of itself.
+#[derive(Clone, Debug)]
+pub struct Description {
+    /// Of the standard.
+    pub version: Version,
+    /// The model.
+    pub name: String,
+    /// What it means.
+    pub description: String,
+    /// The program that wrote it.
+    pub tool: String,
+    /// What the library wants to see.
+    pub token: String,
+    /// As Co-Simulation.
+    pub co_simulation: Option<Offer>,
+    /// As Model Exchange.
+    pub model_exchange: Option<Offer>,
+    /// All variables.
+    pub variables: Vec<Variable>,
+    /// Continuous states with their derivatives, as indices.
+    pub states: Vec<(usize, usize)>,
+    /// How many event indicators there are.
+    pub indicators: usize,
+    /// A communication step that suits it (s).
+    pub step: Option<f64>,
+}
+
+/// Variables of a unit at most; beyond, a size is probably mistaken.
+const MOST_VALUES: usize = 1_000_000;
+
+impl Description {
+    /// Reads the text.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn read(text: &str) -> Result<Self, Trouble> {
+        let options = ParsingOptions { nodes_limit: 10_000_000, ..ParsingOptions::default() };
+        let tree = Document::parse_with_options(text, options)
+            .map_err(|why| format!("its `modelDescription.xml` is no valid XML: {why}"))?;
+        let root = tree.root_element();
+        if root.tag_name().name() != "fmiModelDescription" {
+            return Err("its `modelDescription.xml` describes no unit".into());
+        }
+        let version = match root.attribute("fmiVersion") {
+            Some("2.0") => Version::Two,
+            Some(v) if v.starts_with("3.") => Version::Three,
+            Some(other) => return Err(format!("it follows FMI {other}; bramah takes 2.0 and 3.0").into()),
+            None => return Err("its `modelDescription.xml` names no version of FMI".into()),
+        };
+        let token = if version == Version::Two { "guid" } else { "instantiationToken" };
+        let types = types(root, version);
+        let mut variables = Vec::new();
+        for node in child(root, "ModelVariables").into_iter().flat_map(elements) {
+            variables.extend(variable(node, version, &types)?);
+        }
+        resolve(&mut variables, version)?;
+        let (states, indicators) = structure(root, version, &variables)?;
+        let co_simulation = child(root, "CoSimulation");
+        let number = |node: Option<Node<'_, '_>>, name| node?.attribute(name)?.trim().parse::<f64>().ok();
+        let step = number(child(root, "DefaultExperiment"), "stepSize");
+        let step = step.or_else(|| number(co_simulation, "fixedInternalStepSize"));
+        Ok(Description {
+            version,
+            name: root.attribute("modelName").unwrap_or("unit").to_owned(),
+            description: root.attribute("description").unwrap_or_default().to_owned(),
+            tool: root.attribute("generationTool").unwrap_or_default().to_owned(),
+            token: root.attribute(token).unwrap_or_default().to_owned(),
+            co_simulation: co_simulation.map(offer).transpose()?,
+            model_exchange: child(root, "ModelExchange").map(offer).transpose()?,
+            variables,
+            states,
+            indicators,
+            step: step.filter(|s| s.is_finite() && *s > 0.0),
+        })
+    }
+
+    /// What it offers in one way.
+    pub fn offer(&self, kind: Kind) -> Option<&Offer> {
+        match kind {
+            Kind::CoSimulation => self.co_simulation.as_ref(),
+            Kind::ModelExchange => self.model_exchange.as_ref(),
+        }
+    }
+
+    /// Variables of a causality, as indices.
+    pub fn of(&self, causality: Causality) -> Vec<usize> {
+        let all = self.variables.iter().enumerate();
+        all.filter(|(_, v)| v.causality == causality && v.passed != Passed::String).map(|(i, _)| i).collect()
+    }
+
+    /// Texts that may be set.
+    pub fn texts(&self) -> Vec<usize> {
+        let all = self.variables.iter().enumerate();
+        let is = |v: &Variable| v.causality == Causality::Parameter && v.passed == Passed::String && v.dims.is_empty();
+        all.filter(|(_, v)| is(v)).map(|(i, _)| i).collect()
+    }
+}
+
+fn elements<'a, 'b>(node: Node<'a, 'b>) -> impl Iterator<Item = Node<'a, 'b>> {
+    node.children().filter(Node::is_element)
+}
+
+fn child<'a, 'b>(node: Node<'a, 'b>, name: &str) -> Option<Node<'a, 'b>> {
+    elements(node).find(|c| c.tag_name().name() == name)
+}
+
+fn flag(node: Node<'_, '_>, name: &str) -> bool {
+    matches!(node.attribute(name), Some("true" | "1"))
+}
+
+fn offer(node: Node<'_, '_>) -> Result<Offer, Trouble> {
+    let identifier = node.attribute("modelIdentifier").unwrap_or_default().to_owned();
+    let letter = |c: char| c.is_alphanumeric() || c == '_';
+    if identifier.is_empty() || !identifier.chars().all(letter) {
+        return Err(format!("`modelIdentifier` is `{identifier}`, which names no library").into());
+    }
+    Ok(Offer {
+        identifier,
+        only_once: flag(node, "canBeInstantiatedOnlyOncePerProcess"),
+        derivatives: flag(node, "providesDirectionalDerivative") || flag(node, "providesDirectionalDerivatives"),
+    })
+}
+
+/// Type definitions by their names, and units by theirs.
+struct Types<'a, 'b> {
+    types: FxHashMap<&'a str, Node<'a, 'b>>,
+    units: FxHashMap<&'a str, Node<'a, 'b>>,
+}
+
+fn types<'a, 'b>(root: Node<'a, 'b>, version: Version) -> Types<'a, 'b> {
+    let all = child(root, "TypeDefinitions").into_iter().flat_map(elements);
+    // in FMI 2.0 the attributes stand in an element inside
+    let types = all.filter_map(|t| {
+        let inner = if version == Version::Two { elements(t).next()? } else { t };
+        Some((t.attribute("name")?, inner))
+    });
+    let units = child(root, "UnitDefinitions").into_iter().flat_map(elements);
+    Types { types: types.collect(), units: units.filter_map(|u| Some((u.attribute("name")?, u))).collect() }
+}
+
+fn variable(node: Node<'_, '_>, version: Version, types: &Types<'_, '_>) -> Result<Option<Variable>, Trouble> {
+    let name = node.attribute("name").ok_or("a variable has no name")?.to_owned();
+    let inner = match version {
+        Version::Two => elements(node).find(|c| Passed::of(version, c.tag_name().name()).is_some()),
+        Version::Three => Some(node),
+    };
+    let Some(inner) = inner else { return Ok(None) };
+    let Some(passed) = Passed::of(version, inner.tag_name().name()) else { return Ok(None) };
+    let declared = inner.attribute("declaredType").and_then(|t| types.types.get(t).copied());
+    let said = |key: &str| inner.attribute(key).or_else(|| declared.and_then(|d| d.attribute(key)));
+    let wrong = |what: &str, text: &str| format!("`{text}` is no {what} of the variable `{name}`");
+    let number = |key: &str| said(key).and_then(|text| text.trim().parse::<f64>().ok()).filter(|x| x.is_finite());
+    let reference = node.attribute("valueReference").unwrap_or_default();
+    let reference = reference.trim().parse().map_err(|_| wrong("value reference", reference))?;
+    let causality = match node.attribute("causality") {
+        Some("parameter") => Causality::Parameter,
+        Some("input") => Causality::Input,
+        Some("output") => Causality::Output,
+        _ => Causality::Other,
+    };
+    let start = inner.attribute("start").unwrap_or_default();
+    let start = match passed {
+        Passed::String => Vec::new(),
+        _ => start
+            .split_whitespace()
+            .map(|s| value(s).ok_or_else(|| wrong("start value", s)))
+            .collect::<Result<_, _>>()?,
+    };
+    let text = child(inner, "Start").and_then(|s| s.attribute("value")).or_else(|| inner.attribute("start"));
+    let dims = elements(inner).filter(|c| c.tag_name().name() == "Dimension");
+    let sizes = dims.map(|d| match (d.attribute("start"), d.attribute("valueReference").unwrap_or_default()) {
+        (Some(n), _) => n.trim().parse().map(Size::Given).map_err(|_| wrong("size", n)),
+        (None, n) => n.trim().parse().map(Size::Of).map_err(|_| wrong("size", n)),
+    });
+    let unit = said("unit").unwrap_or_default();
+    let scale = if passed.is_real() { scale(unit, said("displayUnit"), types)? } else { Scale::default() };
+    let discrete = matches!(node.attribute("variability"), Some("discrete" | "constant" | "fixed" | "tunable"));
+    Ok(Some(Variable {
+        description: node.attribute("description").unwrap_or_default().to_owned(),
+        reference,
+        passed,
+        causality,
+        continuous: passed.is_real() && !discrete,
+        dims: Vec::new(),
+        sizes: sizes.collect::<Result<_, String>>()?,
+        start,
+        text: if passed == Passed::String { text.unwrap_or_default().to_owned() } else { String::new() },
+        limits: ["min", "max", "nominal"].map(number),
+        scale,
+        state: inner.attribute("derivative").and_then(|d| d.trim().parse().ok()),
+        name,
+    }))
+}
+
+fn value(text: &str) -> Option<f64> {
+    match text {
+        "true" => Some(1.0),
+        "false" => Some(0.0),
+        _ => text.parse().ok(),
+    }
+}
+
+/// Puts in what refers to other variables: states of derivatives, and sizes.
+fn resolve(variables: &mut [Variable], version: Version) -> Result<(), Trouble> {
+    let at: FxHashMap<u32, usize> = variables.iter().enumerate().map(|(i, v)| (v.reference, i)).collect();
+    let count = variables.len();
+    for v in variables.iter_mut() {
+        v.state = match (v.state, version) {
+            (Some(index), Version::Two) => {
+                Some(index.checked_sub(1).filter(|i| *i < count).ok_or_else(|| no_state(&v.name))?)
+            }
+            (Some(reference), Version::Three) => {
+                let found = u32::try_from(reference).ok().and_then(|r| at.get(&r).copied());
+                Some(found.ok_or_else(|| no_state(&v.name))?)
+            }
+            (None, _) => None,
+        };
+    }
+    let size = |size: &Size| match *size {
+        Size::Given(n) => Some(n),
+        Size::Of(reference) => {
+            let start = *variables[*at.get(&reference)?].start.first()?;
+            (0.0..1e9).contains(&start).then_some(start as usize)
+        }
+    };
+    let dims: Vec<Option<Vec<usize>>> = variables.iter().map(|v| v.sizes.iter().map(size).collect()).collect();
+    for (v, dims) in variables.iter_mut().zip(dims) {
+        v.dims = dims.ok_or_else(|| format!("the sizes of `{}` are not known", v.name))?;
+    }
+    let mut values = 0usize;
+    for v in variables.iter_mut() {
+        let size = v.dims.iter().try_fold(1usize, |n, d| n.checked_mul(*d));
+        values = size.and_then(|n| values.checked_add(n)).unwrap_or(usize::MAX);
+        if values > MOST_VALUES {
+            return Err(format!("its variables hold more than {MOST_VALUES} values").into());
+        }
+        // one start value serves all elements
+        if v.start.len() == 1 && v.size() > 1 {
+            v.start = vec![v.start[0]; v.size()];
+        }
+        if !v.start.is_empty() && v.start.len() != v.size() {
+            return Err(format!("`{}` has {} values and {} start values", v.name, v.size(), v.start.len()).into());
+        }
+    }
+    Ok(())
+}
+
+fn no_state(name: &str) -> Trouble {
+    format!("`{name}` is the derivative of a variable that is not there").into()
+}
+
+/// Pairs of state and derivative, and the number of event indicators.
+fn structure(
+    root: Node<'_, '_>,
+    version: Version,
+    variables: &[Variable],
+) -> Result<(Vec<(usize, usize)>, usize), Trouble> {
+    let structure = child(root, "ModelStructure");
+    let at: FxHashMap<u32, usize> = variables.iter().enumerate().map(|(i, v)| (v.reference, i)).collect();
+    let named = |node: Node<'_, '_>| -> Option<usize> {
+        match version {
+            Version::Two => node.attribute("index")?.trim().parse::<usize>().ok()?.checked_sub(1),
+            Version::Three => at.get(&node.attribute("valueReference")?.trim().parse::<u32>().ok()?).copied(),
+        }
+    };
+    let derivatives: Vec<Node<'_, '_>> = match version {
+        Version::Two => structure.and_then(|s| child(s, "Derivatives")).into_iter().flat_map(elements).collect(),
+        Version::Three => structure
+            .into_iter()
+            .flat_map(elements)
+            .filter(|n| n.tag_name().name() == "ContinuousStateDerivative")
+            .collect(),
+    };
+    let mut states = Vec::new();
+    for node in derivatives {
+        let found = named(node).and_then(|i| Some((variables.get(i)?.state?, i)));
+        states.push(found.ok_or("a derivative of its `ModelStructure` is the derivative of nothing")?);
+    }
+    let indicators = match version {
+        Version::Two => root.attribute("numberOfEventIndicators").and_then(|n| n.trim().parse().ok()).unwrap_or(0),
+        Version::Three => {
+            let all = structure.into_iter().flat_map(elements).filter(|n| n.tag_name().name() == "EventIndicator");
+            let sizes = all.map(|n| named(n).and_then(|i| variables.get(i)).map_or(1, Variable::size));
+            sizes.sum()
+        }
+    };
+    if indicators > MOST_VALUES {
+        return Err("it has too many event indicators".into());
+    }
+    Ok((states, indicators))
+}
+
+/// The base units in the order in which they are written.
+const BASE: [&str; 8] = ["kg", "m", "s", "A", "K", "mol", "cd", "rad"];
+
+/// How a unit of the description leads to SI: by its definition there, or else by its name.
+fn scale(unit: &str, shown: Option<&str>, types: &Types<'_, '_>) -> Result<Scale, Trouble> {
+    if unit.is_empty() {
+        return Ok(Scale::default());
+    }
+    let known = Unit::parse(unit).ok();
+    let base = types.units.get(unit).and_then(|u| child(*u, "BaseUnit"));
+    let number = |key: &str, otherwise: f64| {
+        let text = base.and_then(|b| b.attribute(key));
+        text.map_or(Some(otherwise), |t| t.trim().parse().ok().filter(|x: &f64| x.is_finite()))
+    };
+    let exponents = match base {
+        Some(b) => {
+            let of = |key: &str| b.attribute(key).map_or(Some(0), |n| n.trim().parse::<i16>().ok());
+            BASE.map(of).into_iter().collect::<Option<Vec<i16>>>()
+        }
+        None => known.and_then(|u| u.exponents()).map(|e| e.to_vec()),
+    };
+    let (factor, offset) = match (base, known) {
+        (Some(_), _) => (number("factor", 1.0), number("offset", 0.0)),
+        (None, Some(u)) => (Some(u.factor()), Some(u.to_si(0.0))),
+        (None, None) => (Some(1.0), Some(0.0)),
+    };
+    let (Some(factor), Some(offset)) = (factor.filter(|f| *f != 0.0), offset) else {
+        return Err(format!("the definition of the unit `{unit}` cannot be read").into());
+    };
+    let coherent =
+        |u: &Unit| u.factor() == 1.0 && u.to_si(0.0) == 0.0 && u.exponents().map(|e| e.to_vec()) == exponents;
+    let si = match &exponents {
+        _ if known.as_ref().is_some_and(coherent) => unit.to_owned(),
+        Some(exponents) => product(exponents),
+        None => String::new(),
+    };
+    let can_show = |name: &&str| !si.is_empty() && Unit::parse(name).is_ok();
+    let shown = shown.filter(can_show).or(Some(unit).filter(can_show)).unwrap_or_default();
+    let shown = if shown == si { String::new() } else { shown.to_owned() };
+    Ok(Scale { si, shown, factor, offset })
+}
+
+/// Units with a name that stands for one quantity only.
+const NAMED: [&str; 9] = ["Pa", "N", "W", "V", "Ohm", "F", "H", "T", "Wb"];
+
+/// `kg.m2.s-1`, or its name where it has one.
+fn product(exponents: &[i16]) -> String {
+    let is = |name: &&str| Unit::parse(name).is_ok_and(|u| u.exponents().is_some_and(|e| e == *exponents));
+    if let Some(name) = NAMED.into_iter().find(is) {
+        return name.to_owned();
+    }
+    let part = |(name, n): (&str, &i16)| match n {
+        0 => None,
+        1 => Some(name.to_owned()),
+        _ => Some(format!("{name}{n}")),
+    };
+    let text: Vec<String> = BASE.into_iter().zip(exponents).filter_map(part).collect();
+    if text.is_empty() { "1".to_owned() } else { text.join(".") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn two(inside: &str) -> String {
+        format!(
+            r#"<fmiModelDescription fmiVersion="2.0" modelName="M" guid="g" numberOfEventIndicators="1">
+               <CoSimulation modelIdentifier="m"/>{inside}</fmiModelDescription>"#
+        )
+    }
+
+    fn wrong(text: &str) -> String {
+        Description::read(text).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn variables_have_units_types_and_states() {
+        let text = two(
+            r#"<UnitDefinitions><Unit name="bar"><BaseUnit kg="1" m="-1" s="-2" factor="1e5"/></Unit></UnitDefinitions>
+            <TypeDefinitions><SimpleType name="P"><Real unit="bar" max="300"/></SimpleType></TypeDefinitions>
+            <ModelVariables>
+              <ScalarVariable name="p" valueReference="7" causality="input"><Real declaredType="P" start="2"/></ScalarVariable>
+              <ScalarVariable name="x" valueReference="8"><Real/></ScalarVariable>
+              <ScalarVariable name="der(x)" valueReference="9"><Real derivative="2" unit="1/s"/></ScalarVariable>
+              <ScalarVariable name="on" valueReference="0" causality="parameter"><Boolean start="true"/></ScalarVariable>
+            </ModelVariables><ModelStructure><Derivatives><Unknown index="3"/></Derivatives></ModelStructure>"#,
+        );
+        let d = Description::read(&text).unwrap();
+        let p = &d.variables[0];
+        assert_eq!((p.scale.si.as_str(), p.scale.factor, p.scale.shown.as_str()), ("Pa", 1e5, "bar"));
+        assert_eq!((p.limits[1], p.start.as_slice(), p.reference), (Some(300.0), &[2.0][..], 7));
+        assert_eq!((d.states.as_slice(), d.indicators), (&[(1, 2)][..], 1));
+        assert_eq!(d.variables[3].start, [1.0]);
+    }
+
+    #[test]
+    fn arrays_have_sizes() {
+        let text = r#"<fmiModelDescription fmiVersion="3.0" modelName="M" instantiationToken="t">
+            <ModelVariables><UInt64 name="n" valueReference="1" causality="structuralParameter" start="3"/>
+            <Float64 name="u" valueReference="2" causality="input" start="1 2 3"><Dimension valueReference="1"/></Float64>
+            <Float64 name="A" valueReference="3" start="5"><Dimension start="2"/><Dimension start="2"/></Float64>
+            <Clock name="c" valueReference="4"/></ModelVariables></fmiModelDescription>"#;
+        let d = Description::read(text).unwrap();
+        assert_eq!((d.variables[1].dims.as_slice(), d.variables.len()), (&[3][..], 3));
+        assert_eq!(d.variables[2].start, [5.0; 4]);
+    }
+
+    #[test]
+    fn wrong_descriptions_say_why() {
+        assert!(wrong("<a>").contains("no valid XML"));
+        assert!(wrong("<a/>").contains("describes no unit"));
+        assert!(wrong(r#"<fmiModelDescription fmiVersion="1.0"/>"#).contains("FMI 1.0"));
+        assert!(
+            wrong(&two(
+                "<ModelVariables><ScalarVariable name='a' valueReference='x'><Real/></ScalarVariable></ModelVariables>"
+            ))
+            .contains("value reference")
+        );
+        assert!(wrong(&two("").replace("\"m\"", "\"../m\"")).contains("names no library"));
+        let bomb = r#"<!DOCTYPE a [<!ENTITY x "xxxx">]><fmiModelDescription fmiVersion="2.0"/>"#;
+        assert!(wrong(bomb).contains("no valid XML"));
+        let huge = two("").replace("2.0", "3.0").replace(
+            "</fmi",
+            r#"<ModelVariables><Float64 name="A" valueReference="3"><Dimension start="99999999999"/></Float64></ModelVariables></fmi"#,
+        );
+        assert!(wrong(&huge).contains("more than"));
+    }
+}

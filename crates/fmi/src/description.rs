@@ -1,0 +1,297 @@
+//! `modelDescription.xml`, by the schemas of FMI 2.0.5 and 3.0.2.
+
+use super::interface::{Causality, Interface, Port, Role};
+use bramah_expr::units::Unit;
+use bramah_plot::svg::escape;
+use bramah_results::{Kind, number};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write;
+
+/// The name of the library in `binaries/`, and of the functions' prefix.
+pub const IDENTIFIER: &str = "bramah";
+
+/// Which standard.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Version {
+    /// FMI 2.0
+    Two,
+    /// FMI 3.0
+    Three,
+}
+
+/// Writes the description. `token` marks this unit and its texts. There is no date in it: the same circuit gives the same
+/// unit.
+pub fn write(interface: &Interface, version: Version, token: &str, description: &str) -> String {
+    let three = version == Version::Three;
+    let mut out = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
+    let guid = if three { "instantiationToken" } else { "guid" };
+    let _ = writeln!(
+        out,
+        "<fmiModelDescription fmiVersion=\"{}\" modelName=\"{}\" {guid}=\"{token}\" description=\"{}\" \
+         generationTool=\"bramah {}\" variableNamingConvention=\"structured\"{}>",
+        if three { "3.0" } else { "2.0" },
+        escape(&interface.class),
+        line(description),
+        env!("CARGO_PKG_VERSION"),
+        if three { String::new() } else { format!(" numberOfEventIndicators=\"{}\"", interface.indicators().len()) },
+    );
+    if interface.alone.is_none() {
+        let needless =
+            if three { "needsCompletedIntegratorStep=\"false\"" } else { "completedIntegratorStepNotNeeded=\"true\"" };
+        let _ = writeln!(out, "  <ModelExchange modelIdentifier=\"{IDENTIFIER}\" {needless}/>");
+    }
+    let state = if three { "canGetAndSetFMUState" } else { "canGetAndSetFMUstate" };
+    let serialize = if three { "canSerializeFMUState" } else { "canSerializeFMUstate" };
+    let _ = writeln!(
+        out,
+        "  <CoSimulation modelIdentifier=\"{IDENTIFIER}\" canHandleVariableCommunicationStepSize=\"true\" \
+         {state}=\"true\" {serialize}=\"true\"/>"
+    );
+    units(&mut out, interface);
+    types(&mut out, interface, three);
+    out.push_str("  <LogCategories>\n    <Category name=\"logStatusError\" description=\"Why a call failed\"/>\n");
+    out.push_str(
+        "    <Category name=\"logStatusWarning\" description=\"What the model warns of\"/>\n  </LogCategories>\n",
+    );
+    let [start, stop, interval, tolerance] = interface.experiment.map(number::text);
+    let _ = writeln!(
+        out,
+        "  <DefaultExperiment startTime=\"{start}\" stopTime=\"{stop}\" tolerance=\"{tolerance}\" stepSize=\"{interval}\"/>"
+    );
+    out.push_str("  <ModelVariables>\n");
+    if three {
+        out.push_str(
+            "    <Float64 name=\"time\" valueReference=\"0\" causality=\"independent\" variability=\"continuous\"/>\n",
+        );
+    } else {
+        out.push_str("    <ScalarVariable name=\"time\" valueReference=\"0\" causality=\"independent\" variability=\"continuous\"><Real/></ScalarVariable>\n");
+    }
+    for (port, reference) in interface.ports.iter().zip(1..) {
+        out.push_str(&if three { variable_3(port, reference) } else { variable_2(port, reference) });
+    }
+    out.push_str("  </ModelVariables>\n  <ModelStructure>\n");
+    structure(&mut out, interface, three);
+    out.push_str("  </ModelStructure>\n</fmiModelDescription>\n");
+    out
+}
+
+/// A description on one line.
+fn line(text: &str) -> String {
+    escape(&text.split_whitespace().collect::<Vec<_>>().join(" "))
+}
+
+/// Units as powers of the base units, and the units for people as factors of them.
+fn units(out: &mut String, interface: &Interface) {
+    let mut all: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
+    for signal in interface.ports.iter().map(|p| &p.signal).filter(|s| !s.unit.is_empty() && s.kind == Kind::Real) {
+        let shown = all.entry(&signal.unit).or_default();
+        if !signal.display_unit.is_empty() && signal.display_unit != signal.unit {
+            shown.insert(&signal.display_unit);
+        }
+    }
+    if all.is_empty() {
+        return;
+    }
+    out.push_str("  <UnitDefinitions>\n");
+    for (name, shown) in all {
+        let Ok(unit) = Unit::parse(name) else {
+            let _ = writeln!(out, "    <Unit name=\"{}\"/>", escape(name));
+            continue;
+        };
+        let _ = writeln!(out, "    <Unit name=\"{}\">\n      <BaseUnit{}/>", escape(name), base(&unit));
+        for other in shown {
+            let Some((factor, offset)) = Unit::parse(other).ok().and_then(|o| linear(&unit, &o)) else { continue };
+            let offset = if offset == 0.0 { String::new() } else { format!(" offset=\"{}\"", number::text(offset)) };
+            let _ = writeln!(
+                out,
+                "      <DisplayUnit name=\"{}\" factor=\"{}\"{offset}/>",
+                escape(other),
+                number::text(factor)
+            );
+        }
+        out.push_str("    </Unit>\n");
+    }
+    out.push_str("  </UnitDefinitions>\n");
+}
+
+/// Attributes of a `BaseUnit`: exponents that are not 0, factor and offset.
+fn base(unit: &Unit) -> String {
+    let mut out = String::new();
+    // the standard has whole exponents only
+    let Some(exponents) = unit.exponents() else { return out };
+    for (name, exponent) in ["kg", "m", "s", "A", "K", "mol", "cd", "rad"].iter().zip(exponents) {
+        if exponent != 0 {
+            let _ = write!(out, " {name}=\"{exponent}\"");
+        }
+    }
+    let (factor, offset) = (unit.factor(), unit.offset);
+    if factor != 1.0 {
+        let _ = write!(out, " factor=\"{}\"", number::text(factor));
+    }
+    if offset != 0.0 {
+        let _ = write!(out, " offset=\"{}\"", number::text(offset));
+    }
+    out
+}
+
+/// `other = factor*unit + offset`.
+fn linear(unit: &Unit, other: &Unit) -> Option<(f64, f64)> {
+    let offset = unit.convert(0.0, other)?;
+    Some((unit.convert(1.0, other)? - offset, offset))
+}
+
+fn types(out: &mut String, interface: &Interface, three: bool) {
+    let mut seen = BTreeSet::new();
+    let mut text = String::new();
+    for port in &interface.ports {
+        let Kind::Enumeration(literals) = &port.signal.kind else { continue };
+        let name = type_name(literals);
+        if !seen.insert(name.clone()) {
+            continue;
+        }
+        let items: String =
+            (1..).zip(literals).map(|(k, l)| format!("<Item name=\"{}\" value=\"{k}\"/>", escape(l))).collect();
+        let _ = match three {
+            true => writeln!(text, "    <EnumerationType name=\"{name}\">{items}</EnumerationType>"),
+            false => writeln!(text, "    <SimpleType name=\"{name}\"><Enumeration>{items}</Enumeration></SimpleType>"),
+        };
+    }
+    if !text.is_empty() {
+        let _ = write!(out, "  <TypeDefinitions>\n{text}  </TypeDefinitions>\n");
+    }
+}
+
+/// Enumerations with the same literals are one type.
+fn type_name(literals: &[String]) -> String {
+    escape(&format!("enumeration({})", literals.join(", ")))
+}
+
+/// Causality, variability and `initial`.
+fn words(port: &Port) -> (&'static str, &'static str, Option<&'static str>) {
+    let varies = if port.signal.kind == Kind::Real { "continuous" } else { "discrete" };
+    match port.causality {
+        Causality::Parameter => ("parameter", "fixed", Some("exact")),
+        Causality::Calculated => ("calculatedParameter", "fixed", Some("calculated")),
+        Causality::Input => ("input", varies, None),
+        Causality::Output => ("output", varies, Some("calculated")),
+        Causality::Local => ("local", varies, Some("calculated")),
+    }
+}
+
+fn head(port: &Port, reference: usize) -> String {
+    let (causality, variability, initial) = words(port);
+    let mut out = format!(
+        "name=\"{}\" valueReference=\"{reference}\" causality=\"{causality}\" variability=\"{variability}\"",
+        escape(&port.signal.name)
+    );
+    if let Some(initial) = initial {
+        let _ = write!(out, " initial=\"{initial}\"");
+    }
+    if !port.signal.description.is_empty() {
+        let _ = write!(out, " description=\"{}\"", line(&port.signal.description));
+    }
+    out
+}
+
+/// Unit, limits and start value of a number.
+fn number_attributes(port: &Port) -> String {
+    let signal = &port.signal;
+    let mut out = String::new();
+    if let Kind::Enumeration(literals) = &signal.kind {
+        let _ = write!(out, " declaredType=\"{}\"", type_name(literals));
+    }
+    if signal.kind == Kind::Real && !signal.unit.is_empty() {
+        let _ = write!(out, " unit=\"{}\"", escape(&signal.unit));
+        let known = Unit::parse(&signal.unit).ok().zip(Unit::parse(&signal.display_unit).ok());
+        let other = !signal.display_unit.is_empty() && signal.display_unit != signal.unit;
+        if other && known.is_some_and(|(u, d)| u.convert(0.0, &d).is_some()) {
+            let _ = write!(out, " displayUnit=\"{}\"", escape(&signal.display_unit));
+        }
+    }
+    let whole = signal.kind != Kind::Real;
+    let largest = if whole { f64::from(i32::MAX) } else { LARGEST };
+    for (name, limit) in [("min", port.min), ("max", port.max)] {
+        if let Some(limit) = limit.filter(|l| l.abs() < largest) {
+            let _ = write!(out, " {name}=\"{}\"", text(limit, whole));
+        }
+    }
+    if let Some(start) = port.start {
+        let _ = write!(out, " start=\"{}\"", text(start, whole));
+    }
+    out
+}
+
+/// Limits beyond this say nothing.
+const LARGEST: f64 = 1e300;
+
+fn text(value: f64, whole: bool) -> String {
+    if whole { format!("{}", value as i64) } else { number::text(value) }
+}
+
+fn variable_3(port: &Port, reference: usize) -> String {
+    let head = head(port, reference);
+    match port.signal.kind {
+        Kind::Real => format!("    <Float64 {head}{}{}/>\n", number_attributes(port), derivative(port, 1)),
+        Kind::Integer => format!("    <Int32 {head}{}/>\n", number_attributes(port)),
+        Kind::Enumeration(_) => format!("    <Enumeration {head}{}/>\n", number_attributes(port)),
+        Kind::Boolean => format!("    <Boolean {head}{}/>\n", boolean_start(port)),
+    }
+}
+
+fn variable_2(port: &Port, reference: usize) -> String {
+    let head = head(port, reference);
+    let inner = match port.signal.kind {
+        // the time comes first
+        Kind::Real => format!("<Real{}{}/>", number_attributes(port), derivative(port, 2)),
+        Kind::Integer => format!("<Integer{}/>", number_attributes(port)),
+        Kind::Enumeration(_) => format!("<Enumeration{}/>", number_attributes(port)),
+        Kind::Boolean => format!("<Boolean{}/>", boolean_start(port)),
+    };
+    format!("    <ScalarVariable {head}>{inner}</ScalarVariable>\n")
+}
+
+fn boolean_start(port: &Port) -> String {
+    port.start.map_or_else(String::new, |s| format!(" start=\"{}\"", s != 0.0))
+}
+
+/// Names the state of a derivative, where the first variable has this number.
+fn derivative(port: &Port, first: usize) -> String {
+    match port.role {
+        Role::Rate(state) => format!(" derivative=\"{}\"", state + first),
+        _ => String::new(),
+    }
+}
+
+/// Outputs, derivatives, and what is computed at the start; what they depend on is left open, which means everything.
+fn structure(out: &mut String, interface: &Interface, three: bool) {
+    let indexed = || interface.ports.iter().zip(1_usize..);
+    let outputs: Vec<usize> = indexed().filter(|(p, _)| p.causality == Causality::Output).map(|(_, i)| i).collect();
+    let rates: Vec<usize> = interface.rates().iter().map(|i| i + 1).collect();
+    let is_state = |i: usize| interface.ports.iter().any(|p| p.role == Role::Rate(i - 1));
+    let unknown = |p: &Port, i: usize| {
+        matches!(p.causality, Causality::Output | Causality::Calculated) || rates.contains(&i) || is_state(i)
+    };
+    let unknowns: Vec<usize> = indexed().filter(|(p, i)| unknown(p, *i)).map(|(_, i)| i).collect();
+    if three {
+        outputs.iter().for_each(|i| out.push_str(&format!("    <Output valueReference=\"{i}\"/>\n")));
+        let mut list = |name: &str, items: &[usize]| {
+            items.iter().for_each(|i| out.push_str(&format!("    <{name} valueReference=\"{i}\"/>\n")));
+        };
+        let indicators: Vec<usize> = interface.indicators().iter().map(|i| i + 1).collect();
+        list("ContinuousStateDerivative", &rates);
+        list("InitialUnknown", &unknowns);
+        list("EventIndicator", &indicators);
+        return;
+    }
+    // indices of FMI 2 count from 1, and the time comes first
+    let list = |name: &str, items: &[usize]| match items {
+        [] => String::new(),
+        items => {
+            let items: String = items.iter().map(|i| format!("<Unknown index=\"{}\"/>", i + 1)).collect();
+            format!("    <{name}>{items}</{name}>\n")
+        }
+    };
+    out.push_str(&list("Outputs", &outputs));
+    out.push_str(&list("Derivatives", &rates));
+    out.push_str(&list("InitialUnknowns", &unknowns));
+}

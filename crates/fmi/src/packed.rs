@@ -1,0 +1,144 @@
+//! The texts that a model was made of, in one file: what the compiler read, read again in a unit.
+
+use bramah_model::compile::Request;
+use bramah_model::instance::Override;
+use bramah_syntax::world::World;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+/// The file in `resources/`.
+pub const FILE: &str = "model.json";
+
+/// A request with everything that was read for it, under the paths that it had.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct Packed {
+    /// Marks unit and description as belonging together.
+    pub token: String,
+    source: String,
+    model: Option<String>,
+    set: Vec<(String, String)>,
+    libraries: Vec<String>,
+    /// Patterns of variables that are outputs, where the model has none of its own.
+    pub outputs: Vec<String>,
+    files: BTreeMap<String, String>,
+    folders: BTreeMap<String, Vec<(String, bool)>>,
+}
+
+impl Packed {
+    /// The request that is to be compiled.
+    pub fn request(&self) -> Request {
+        Request {
+            source: self.source.clone().into(),
+            model: self.model.clone(),
+            overrides: self.set.iter().map(|(n, v)| Override { name: n.clone(), value: v.clone() }).collect(),
+            libraries: self.libraries.iter().map(PathBuf::from).collect(),
+            ..Request::default()
+        }
+    }
+
+    /// As the file has it.
+    pub fn json(&self) -> String {
+        serde_json::to_string(self).expect("texts always serialize")
+    }
+
+    /// Reads what [`Packed::json`] has written.
+    ///
+    /// # Errors
+    /// Why it cannot be read.
+    pub fn from_json(text: &str) -> Result<Self, String> {
+        serde_json::from_str(text).map_err(|why| why.to_string())
+    }
+}
+
+impl World for Packed {
+    fn read(&self, path: &Path) -> Result<String, String> {
+        let missing = || format!("the unit holds no file `{}`", path.display());
+        self.files.get(&name(path)).cloned().ok_or_else(missing)
+    }
+
+    fn list(&self, path: &Path) -> Option<Vec<(String, bool)>> {
+        self.folders.get(&name(path)).cloned()
+    }
+}
+
+fn name(path: &Path) -> String {
+    path.to_string_lossy().replace('\\', "/")
+}
+
+/// A world that notes what is read.
+pub struct Recorder<'a> {
+    base: &'a dyn World,
+    seen: Mutex<Packed>,
+}
+
+impl<'a> Recorder<'a> {
+    /// Notes what is read of `base`.
+    pub fn new(base: &'a dyn World) -> Self {
+        Recorder { base, seen: Mutex::default() }
+    }
+
+    /// What was read for a request.
+    pub fn packed(self, request: &Request, outputs: &[String], token: &str) -> Packed {
+        let mut packed = self.seen.into_inner().unwrap_or_else(PoisonError::into_inner);
+        packed.source = name(&request.source);
+        packed.model.clone_from(&request.model);
+        packed.set = request.overrides.iter().map(|o| (o.name.clone(), o.value.clone())).collect();
+        packed.libraries = request.libraries.iter().map(|l| name(l)).collect();
+        packed.outputs = outputs.to_vec();
+        token.clone_into(&mut packed.token);
+        packed
+    }
+}
+
+impl World for Recorder<'_> {
+    fn read(&self, path: &Path) -> Result<String, String> {
+        let text = self.base.read(path)?;
+        self.seen.lock().unwrap_or_else(PoisonError::into_inner).files.insert(name(path), text.clone());
+        Ok(text)
+    }
+
+    fn bytes(&self, _: &Path) -> Result<Vec<u8>, String> {
+        Err("a unit cannot hold another one: export a circuit without it".to_owned())
+    }
+
+    fn list(&self, path: &Path) -> Option<Vec<(String, bool)>> {
+        let entries = self.base.list(path)?;
+        self.seen.lock().unwrap_or_else(PoisonError::into_inner).folders.insert(name(path), entries.clone());
+        Some(entries)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bramah_circuit::Simulation;
+    use bramah_syntax::world::MemoryWorld;
+
+    #[test]
+    fn a_package_is_compiled_again_from_what_was_read() {
+        let mut world = MemoryWorld::default();
+        world.add("lib/P/package.mo", "package P end P;");
+        world.add(
+            "lib/P/Leak.mo",
+            "within P; block Leak parameter Real k = 2; input Real u; output Real y = k*u; end Leak;",
+        );
+        world.add("lib/P/Unused.mo", "within P; block Unused end Unused;");
+        world.add("M.mo", "model M P.Leak leak; equation leak.u = time; end M;");
+        let request = Request {
+            source: "M.mo".into(),
+            libraries: vec!["lib".into()],
+            overrides: vec![Override { name: "leak.k".into(), value: "5".into() }],
+            ..Request::default()
+        };
+        let recorder = Recorder::new(&world);
+        Simulation::compile(&recorder, &request).unwrap();
+        let text = recorder.packed(&request, &[], "t").json();
+        assert!(!text.contains("Unused end"), "{text}");
+        let packed = Packed::from_json(&text).unwrap();
+        let again = Simulation::compile(&packed, &packed.request()).unwrap();
+        assert_eq!(again.get("leak.k").unwrap(), 5.0);
+        assert!(Packed::from_json("{").is_err());
+    }
+}

@@ -1,0 +1,551 @@
+//! Writes the nominal model with effects attached, as Modelica.
+//!
+//! The text is a model `Augmented` around an instance `plant` of the nominal class: inputs pass through the effects of
+//! commands before they reach the plant, each signal of the study is a variable of its name behind its sensor effects,
+//! and inside the plant every node that an effect touches gets one tap of the node's own connector class.
+
+use super::circuit::{Circuit, Link, ModelInput};
+use super::effects::{Effect, own_classes};
+use super::hypotheses::{Attachment, Hypothesis, Signal, Site};
+use bramah_circuit::compiled::CompiledModel;
+use bramah_expr::units::Unit;
+use bramah_model::compile::{Outcome, Request};
+use bramah_model::flat::Type;
+use bramah_model::instance::Override;
+use bramah_solve::lower;
+use bramah_syntax::world::{MemoryWorld, Overlay, World};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+/// The instance of the nominal model inside the augmented one: `pump.w` becomes `plant.pump.w`.
+pub const PLANT: &str = "plant";
+
+/// The path under which the text is compiled.
+pub(super) const SOURCE: &str = "(gap)/Augmented.mo";
+
+/// The most terms in one sum: the parser limits the height of expressions.
+const LONGEST_SUM: usize = 100;
+
+/// A hypothesis with a name and values.
+#[derive(Clone, Debug)]
+pub struct Attached<'a> {
+    /// Its name in the augmented model, a Modelica identifier of its own.
+    pub name: String,
+    /// What is attached. Hypotheses of family `parameter` add nothing: their parameter is there already.
+    pub hypothesis: &'a Hypothesis,
+    /// Values of coefficients and shapes; coefficients not named are off, shapes take the first of their grid.
+    pub values: Vec<(String, f64)>,
+}
+
+/// The augmented model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Augmented {
+    /// The text of the model `Augmented`.
+    pub text: String,
+    /// For each attached hypothesis the name of each of its coefficients and shapes (in this order) as a parameter of
+    /// the model; for a drift that of the drifting parameter.
+    pub parameters: Vec<Vec<String>>,
+    /// The variable of each signal of the study, sensor effects included.
+    pub signals: Vec<String>,
+    /// Signals inside the nominal model whose statements the text replaces.
+    pub replaced: Vec<Link>,
+}
+
+/// How the model is written.
+#[derive(Clone, Debug)]
+pub(super) struct Form<'a> {
+    /// Its name.
+    pub class: &'a str,
+    /// The nominal class is a copy from which connections cut by Series elements are already gone.
+    pub cut: bool,
+    /// Parameters of the nominal model with other values.
+    pub drifts: &'a [(String, f64)],
+    /// What stands before `end`.
+    pub annotation: String,
+}
+
+/// Writes the nominal model with effects attached.
+pub fn augment(circuit: &Circuit, attached: &[Attached<'_>], signals: &[Signal]) -> Augmented {
+    written(circuit, attached, signals, Form { class: "Augmented", cut: false, drifts: &[], annotation: String::new() })
+}
+
+/// Writes it in the form wanted.
+pub(super) fn written(circuit: &Circuit, attached: &[Attached<'_>], signals: &[Signal], form: Form<'_>) -> Augmented {
+    Writer {
+        circuit,
+        form,
+        plant: Body::default(),
+        around: Body::default(),
+        taps: BTreeMap::new(),
+        drops: BTreeMap::new(),
+        cut: BTreeSet::new(),
+        classes: Vec::new(),
+        replaced: Vec::new(),
+    }
+    .write(attached, signals)
+}
+
+/// Compiles an augmented model: classes of the nominal one come from where `nominal` finds them, `folder` holds
+/// effects of the user's own.
+pub fn compile(
+    world: &dyn World,
+    nominal: &Request,
+    folder: Option<&Path>,
+    augmented: &Augmented,
+    options: &lower::Options,
+) -> Outcome<CompiledModel> {
+    let (overlay, request) = request(world, nominal, folder, augmented, "Augmented");
+    bramah_circuit::compiled::compile(&overlay, &request, options)
+}
+
+/// A world with the text in it and without the statements that it replaces, and how to ask for its class.
+pub(super) fn request<'a>(
+    world: &'a dyn World,
+    nominal: &Request,
+    folder: Option<&Path>,
+    augmented: &Augmented,
+    class: &str,
+) -> (Overlay<'a>, Request) {
+    let source = PathBuf::from(SOURCE);
+    let mut files = MemoryWorld::single(&source, &augmented.text);
+    for link in &augmented.replaced {
+        let Ok(mut text) = files.read(&link.file).or_else(|_| world.read(&link.file)) else { continue };
+        let Range { start, end } = link.statement;
+        // the semicolon behind it would stand alone; every other statement keeps its place
+        let Some(end) = text.get(end..).and_then(|rest| rest.find(';')).map(|i| end + i + 1) else { continue };
+        let blank: String = text[start..end].bytes().map(|b| if b == b'\n' { '\n' } else { ' ' }).collect();
+        text.replace_range(start..end, &blank);
+        files.add(&link.file, text);
+    }
+    let overlay = Overlay { base: world, files };
+    let inner = |o: &Override| Override { name: format!("{PLANT}.{}", o.name), value: o.value.clone() };
+    let mut request = Request {
+        source,
+        model: Some(class.into()),
+        overrides: nominal.overrides.iter().map(inner).collect(),
+        libraries: nominal.libraries.clone(),
+        beside: nominal.beside.clone(),
+        data_folder: Some(nominal.data_folder(world)),
+        externals: nominal.externals.clone(),
+        varied: true,
+    };
+    if world.list(&nominal.source).is_some() || world.read(&nominal.source).is_ok() {
+        request.beside.push(nominal.source.clone());
+    }
+    own_classes(world, folder, &mut request);
+    (overlay, request)
+}
+
+/// Declarations and equations of one class.
+#[derive(Default)]
+struct Body {
+    declarations: String,
+    equations: String,
+}
+
+struct Writer<'a> {
+    circuit: &'a Circuit,
+    form: Form<'a>,
+    plant: Body,
+    around: Body,
+    /// What is drawn from the nodes that have a tap.
+    taps: BTreeMap<usize, Vec<String>>,
+    /// What falls at the ports that are cut off.
+    drops: BTreeMap<usize, Vec<String>>,
+    /// Ports taken out of their nodes by Series elements.
+    cut: BTreeSet<usize>,
+    /// Connector classes that have a tap class, each with a port as example.
+    classes: Vec<(&'a str, usize)>,
+    replaced: Vec<Link>,
+}
+
+/// The instance of a hypothesis at the i-th of its places.
+pub(super) fn instance(name: &str, i: usize) -> String {
+    format!("{name}_{}", i + 1)
+}
+
+impl<'a> Writer<'a> {
+    fn write(mut self, attached: &[Attached<'_>], signals: &[Signal]) -> Augmented {
+        let parameters = attached.iter().map(|a| self.parameters(a)).collect();
+        self.cut = cut(attached);
+        self.rejoin();
+        for a in attached {
+            for (i, at) in a.hypothesis.attachments.iter().enumerate() {
+                match (&at.effect, &at.site) {
+                    (Some(effect), Site::Node(_) | Site::Across(..)) => self.physical(a, i, at, effect),
+                    (Some(effect), Site::Into(port)) => self.series(a, i, at, effect, *port),
+                    _ => {}
+                }
+            }
+        }
+        self.inputs(attached);
+        self.links(attached);
+        let signals = self.signals(attached, signals);
+        self.fall();
+        self.draw();
+        Augmented { text: self.text(), parameters, signals, replaced: self.replaced }
+    }
+
+    /// Declares the coefficients and shapes of a hypothesis, and gives their full names.
+    fn parameters(&mut self, a: &Attached<'_>) -> Vec<String> {
+        let h = a.hypothesis;
+        if let Site::Parameter(name) = &h.attachments[0].site {
+            return vec![format!("{PLANT}.{name}")];
+        }
+        let inside = match &h.attachments[0].site {
+            Site::Command(name) => self.circuit.link(name).is_some(),
+            site => matches!(site, Site::Node(_) | Site::Across(..) | Site::Into(_)),
+        };
+        let body = if inside { &mut self.plant } else { &mut self.around };
+        let given = |name: &str| a.values.iter().find(|(n, _)| n == name).map(|(_, v)| *v);
+        let coefficients = h.coefficients.iter().map(|c| (c.label(), &c.unit, c.off));
+        let shapes = h.shapes.iter().map(|s| (s.name.clone(), &s.unit, s.grid[0]));
+        let mut names = Vec::new();
+        for (name, unit, usual) in coefficients.chain(shapes) {
+            let value = given(&name).unwrap_or(usual);
+            let full = format!("{}_{name}", a.name);
+            let _ = writeln!(body.declarations, "    parameter Real {full}{} = {value:e};", unit_of(unit));
+            names.push(if inside { format!("{PLANT}.{full}") } else { full });
+        }
+        names
+    }
+
+    /// An instance of an effect, its coefficients and shapes bound to those of the hypothesis.
+    fn declaration(a: &Attached<'_>, i: usize, effect: &Effect, base: &[(String, String)]) -> (String, String) {
+        let instance = instance(&a.name, i);
+        let of_all = |name: &str| {
+            let own = a.hypothesis.coefficients.iter().filter(|c| c.name == name);
+            own.map(|c| format!("{}_{}", a.name, c.label())).collect::<Vec<_>>().join(" + ")
+        };
+        let coefficients = effect.coefficients.iter().map(|c| format!("{} = {}", c.name, of_all(&c.name)));
+        let shapes = effect.shapes.iter().map(|s| format!("{n} = {}_{n}", a.name, n = s.name));
+        let bound: Vec<String> =
+            coefficients.chain(shapes).chain(base.iter().map(|(n, from)| format!("{n} = {from}"))).collect();
+        let text = format!("    .{} {instance}({});\n", effect.class, bound.join(", "));
+        (instance, text)
+    }
+
+    fn physical(&mut self, a: &Attached<'_>, i: usize, at: &Attachment, effect: &Effect) {
+        let (instance, declaration) = Self::declaration(a, i, effect, &at.base);
+        self.plant.declarations.push_str(&declaration);
+        let ports: &[usize] = match &at.site {
+            Site::Node(p) => &[*p],
+            Site::Across(x, y) => &[*x, *y],
+            _ => &[],
+        };
+        let Some(through) = &effect.interface.through else { return };
+        let signs = ["", "-"];
+        for ((port, potential), sign) in ports.iter().zip(&effect.interface.potential).zip(signs) {
+            let tap = self.tap(*port);
+            self.read(&instance, &potential.name, &tap, *port);
+            let factor = factor(&self.circuit.ports[*port].through.unit);
+            let share = format!("{sign}{instance}.{}{}", through.name, scaled("/", factor));
+            self.taps.get_mut(&self.circuit.ports[*port].node).expect("just made").push(share);
+        }
+        for (port, potential) in at.sense.iter().zip(&effect.interface.sense) {
+            let tap = self.tap(*port);
+            self.read(&instance, &potential.name, &tap, *port);
+        }
+        self.warm(&instance, at, effect);
+    }
+
+    /// Gives an effect the temperature that it reads, in kelvin.
+    fn warm(&mut self, instance: &str, at: &Attachment, effect: &Effect) {
+        if let (Some((input, offset)), Some(name)) = (&at.temperature, &effect.interface.temperature) {
+            let _ = writeln!(self.plant.equations, "    {instance}.{name} = {input} + {offset:e};");
+        }
+    }
+
+    /// Puts an effect between a port that was cut off and the rest of its node; several lie one behind the other.
+    fn series(&mut self, a: &Attached<'_>, i: usize, at: &Attachment, effect: &Effect, port: usize) {
+        let (Some(through), Some(drop)) = (&effect.interface.through, &effect.interface.drop) else { return };
+        let (instance, declaration) = Self::declaration(a, i, effect, &at.base);
+        self.plant.declarations.push_str(&declaration);
+        self.open(port);
+        let _ = writeln!(self.plant.equations, "    {instance}.{} = {};", through.name, through_of(port));
+        self.warm(&instance, at, effect);
+        self.drops.get_mut(&port).expect("just made").push(format!("{instance}.{}", drop.name));
+    }
+
+    /// Leads what flows through a port that was cut off past the place of its series elements.
+    fn open(&mut self, port: usize) {
+        if self.drops.contains_key(&port) {
+            return;
+        }
+        self.drops.insert(port, Vec::new());
+        let p = &self.circuit.ports[port];
+        self.tap(port);
+        let class = self.tap_class(port) + 1;
+        let (far, through) = (far_of(port), through_of(port));
+        let share = scaled("/", factor(&p.through.unit));
+        let _ = write!(self.plant.declarations, "    GapTap_{class} {far};\n    Real {through};\n");
+        let _ = write!(
+            self.plant.equations,
+            "    connect({far}.port, {});\n    {far}.drawn = -{through}{share};\n",
+            p.name
+        );
+        self.taps.get_mut(&p.node).expect("just made").push(format!("{through}{share}"));
+    }
+
+    /// What falls where connections are cut.
+    fn fall(&mut self) {
+        for (port, drops) in std::mem::take(&mut self.drops) {
+            let v = &self.circuit.ports[port].potential;
+            let (node, far) = (self.tap(port), far_of(port));
+            let _ = writeln!(
+                self.plant.equations,
+                "    {node}.port.{v} - {far}.port.{v} = ({}){};",
+                drops.join(" + "),
+                scaled("/", factor(&v.unit)),
+                v = v.name,
+            );
+        }
+    }
+
+    /// Joins what remains of a node when ports are taken out of it.
+    fn rejoin(&mut self) {
+        let cut_nodes: BTreeSet<usize> = self.cut.iter().map(|&p| self.circuit.ports[p].node).collect();
+        for node in cut_nodes {
+            let rest = self.circuit.nodes[node].ports.iter().copied().filter(|p| !self.cut.contains(p));
+            let touched = |p: &usize| self.broken().any(|(a, b)| a == *p || b == *p);
+            let rest: Vec<&str> = rest.filter(touched).map(|p| self.circuit.ports[p].name.as_str()).collect();
+            for pair in rest.windows(2) {
+                let _ = writeln!(self.plant.equations, "    connect({}, {});", pair[0], pair[1]);
+            }
+        }
+    }
+
+    fn broken(&self) -> impl Iterator<Item = (usize, usize)> {
+        broken(self.circuit, &self.cut)
+    }
+
+    /// Gives an effect the potential of a port, in SI units.
+    fn read(&mut self, instance: &str, potential: &str, tap: &str, port: usize) {
+        let q = &self.circuit.ports[port].potential;
+        let offset = Unit::parse(&q.unit).map_or(0.0, |u| u.offset);
+        let plus = if offset == 0.0 { String::new() } else { format!(" + {offset:e}") };
+        let value = format!("{tap}.port.{}{}{plus}", q.name, scaled("*", factor(&q.unit)));
+        let _ = writeln!(self.plant.equations, "    {instance}.{potential} = {value};");
+    }
+
+    /// The tap at the node of a port, made when first asked for.
+    fn tap(&mut self, port: usize) -> String {
+        let circuit = self.circuit;
+        let node = circuit.ports[port].node;
+        let name = format!("gap_tap_{}", node + 1);
+        if !self.taps.contains_key(&node) {
+            let first = nearest(circuit, node, &self.cut);
+            let class = self.tap_class(first);
+            let _ = writeln!(self.plant.declarations, "    GapTap_{} {name};", class + 1);
+            let _ = writeln!(self.plant.equations, "    connect({name}.port, {});", circuit.ports[first].name);
+            self.taps.insert(node, Vec::new());
+        }
+        name
+    }
+
+    fn tap_class(&mut self, port: usize) -> usize {
+        let class = self.circuit.ports[port].class.as_str();
+        self.classes.iter().position(|(c, _)| *c == class).unwrap_or_else(|| {
+            self.classes.push((class, port));
+            self.classes.len() - 1
+        })
+    }
+
+    /// The sum of all that is drawn from each node.
+    fn draw(&mut self) {
+        for (node, drawn) in &self.taps {
+            let mut terms = vec![String::from("0")];
+            for (i, part) in drawn.chunks(LONGEST_SUM).enumerate() {
+                let name = format!("gap_tap_{}_{}", node + 1, i + 1);
+                let _ = writeln!(self.plant.declarations, "    Real {name};");
+                let _ = writeln!(self.plant.equations, "    {name} = {};", sum(part));
+                terms.push(name);
+            }
+            let sum = sum(&terms);
+            let _ = writeln!(self.plant.equations, "    gap_tap_{}.drawn = {sum};", node + 1);
+        }
+    }
+
+    /// The inputs of the plant, each behind the effects on its command.
+    fn inputs(&mut self, attached: &[Attached<'_>]) {
+        let mut arrays: Vec<&str> = Vec::new();
+        for input in &self.circuit.inputs {
+            let base = input.name.split('[').next().unwrap_or(&input.name);
+            if !arrays.contains(&base) {
+                arrays.push(base);
+                self.around.declarations.push_str(&input_declaration(self.circuit, base, input));
+            }
+            let site = Site::Command(input.name.clone());
+            let last = chain(&mut self.around, attached, &site, input.name.clone());
+            let _ = writeln!(self.around.equations, "  {PLANT}.{} = {last};", input.name);
+        }
+    }
+
+    /// Signals inside the plant on which effects act.
+    fn links(&mut self, attached: &[Attached<'_>]) {
+        for link in &self.circuit.links {
+            let name = &link.signal.name;
+            let site = Site::Command(name.clone());
+            if !attached.iter().any(|a| a.hypothesis.attachments.iter().any(|at| at.site == site)) {
+                continue;
+            }
+            let last = chain(&mut self.plant, attached, &site, link.value.clone());
+            let _ = writeln!(self.plant.equations, "    {name} = {last};");
+            self.replaced.push(link.clone());
+        }
+    }
+
+    /// The signals of the study, each behind the effects of its sensor.
+    fn signals(&mut self, attached: &[Attached<'_>], signals: &[Signal]) -> Vec<String> {
+        let mut names = Vec::new();
+        for (i, s) in signals.iter().enumerate() {
+            let name = self.signal_name(&s.name);
+            let unit = self.circuit.units.get(&s.variable).map_or(String::new(), |u| unit_of(u));
+            let _ = writeln!(self.plant.declarations, "    Real gap_true_{}{unit};", i + 1);
+            let _ = writeln!(self.plant.equations, "    gap_true_{} = {};", i + 1, s.variable);
+            let (site, from) = (Site::Sensor(s.name.clone()), format!("{PLANT}.gap_true_{}", i + 1));
+            let last = chain(&mut self.around, attached, &site, from);
+            let _ = writeln!(self.around.declarations, "  output Real {name}{unit};");
+            let _ = writeln!(self.around.equations, "  {name} = {last};");
+            names.push(name);
+        }
+        names
+    }
+
+    fn signal_name(&self, name: &str) -> String {
+        let simple = name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+            && name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
+        let taken = name == PLANT || self.circuit.inputs.iter().any(|i| i.name == name);
+        match (simple, taken) {
+            (true, false) => name.to_string(),
+            (true, true) => format!("signal_{name}"),
+            _ => format!("'{}'", name.replace(['\'', '\\'], "_")),
+        }
+    }
+
+    fn text(&self) -> String {
+        let mut text = format!("model {}\n", self.form.class);
+        for (i, (class, port)) in self.classes.iter().enumerate() {
+            let through = &self.circuit.ports[*port].through.name;
+            let _ = write!(
+                text,
+                "  model GapTap_{n} \"Draws from a node\"\n    .{class} port;\n    Real drawn;\n  equation\n    port.{through} = drawn;\n  end GapTap_{n};\n",
+                n = i + 1
+            );
+        }
+        let name = |p: usize| &self.circuit.ports[p].name;
+        let broken: Vec<String> =
+            self.broken().map(|(a, b)| format!("break connect({}, {})", name(a), name(b))).collect();
+        let broken =
+            if broken.is_empty() || self.form.cut { String::new() } else { format!("({})", broken.join(", ")) };
+        let _ = writeln!(text, "  model Plant\n    extends .{}{broken};", self.circuit.class);
+        let _ = write!(text, "{}  equation\n{}  end Plant;\n", self.plant.declarations, self.plant.equations);
+        let drifts: Vec<String> = self.form.drifts.iter().map(|(n, v)| format!("{n} = {v:e}")).collect();
+        let drifts = if drifts.is_empty() { String::new() } else { format!("({})", drifts.join(", ")) };
+        let _ = writeln!(text, "  Plant {PLANT}{drifts};");
+        let _ = write!(text, "{}equation\n{}", self.around.declarations, self.around.equations);
+        let _ = writeln!(text, "{}end {};", self.form.annotation, self.form.class);
+        text
+    }
+}
+
+/// Puts all signal effects of a site in a row behind `from`; gives the end of the row.
+fn chain(body: &mut Body, attached: &[Attached<'_>], site: &Site, from: String) -> String {
+    let mut last = from;
+    for a in attached {
+        for (i, at) in a.hypothesis.attachments.iter().enumerate().filter(|(_, at)| at.site == *site) {
+            let Some(effect) = &at.effect else { continue };
+            let (instance, declaration) = Writer::declaration(a, i, effect, &at.base);
+            body.declarations.push_str(&declaration);
+            let _ = writeln!(body.equations, "    {instance}.u = {last};");
+            last = format!("{instance}.y");
+        }
+    }
+    last
+}
+
+/// Ports that Series elements take out of their nodes.
+pub(super) fn cut(attached: &[Attached<'_>]) -> BTreeSet<usize> {
+    let places = attached.iter().flat_map(|a| &a.hypothesis.attachments);
+    places.filter_map(|at| if let Site::Into(p) = at.site { Some(p) } else { None }).collect()
+}
+
+/// Connections that touch a port taken out.
+pub(super) fn broken(circuit: &Circuit, cut: &BTreeSet<usize>) -> impl Iterator<Item = (usize, usize)> {
+    let touches = |(a, b, _): &&(usize, usize, usize)| cut.contains(a) || cut.contains(b);
+    circuit.connections.iter().filter(touches).map(|&(a, b, _)| (a, b))
+}
+
+/// Terms with their signs in a row.
+fn sum(terms: &[String]) -> String {
+    let mut text = String::new();
+    for t in terms {
+        match t.strip_prefix('-') {
+            Some(rest) => text.push_str(&format!(" - {rest}")),
+            None if text.is_empty() => text.push_str(t),
+            None => text.push_str(&format!(" + {t}")),
+        }
+    }
+    text.trim_start().to_string()
+}
+
+/// The port of a node that lies least deep in the hierarchy.
+fn nearest(circuit: &Circuit, node: usize, cut: &BTreeSet<usize>) -> usize {
+    let depth = |p: &usize| (cut.contains(p), circuit.ports[*p].name.matches('.').count());
+    circuit.nodes[node].ports.iter().copied().min_by_key(depth).expect("a node has ports")
+}
+
+fn unit_of(unit: &str) -> String {
+    if unit.is_empty() { String::new() } else { format!("(unit = \"{unit}\")") }
+}
+
+fn factor(unit: &str) -> f64 {
+    Unit::parse(unit).map_or(1.0, |u| u.factor())
+}
+
+fn scaled(operator: &str, factor: f64) -> String {
+    if factor == 1.0 { String::new() } else { format!("{operator}{factor:e}") }
+}
+
+/// An input with its type, unit and start; an array as a whole.
+fn far_of(port: usize) -> String {
+    format!("gap_far_{}", port + 1)
+}
+
+fn through_of(port: usize) -> String {
+    format!("gap_through_{}", port + 1)
+}
+
+fn input_declaration(circuit: &Circuit, base: &str, input: &ModelInput) -> String {
+    let ty = match input.ty {
+        Type::Integer => "Integer",
+        Type::Boolean => "Boolean",
+        _ => "Real",
+    };
+    let mut sizes: Vec<usize> = Vec::new();
+    for other in circuit.inputs.iter().filter(|i| i.name.split('[').next() == Some(base)) {
+        let Some(indices) = other.name.strip_prefix(base).and_then(|r| r.strip_prefix('[')) else { continue };
+        let indices = indices.trim_end_matches(']').split(',').filter_map(|i| i.trim().parse::<usize>().ok());
+        for (k, n) in indices.enumerate() {
+            if k < sizes.len() { sizes[k] = sizes[k].max(n) } else { sizes.push(n) }
+        }
+    }
+    let each = if sizes.is_empty() { "" } else { "each " };
+    let mut attributes = Vec::new();
+    if !input.unit.is_empty() {
+        attributes.push(format!("{each}unit = \"{}\"", input.unit));
+    }
+    if let Some(start) = input.start {
+        let value = if input.ty == Type::Boolean { (start != 0.0).to_string() } else { start.to_string() };
+        attributes.push(format!("{each}start = {value}"));
+    }
+    if let Some(nominal) = input.nominal.filter(|_| input.ty == Type::Real) {
+        attributes.push(format!("{each}nominal = {nominal:e}"));
+    }
+    let list = if attributes.is_empty() { String::new() } else { format!("({})", attributes.join(", ")) };
+    let sizes: Vec<String> = sizes.iter().map(usize::to_string).collect();
+    let sizes = if sizes.is_empty() { String::new() } else { format!("[{}]", sizes.join(", ")) };
+    format!("  input {ty} {base}{sizes}{list};\n")
+}

@@ -1,0 +1,611 @@
+//! What the diagnosis sees of a nominal model: components, ports with their units, nodes, inputs and parameters.
+
+use bramah_expr::eval::Evaluation;
+use bramah_expr::units::Unit;
+use bramah_expr::{ExprId, Exprs, Node as Term, VarId};
+use bramah_model::compile::{Outcome, Request, inspect};
+use bramah_model::flat::{Experiment, FlatModel, Type, Variability};
+use bramah_model::instance::{ElementState, Instance, Node, ScopeId};
+use bramah_model::network::Network;
+use bramah_syntax::ast::ClassKind;
+use bramah_syntax::world::World;
+use std::collections::{BTreeMap, BTreeSet};
+
+mod links;
+pub use links::Link;
+
+/// A variable of a port.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Quantity {
+    /// Its name inside the connector.
+    pub name: String,
+    /// Its unit as written.
+    pub unit: String,
+}
+
+/// A physical port: one potential, one flow.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Port {
+    /// Full name, as in `pump.port_a`.
+    pub name: String,
+    /// Full name of its connector class.
+    pub class: String,
+    /// The component that owns it: index into [`Circuit::components`].
+    pub component: usize,
+    /// The variable that is equal at joined ports.
+    pub potential: Quantity,
+    /// The variable that sums up to zero.
+    pub through: Quantity,
+    /// The node it belongs to: index into [`Circuit::nodes`].
+    pub node: usize,
+}
+
+/// Joined ports.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct NodeSet {
+    /// Its ports in declaration order.
+    pub ports: Vec<usize>,
+    /// Its potential, or the rate of it, is given by parameters, time and inputs: a reservoir, a frame, a driven belt.
+    pub fixed: bool,
+    /// It is given by an input: what acts on it changes the reaction, which a sensor may show.
+    pub driven: bool,
+    /// The model already contains the time derivative of its potential.
+    pub has_rate: bool,
+    /// The model already contains the second time derivative of its potential.
+    pub has_acceleration: bool,
+    /// The first of the nodes that are rigidly one with it (both flanges of a mass): what is drawn from one might as
+    /// well be drawn from the other.
+    pub rigid: usize,
+    /// The first of the nodes whose potentials are bound to each other whatever flows (both sides of a gear): what acts on
+    /// one might as well act on another, with another size.
+    pub geared: usize,
+}
+
+/// A component instance; entry 0 is the model itself.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Component {
+    /// Full name.
+    pub name: String,
+    /// Full name of its class.
+    pub class: String,
+    /// Its ports in declaration order.
+    pub ports: Vec<usize>,
+    /// Its Real parameters with their units.
+    pub parameters: Vec<Quantity>,
+    /// Those of them that multiply one variable in one law, as conductances and dampings do.
+    pub factors: Vec<Quantity>,
+}
+
+/// An input of the model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModelInput {
+    /// Its name, with indices.
+    pub name: String,
+    /// Its type.
+    pub ty: Type,
+    /// Its unit as written, empty if none.
+    pub unit: String,
+    /// Its start value, or the value it keeps when nothing is given.
+    pub start: Option<f64>,
+    /// Its `nominal`.
+    pub nominal: Option<f64>,
+}
+
+/// The places of a model.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Circuit {
+    /// Full name of the class.
+    pub class: String,
+    /// The model's `experiment` annotation.
+    pub experiment: Experiment,
+    /// Components, parents before children.
+    pub components: Vec<Component>,
+    /// Physical ports in declaration order.
+    pub ports: Vec<Port>,
+    /// Connection sets, in the order of their first port.
+    pub nodes: Vec<NodeSet>,
+    /// Single connections between two ports, as pairs of port numbers, with the component in which they stand.
+    pub connections: Vec<(usize, usize, usize)>,
+    /// Inputs of the model.
+    pub inputs: Vec<ModelInput>,
+    /// Signals that its components receive.
+    pub links: Vec<Link>,
+    /// All Real variables and parameters by name, with their units.
+    pub units: BTreeMap<String, String>,
+}
+
+/// Reads the places of a model.
+pub fn circuit(world: &dyn World, request: &Request) -> Outcome<Circuit> {
+    let Outcome { sources, diagnostics, value } = inspect(world, request, |instance, network, flat| {
+        let circuit = Reader::default().read(instance, network, &flat);
+        let placed = links::placed(&circuit, instance, network, &flat);
+        (circuit, placed)
+    });
+    let value = value.map(|(circuit, placed)| Circuit { links: links::read(placed, &sources), ..circuit });
+    Outcome { sources, diagnostics, value }
+}
+
+#[derive(Default)]
+struct Reader {
+    circuit: Circuit,
+    component_of: BTreeMap<u32, usize>,
+    port_of: BTreeMap<u32, usize>,
+}
+
+impl Reader {
+    fn read(mut self, instance: &mut Instance<'_, '_>, network: &Network, flat: &FlatModel) -> Circuit {
+        self.circuit.class.clone_from(&flat.class);
+        self.circuit.experiment = flat.experiment;
+        self.components(instance);
+        self.nodes(instance, network);
+        let potential = |port: &Port| format!("{}.{}", port.name, port.potential.name);
+        let potentials: Vec<String> = self.circuit.ports.iter().map(potential).collect();
+        let rates = Rates::of(flat, &potentials);
+        for node in &mut self.circuit.nodes {
+            rates.of_node(&potentials, node);
+        }
+        self.rigid(&rates);
+        self.geared(&rates);
+        self.factors(flat);
+        self.circuit.inputs = inputs(flat);
+        let real = flat.variables.iter().filter(|v| v.ty == Type::Real);
+        self.circuit.units = real.map(|v| (v.name.clone(), v.unit.as_deref().unwrap_or("").to_string())).collect();
+        self.circuit
+    }
+
+    fn components(&mut self, instance: &mut Instance<'_, '_>) {
+        for scope in bramah_model::network::component_scopes(instance) {
+            let template = instance.scope(scope).template.clone();
+            let name = instance.scope(scope).name.clone();
+            let class = instance.library.full_name(template.class);
+            match template.kind {
+                ClassKind::Connector { .. } => self.port(instance, scope, name, class),
+                ClassKind::Model | ClassKind::Block | ClassKind::Class => {
+                    self.component_of.insert(scope.0, self.circuit.components.len());
+                    let parameters = parameters(instance, scope);
+                    self.circuit.components.push(Component {
+                        name,
+                        class,
+                        ports: Vec::new(),
+                        parameters,
+                        factors: Vec::new(),
+                    });
+                }
+                _ => {}
+            }
+        }
+    }
+
+    fn port(&mut self, instance: &mut Instance<'_, '_>, scope: ScopeId, name: String, class: String) {
+        let Some(component) = instance.scope(scope).owner.and_then(|o| self.component_of.get(&o.0)).copied() else {
+            return;
+        };
+        let variables = own_variables(instance, scope);
+        let real = |i: &u32| {
+            let v = &instance.variables[*i as usize];
+            let counts = v.ty == Type::Real && v.variability == Variability::Continuous;
+            counts && v.causality.is_none() && !v.stream
+        };
+        let (flows, potentials): (Vec<u32>, Vec<u32>) =
+            variables.into_iter().filter(real).partition(|i| instance.variables[*i as usize].flow);
+        let ([through], [potential]) = (&flows[..], &potentials[..]) else { return };
+        let port = Port {
+            component,
+            potential: quantity(instance, *potential),
+            through: quantity(instance, *through),
+            node: 0,
+            name,
+            class,
+        };
+        let number = self.circuit.ports.len();
+        self.circuit.components[component].ports.push(number);
+        self.port_of.insert(scope.0, number);
+        self.circuit.ports.push(port);
+    }
+
+    /// Finds nodes that are one: a component keeps their potentials equal and only adds up what flows in.
+    fn rigid(&mut self, rates: &Rates<'_>) {
+        let Circuit { components, ports, nodes, .. } = &mut self.circuit;
+        (0..nodes.len()).for_each(|i| nodes[i].rigid = i);
+        let law = |p: &Port| rates.only_law(&format!("{}.{}", p.name, p.through.name), &components[p.component].name);
+        for c in components.iter() {
+            for (i, &a) in c.ports.iter().enumerate() {
+                for &b in &c.ports[i + 1..] {
+                    let (x, y) = (&ports[a], &ports[b]);
+                    let potential = |p: &Port| rates.root_of(&format!("{}.{}", p.name, p.potential.name));
+                    let equal = potential(x).is_some() && potential(x) == potential(y);
+                    if equal && law(x).is_some() && law(x) == law(y) {
+                        let (from, to) = (nodes[x.node].rigid, nodes[y.node].rigid);
+                        let first = from.min(to);
+                        nodes.iter_mut().filter(|n| n.rigid == from || n.rigid == to).for_each(|n| n.rigid = first);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Finds nodes whose potentials are bound to each other.
+    fn geared(&mut self, rates: &Rates<'_>) {
+        let Circuit { ports, nodes, .. } = &mut self.circuit;
+        (0..nodes.len()).for_each(|i| nodes[i].geared = nodes[i].rigid);
+        let root = |p: &Port| rates.root_of(&format!("{}.{}", p.name, p.potential.name));
+        for pair in &rates.geared {
+            let bound: BTreeSet<usize> = ports
+                .iter()
+                .filter(|p| root(p).is_some_and(|r| pair.contains(&r)))
+                .map(|p| nodes[p.node].geared)
+                .collect();
+            let Some(&first) = bound.first() else { continue };
+            nodes.iter_mut().filter(|n| bound.contains(&n.geared)).for_each(|n| n.geared = first);
+        }
+    }
+
+    /// Marks the parameters that are the factor of a single variable.
+    fn factors(&mut self, flat: &FlatModel) {
+        let linear = linear_factors(flat);
+        for c in &mut self.circuit.components {
+            let full = |q: &&Quantity| linear.contains(format!("{}.{}", c.name, q.name).as_str());
+            c.factors = c.parameters.iter().filter(|q| !q.unit.is_empty()).filter(full).cloned().collect();
+        }
+    }
+
+    fn nodes(&mut self, instance: &Instance<'_, '_>, network: &Network) {
+        let mut root: Vec<usize> = (0..self.circuit.ports.len()).collect();
+        let find = |root: &[usize], mut i: usize| {
+            while root[i] != i {
+                i = root[i];
+            }
+            i
+        };
+        for c in &network.connections {
+            let port = |n| match instance.node(n) {
+                Node::Object(s) => self.port_of.get(&s.0).copied(),
+                _ => None,
+            };
+            let (Some(a), Some(b)) = (port(c.a), port(c.b)) else { continue };
+            let within = self.component_of.get(&c.scope.0).copied().unwrap_or(0);
+            self.circuit.connections.push((a, b, within));
+            let (a, b) = (find(&root, a), find(&root, b));
+            root[a.max(b)] = a.min(b);
+        }
+        let mut number: BTreeMap<usize, usize> = BTreeMap::new();
+        for i in 0..root.len() {
+            let first = find(&root, i);
+            let node = *number.entry(first).or_insert_with(|| {
+                self.circuit.nodes.push(NodeSet::default());
+                self.circuit.nodes.len() - 1
+            });
+            self.circuit.nodes[node].ports.push(i);
+            self.circuit.ports[i].node = node;
+        }
+    }
+}
+
+fn own_variables(instance: &Instance<'_, '_>, scope: ScopeId) -> Vec<u32> {
+    let elements = instance.scope(scope).elements.iter();
+    let nodes = elements.filter_map(|e| if let ElementState::Node(n) = e { Some(*n) } else { None });
+    nodes.filter_map(|n| if let Node::Var(i) = instance.node(n) { Some(*i) } else { None }).collect()
+}
+
+fn quantity(instance: &mut Instance<'_, '_>, variable: u32) -> Quantity {
+    let full = &instance.variables[variable as usize].name;
+    let name = full.rsplit('.').next().unwrap_or(full).to_string();
+    Quantity { name, unit: instance.text_attribute(variable, "unit").unwrap_or_default() }
+}
+
+fn parameters(instance: &mut Instance<'_, '_>, scope: ScopeId) -> Vec<Quantity> {
+    let mut all = own_variables(instance, scope);
+    all.retain(|i| {
+        let v = &instance.variables[*i as usize];
+        v.ty == Type::Real && !v.hidden && v.variability == Variability::Parameter
+    });
+    all.into_iter().map(|i| quantity(instance, i)).collect()
+}
+
+fn inputs(flat: &FlatModel) -> Vec<ModelInput> {
+    let number = |e: Option<ExprId>| e.and_then(|e| flat.exprs.as_num(e));
+    let inputs = flat.variables.iter().filter(|v| v.input);
+    inputs
+        .map(|v| ModelInput {
+            name: v.name.clone(),
+            ty: v.ty,
+            unit: v.unit.as_deref().unwrap_or("").to_string(),
+            start: number(v.binding).or(number(v.start)),
+            nominal: number(v.nominal),
+        })
+        .collect()
+}
+
+/// Which variables are equal, which have a derivative in the model, and which are given by parameters alone.
+struct Rates<'a> {
+    flat: &'a FlatModel,
+    root: Vec<u32>,
+    differentiated: BTreeSet<u32>,
+    accelerated: BTreeSet<u32>,
+    /// Variables whose derivative parameters give.
+    steady: BTreeSet<u32>,
+    fixed: BTreeSet<u32>,
+    /// Those of the fixed and steady ones that inputs give.
+    driven: BTreeSet<u32>,
+    /// Potentials that one equation binds to each other, in pairs.
+    geared: Vec<BTreeSet<u32>>,
+    index: BTreeMap<&'a str, u32>,
+}
+
+impl<'a> Rates<'a> {
+    fn of(flat: &'a FlatModel, potentials: &[String]) -> Self {
+        let count = u32::try_from(flat.variables.len()).expect("fewer than 2^32 variables");
+        let index = (0u32..).zip(&flat.variables).map(|(i, v)| (v.name.as_str(), i)).collect();
+        let root = (0..count).collect();
+        let none = BTreeSet::new;
+        let (differentiated, accelerated, steady, fixed, driven) = (none(), none(), none(), none(), none());
+        let geared = Vec::new();
+        let mut rates = Rates { flat, root, differentiated, accelerated, steady, fixed, driven, geared, index };
+        rates.unite();
+        for e in &flat.equations {
+            for side in [e.lhs, e.rhs] {
+                for v in flat.exprs.derivatives(side) {
+                    let root = rates.find(v.0);
+                    rates.differentiated.insert(root);
+                }
+            }
+            for (one, other) in [(e.lhs, e.rhs), (e.rhs, e.lhs)] {
+                if let (Some(v), true) = (rates.variable(one), rates.constant(other)) {
+                    let root = rates.find(v);
+                    rates.fixed.insert(root);
+                    if rates.by_input(other) {
+                        rates.driven.insert(root);
+                    }
+                }
+            }
+        }
+        rates.accelerations();
+        let potentials = potentials.iter().filter_map(|name| rates.root_of(name)).collect();
+        rates.geared = flat.equations.iter().filter_map(|e| rates.bound(e, &potentials)).collect();
+        rates.differentiated = with_geared(rates.differentiated.clone(), &rates.geared);
+        rates.accelerated = with_geared(rates.accelerated.clone(), &rates.geared);
+        rates
+    }
+
+    /// The two potentials that an equation binds to each other whatever flows, as an ideal gear does.
+    fn bound(&self, e: &bramah_model::flat::Equation, potentials: &BTreeSet<u32>) -> Option<BTreeSet<u32>> {
+        let leaves = self.flat.exprs.dependencies(&[e.lhs, e.rhs]);
+        let moving = |v: &&VarId| self.flat.variables[v.index()].variability > Variability::Parameter;
+        let roots: BTreeSet<u32> = leaves.vars.iter().filter(moving).map(|v| self.find(v.0)).collect();
+        let binds = leaves.ders.is_empty() && leaves.pres.is_empty() && roots.len() == 2;
+        (binds && roots.is_subset(potentials)).then_some(roots)
+    }
+
+    fn unite(&mut self) {
+        for e in &self.flat.equations {
+            let (Some(a), Some(b)) = (self.variable(e.lhs), self.variable(e.rhs)) else { continue };
+            let (a, b) = (self.find(a), self.find(b));
+            self.root[a.max(b) as usize] = a.min(b);
+        }
+    }
+
+    /// Variables whose derivative is itself differentiated, or given by parameters.
+    fn accelerations(&mut self) {
+        for e in &self.flat.equations {
+            for (one, other) in [(e.lhs, e.rhs), (e.rhs, e.lhs)] {
+                let Term::Der(x) = self.flat.exprs.node(other) else { continue };
+                let root = self.find(x.0);
+                let rate = self.variable(one).map(|v| self.find(v));
+                if rate.is_some_and(|r| self.differentiated.contains(&r)) {
+                    self.accelerated.insert(root);
+                }
+                if rate.is_some_and(|r| self.fixed.contains(&r)) || self.constant(one) {
+                    self.steady.insert(root);
+                    if rate.is_some_and(|r| self.driven.contains(&r)) || self.by_input(one) {
+                        self.driven.insert(root);
+                    }
+                }
+            }
+        }
+    }
+
+    /// A variable that may change in time.
+    fn variable(&self, e: ExprId) -> Option<u32> {
+        match self.flat.exprs.node(e) {
+            Term::Var(VarId(v)) if self.flat.variables[v as usize].variability == Variability::Continuous => Some(v),
+            _ => None,
+        }
+    }
+
+    /// Given from outside: by parameters, time and inputs.
+    fn constant(&self, e: ExprId) -> bool {
+        let leaves = self.flat.exprs.dependencies(&[e]);
+        let given = |v: &VarId| {
+            let v = &self.flat.variables[v.index()];
+            v.input || v.variability <= Variability::Parameter
+        };
+        leaves.ders.is_empty() && leaves.pres.is_empty() && leaves.vars.iter().all(given)
+    }
+
+    /// Whether an input has a part in it.
+    fn by_input(&self, e: ExprId) -> bool {
+        self.flat.exprs.dependencies(&[e]).vars.iter().any(|v| self.flat.variables[v.index()].input)
+    }
+
+    fn find(&self, mut i: u32) -> u32 {
+        while self.root[i as usize] != i {
+            i = self.root[i as usize];
+        }
+        i
+    }
+
+    /// What stands for all variables equal to this one.
+    fn root_of(&self, name: &str) -> Option<u32> {
+        self.index.get(name).map(|&i| self.find(i))
+    }
+
+    /// The equation of a component in which a flow occurs, if it is only one.
+    fn only_law(&self, through: &str, component: &str) -> Option<usize> {
+        let variable = VarId(*self.index.get(through)?);
+        let instance = self.flat.instances.iter().position(|i| i.name == component)?;
+        let mut all = (0..).zip(&self.flat.equations).filter(|(_, e)| e.origin.instance as usize == instance);
+        let holds =
+            |e: &bramah_model::flat::Equation| self.flat.exprs.dependencies(&[e.lhs, e.rhs]).vars.contains(&variable);
+        let first = all.by_ref().find(|(_, e)| holds(e))?.0;
+        all.all(|(_, e)| !holds(e)).then_some(first)
+    }
+
+    /// Whether the potential of a node is fixed, and which of its derivatives are in the model; by the ports' potentials.
+    fn of_node(&self, potentials: &[String], node: &mut NodeSet) {
+        for name in node.ports.clone().into_iter().map(|p| &potentials[p]) {
+            let Some(&i) = self.index.get(name.as_str()) else { continue };
+            let root = self.find(i);
+            node.fixed |= self.fixed.contains(&root) || self.steady.contains(&root);
+            node.driven |= self.driven.contains(&root);
+            node.has_rate |= self.differentiated.contains(&root);
+            node.has_acceleration |= self.accelerated.contains(&root);
+        }
+    }
+}
+
+/// What has a derivative, and all that is bound to it: behind an ideal gear the speed of its other side is in the model, too.
+fn with_geared(mut known: BTreeSet<u32>, geared: &[BTreeSet<u32>]) -> BTreeSet<u32> {
+    loop {
+        let before = known.len();
+        for pair in geared {
+            if !pair.is_disjoint(&known) {
+                known.extend(pair);
+            }
+        }
+        if known.len() == before {
+            return known;
+        }
+    }
+}
+
+/// Names of parameters that occur in one equation, as the factor of one variable: `q = G*dp`.
+fn linear_factors(flat: &FlatModel) -> BTreeSet<&str> {
+    let mut exprs = flat.exprs.clone();
+    let known = known(flat);
+    let mut met: BTreeMap<u32, bool> = BTreeMap::new();
+    for e in &flat.equations {
+        let leaves = flat.exprs.dependencies(&[e.lhs, e.rhs]);
+        let parameter = |v: &&VarId| flat.variables[v.index()].variability == Variability::Parameter;
+        for &p in leaves.vars.iter().filter(parameter) {
+            let linear = [e.lhs, e.rhs].into_iter().any(|side| multiplies_one(&known, &mut exprs, side, p));
+            met.entry(p.0).and_modify(|l| *l &= linear).or_insert(linear);
+        }
+    }
+    let linear = met.into_iter().filter(|(_, linear)| *linear);
+    linear.map(|(v, _)| flat.variables[v as usize].name.as_str()).collect()
+}
+
+/// Whether the derivative of a side by a parameter is one variable, or its negative, or a difference of two: seen by
+/// evaluating it, since it may hide behind choices that parameters make.
+fn multiplies_one(known: &BTreeMap<VarId, f64>, exprs: &mut Exprs, side: ExprId, parameter: VarId) -> bool {
+    let leaf = exprs.var(parameter);
+    if !exprs.contains(side, leaf) {
+        return false;
+    }
+    let slope = exprs.differentiate(side, leaf);
+    let leaves = exprs.dependencies(&[slope]);
+    let moving = |v: &&VarId| !known.contains_key(v);
+    let moving: Vec<VarId> = leaves.vars.iter().filter(moving).copied().collect();
+    if !leaves.ders.is_empty() || moving.is_empty() || moving.len() > 8 {
+        return false;
+    }
+    let at = |shift: f64, bumped: Option<VarId>| {
+        let mut values = |v: VarId| {
+            let place = moving.iter().position(|m| *m == v).map_or(0.0, |i| (i + 1) as f64);
+            shift * (1.0 + 0.37 * place) + if bumped == Some(v) { 1.0 } else { 0.0 }
+        };
+        value_at(known, exprs, slope, &mut values)
+    };
+    let slopes = moving.iter().map(|&v| [0.3, 1.7].map(|x| at(x, Some(v)) - at(x, None)));
+    let mut count = 0;
+    for [a, b] in slopes {
+        if (a - b).abs() > 1e-9 || !(a.abs() < 1e-9 || (a.abs() - 1.0).abs() < 1e-9) {
+            return false;
+        }
+        count += usize::from(a != 0.0);
+    }
+    matches!(count, 1 | 2)
+}
+
+/// Values of parameters, and of variables that an equation gives by them alone in the branches they choose.
+fn known(flat: &FlatModel) -> BTreeMap<VarId, f64> {
+    let mut open: Vec<(VarId, ExprId)> = Vec::new();
+    for (i, v) in (0u32..).zip(&flat.variables) {
+        if v.variability <= Variability::Parameter {
+            open.push((VarId(i), v.binding.or(v.start).unwrap_or(Exprs::ZERO)));
+        }
+    }
+    for e in &flat.equations {
+        for (one, other) in [(e.lhs, e.rhs), (e.rhs, e.lhs)] {
+            if let Term::Var(v) = flat.exprs.node(one) {
+                open.push((v, other));
+            }
+        }
+    }
+    let mut known = BTreeMap::new();
+    loop {
+        let before = known.len();
+        open.retain(|(v, e)| {
+            let value = if known.contains_key(v) { None } else { steady_value(&known, &flat.exprs, *e) };
+            if let Some(value) = value {
+                known.insert(*v, value);
+            }
+            value.is_none() && !known.contains_key(v)
+        });
+        if known.len() == before {
+            return known;
+        }
+    }
+}
+
+/// The value of an expression if what is known is enough for it.
+fn steady_value(known: &BTreeMap<VarId, f64>, exprs: &Exprs, e: ExprId) -> Option<f64> {
+    let mut enough = true;
+    let value = Evaluation::default().value(exprs, e, &mut |leaf| match leaf {
+        Term::Var(v) if known.contains_key(&v) => known[&v],
+        _ => {
+            enough = false;
+            0.0
+        }
+    });
+    enough.then_some(value)
+}
+
+/// The value of an expression with what is known at its value, and other variables as given.
+fn value_at(known: &BTreeMap<VarId, f64>, exprs: &Exprs, e: ExprId, moving: &mut dyn FnMut(VarId) -> f64) -> f64 {
+    Evaluation::default().value(exprs, e, &mut |leaf| match leaf {
+        Term::Var(v) => known.get(&v).copied().unwrap_or_else(|| moving(v)),
+        _ => 0.0,
+    })
+}
+
+impl Circuit {
+    /// The signal inside the model that a component receives by this name.
+    pub fn link(&self, name: &str) -> Option<&Link> {
+        self.links.iter().find(|l| l.signal.name == name)
+    }
+
+    /// The number that all nodes rigidly one with that of a port share.
+    pub fn rigid(&self, port: usize) -> usize {
+        self.nodes[self.ports[port].node].rigid
+    }
+
+    /// The number that all nodes share whose potentials are bound to that of a port.
+    pub fn geared(&self, port: usize) -> usize {
+        self.nodes[self.ports[port].node].geared
+    }
+
+    /// All ports of the nodes that are one with that of a port, in declaration order.
+    pub fn same_place(&self, port: usize) -> Vec<usize> {
+        let rigid = self.rigid(port);
+        (0..self.ports.len()).filter(|&p| self.rigid(p) == rigid).collect()
+    }
+}
+
+/// Whether two units measure the same, angle included; scales may differ.
+pub fn same_kind(a: &str, b: &str) -> bool {
+    match (Unit::parse(a), Unit::parse(b)) {
+        (Ok(x), Ok(y)) => x.dimension == y.dimension && x.angle == y.angle && a.is_empty() == b.is_empty(),
+        _ => false,
+    }
+}

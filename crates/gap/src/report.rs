@@ -1,0 +1,333 @@
+//! The diagnosis as one HTML page: words, the network with the places of the gap, tables, and curves of every signal.
+//!
+//! The page needs no network and no other file; the curves can be zoomed like those of `bramah plot`.
+
+use super::data::Recording;
+use super::estimate::candidate::{Candidate, Errors};
+use super::hypotheses::Signal;
+use super::problem::Problem;
+use super::select::search::Found;
+use super::select::weighed::at_nominal;
+use super::study::Held;
+use super::verdict::{Columns, Effect, Maybe, Side, SignalGap, Verdict, Weighed};
+use super::whiteness::{Whiteness, whiteness};
+use super::words::{distance, estimate, findings, gap_row, number, percent, rest};
+use bramah_expr::units::Unit;
+use bramah_model::compile::flatten;
+use bramah_plot::network::{self, Mark};
+use bramah_plot::svg::escape;
+use bramah_plot::{Figure, Panel, Series, html};
+use std::fmt::Write;
+
+/// Deviations of so many tolerances are set off in the table.
+const FAR: f64 = 2.0;
+
+/// What a model left, signal by signal, with the model's name.
+type Left = (&'static str, Vec<Whiteness>);
+
+/// Writes the page.
+pub fn report(problem: &Problem<'_>, found: &Found, verdict: &Verdict, held: &Held) -> String {
+    let used: Vec<(&String, &Recording)> = problem.files.iter().zip(&problem.train).collect();
+    let others: Vec<(&String, &Recording)> = held.files.iter().zip(&held.recordings).collect();
+    let mut panels = Vec::new();
+    for (i, (file, recording)) in used.iter().enumerate() {
+        panels.extend(curves(problem, found, recording, Some(i), &format!("{file}, used")));
+    }
+    for (file, recording) in others {
+        panels.extend(curves(problem, found, recording, None, &format!("{file}, held")));
+    }
+    // without effects both are one
+    let fits = [("within tolerances", &found.base.fit), ("with effects", &found.last.fit)];
+    let fits = &fits[..1 + usize::from(!verdict.effects.is_empty())];
+    let of = |errors: &[Errors]| whiteness(errors, &problem.train, &problem.noise_floor);
+    let left: Vec<Left> = fits.iter().map(|(stage, fit)| (*stage, of(&fit.evaluated.errors))).collect();
+    panels.extend(left.iter().map(|left| spectrum(problem, left)));
+    let title = format!("Gap of {}", problem.circuit.class);
+    let figure = Figure { title, panels, shared_x: false };
+    let facts = [
+        ("verdict".to_string(), verdict.verdict.replace('_', " ")),
+        ("recordings used".to_string(), problem.files.join(", ")),
+        ("held recordings".to_string(), held.files.join(", ")),
+        ("hypotheses".to_string(), problem.hypotheses.len().to_string()),
+        ("bramah".to_string(), env!("CARGO_PKG_VERSION").to_string()),
+    ];
+    html::write_around(&figure, &facts, &before(problem, verdict, &left))
+}
+
+/// Everything above the curves.
+fn before(problem: &Problem<'_>, v: &Verdict, left: &[Left]) -> String {
+    let line = |line: &str| format!("<p>{}</p>\n", escape(line));
+    // the gap has a table of its own below
+    let mut out: String = [findings(v), rest(v)].concat().lines().map(line).collect();
+    out.push_str(&picture(problem, v));
+    out.push_str(&table("Effects", EFFECTS, &effects(v)));
+    out.push_str(&table(
+        "Gap: RMS of measured minus simulated, in brackets of the range of these recordings",
+        GAPS,
+        &gaps(v),
+    ));
+    out.push_str(&table("Parameters against their tolerances", DRIFTS, &drifts(v)));
+    out.push_str(&table("Places where model and recordings differ", PLACES, &places(v)));
+    out.push_str(&table("What stays unexplained", UNEXPLAINED, &unexplained(v)));
+    out.push_str(&table(
+        "What is left of the recordings used, beside the sensors' noise",
+        WHITE,
+        &white(problem, left),
+    ));
+    out.push_str(&table("What was weighed", WEIGHED, &weighed(v)));
+    out.push_str(&not_fitted(v));
+    out.push_str("<h2>Measured and simulated; spectra of what is left</h2>\n");
+    out
+}
+
+/// The network; the more certain a gap at a place, the deeper its colour.
+fn picture(problem: &Problem<'_>, v: &Verdict) -> String {
+    let Some(flattened) = flatten(problem.world, &problem.request).value else { return String::new() };
+    let most = v.places.iter().map(|p| p.evidence).fold(0.0, f64::max);
+    let mut marks = Vec::new();
+    for p in v.places.iter().filter(|p| p.evidence > 0.0) {
+        let heat = (p.evidence / most).sqrt();
+        let note = format!("{} ({}): {:.0} nats", p.place, p.kind, p.evidence);
+        let sensed = problem.signals.iter().find(|s| p.kind == "sensor" && s.name == p.place);
+        let names = p.node.iter().chain(sensed.map(|s| &s.variable));
+        marks.extend(names.map(|name| Mark { name: name.clone(), heat, note: note.clone() }));
+    }
+    let drawn = network::write_marked(&flattened.graph, &problem.circuit.class, &marks);
+    format!("<div class=\"network\">{drawn}</div>\n")
+}
+
+const EFFECTS: &[&str] = &[
+    "effect",
+    "class",
+    "places",
+    "parameters",
+    "evidence in nats",
+    "t",
+    "closes alone",
+    "closes last",
+    "indistinguishable from",
+];
+const GAPS: &[&str] = &["recordings", "signal", "nominal", "within tolerances", "with effects", "sensor noise"];
+const DRIFTS: &[&str] = &["parameter", "nominal", "fitted", "std", "tolerances"];
+const PLACES: &[&str] = &["place", "kind", "evidence in nats", "share", "the same place"];
+const UNEXPLAINED: &[&str] = &["share of the nominal gap", "place", "shape", "closes"];
+const WEIGHED: &[&str] =
+    &["step", "effect", "places", "leaves, of full scale", "t", "evidence in nats", "why not taken"];
+const WHITE: &[&str] = &["signal", "model", "mean square (1)", "correlation of neighbours (0)", "white noise at most"];
+
+/// A table of cells that are HTML already; nothing without rows.
+fn table(title: &str, heads: &[&str], rows: &[Vec<String>]) -> String {
+    if rows.is_empty() {
+        return String::new();
+    }
+    let mut out = format!("<h2>{title}</h2>\n<table class=\"rows\"><tr>");
+    for h in heads {
+        let _ = write!(out, "<th>{h}</th>");
+    }
+    for row in rows {
+        out.push_str("</tr>\n<tr>");
+        for cell in row {
+            let _ = write!(out, "<td>{cell}</td>");
+        }
+    }
+    out.push_str("</tr></table>\n");
+    out
+}
+
+fn effects(v: &Verdict) -> Vec<Vec<String>> {
+    let row = |e: &Effect| {
+        let parameters: Vec<String> =
+            e.parameters.iter().map(|(n, p)| escape(&format!("{n} = {}", estimate(p, "±")))).collect();
+        let others: Vec<String> = e
+            .indistinguishable
+            .iter()
+            .map(|a| {
+                let at: Vec<&str> = a.places.iter().map(|p| p.place.as_str()).collect();
+                escape(&format!("{} at {} ({})", a.effect, at.join(", "), distance(a.behind)))
+            })
+            .collect();
+        let at: Vec<String> = e.places.iter().map(|p| escape(&p.place)).collect();
+        vec![
+            escape(&e.family.replace('_', " ")),
+            escape(&e.effect),
+            at.join("<br>"),
+            parameters.join("<br>"),
+            format!("{:.1}", e.evidence),
+            format!("{:.1}", e.t),
+            share(e.closes_alone),
+            share(e.closes_last),
+            others.join("<br>"),
+        ]
+    };
+    v.effects.iter().map(row).collect()
+}
+
+fn share(v: Maybe) -> String {
+    v.map_or_else(|| "unknown".to_string(), percent)
+}
+
+fn gaps(v: &Verdict) -> Vec<Vec<String>> {
+    let signal = |which: &str, name: &str, g: &SignalGap| {
+        let cells = gap_row(name, g).map(|cell| escape(&cell));
+        [vec![which.to_string()], cells.to_vec()].concat()
+    };
+    let all = |which: &str, c: &Columns| {
+        let parts = [c.nominal, c.tolerances, c.effects].map(share);
+        [vec![which.to_string(), "<b>all, of full scale</b>".to_string()], parts.to_vec(), vec![String::new()]].concat()
+    };
+    let rows = |which: &str, side: &Side| -> Vec<Vec<String>> {
+        side.signals.iter().map(|(n, g)| signal(which, n, g)).chain([all(which, &side.total)]).collect()
+    };
+    [rows("held", &v.gap.held), rows("used", &v.gap.train)].concat()
+}
+
+fn drifts(v: &Verdict) -> Vec<Vec<String>> {
+    let row = |d: &super::verdict::Drift| {
+        let deviation = d.tolerances.map_or_else(|| "free".to_string(), |t| format!("{t:+.2}"));
+        let far = d.tolerances.is_some_and(|t| t.abs() >= FAR);
+        let deviation = if far { format!("<b class=\"far\">{deviation}</b>") } else { deviation };
+        vec![escape(&d.parameter), number(d.nominal), number(d.value), number(d.std), deviation]
+    };
+    v.drifts.iter().map(row).collect()
+}
+
+fn places(v: &Verdict) -> Vec<Vec<String>> {
+    let row = |p: &super::verdict::Located| {
+        let node = escape(&p.node.join(", "));
+        vec![escape(&p.place), p.kind.to_string(), format!("{:.1}", p.evidence), percent(p.share), node]
+    };
+    v.places.iter().map(row).collect()
+}
+
+/// What no effect explains, by its shape.
+fn unexplained(v: &Verdict) -> Vec<Vec<String>> {
+    let u = &v.unexplained;
+    let place = u.place.as_deref().map_or_else(|| "unknown".to_string(), escape);
+    let row = |shape: String, closes: String| vec![share(u.share), place.clone(), shape, closes];
+    match &u.shape {
+        None if v.open.is_empty() => Vec::new(),
+        Some(terms) => terms.iter().map(|t| row(escape(&t.term), percent(t.closes))).collect(),
+        None => vec![row("none that is known".into(), String::new())],
+    }
+}
+
+/// What was fitted, with the reason why it was not taken.
+fn weighed(v: &Verdict) -> Vec<Vec<String>> {
+    let digits = |v: Maybe, digits: usize| v.map_or_else(String::new, |v| format!("{v:.digits$}"));
+    let row = |w: &Weighed| {
+        let at: Vec<String> = w.places.iter().map(|p| escape(&p.place)).collect();
+        vec![
+            w.step.to_string(),
+            escape(&w.effect),
+            at.join("<br>"),
+            w.gap.map_or_else(String::new, percent),
+            digits(w.t, 1),
+            digits(w.evidence, 1),
+            w.refused.as_deref().map_or_else(|| "<b>taken</b>".to_string(), escape),
+        ]
+    };
+    v.weighed.iter().filter(|w| w.gap.is_some()).map(row).collect()
+}
+
+/// How many hypotheses were not fitted.
+fn not_fitted(v: &Verdict) -> String {
+    let count = v.weighed.iter().filter(|w| w.gap.is_none()).count();
+    format!("<p>{count} more were not fitted: a linear step promised too little. The JSON verdict lists them.</p>\n")
+}
+
+/// How far what is left is from white noise of the size of the sensor's.
+fn white(problem: &Problem<'_>, left: &[Left]) -> Vec<Vec<String>> {
+    let row = |name: &str, stage: &str, w: &Whiteness| {
+        let coloured = w.neighbours.abs() > w.limit;
+        let neighbours = format!("{:+.3}", w.neighbours);
+        let neighbours = if coloured { format!("<b class=\"far\">{neighbours}</b>") } else { neighbours };
+        vec![escape(name), stage.into(), format!("{:.2}", w.power), neighbours, format!("{:.3}", w.limit)]
+    };
+    let signal = |(i, s): (usize, &Signal)| {
+        let models = left.iter().filter_map(move |(stage, left)| Some((left.get(i)?, stage)));
+        models.map(|(w, stage)| row(&s.name, stage, w)).collect::<Vec<_>>()
+    };
+    problem.signals.iter().enumerate().flat_map(signal).collect()
+}
+
+/// Spectra of what is left of all signals, in decibels over the sensors' noise.
+fn spectrum(problem: &Problem<'_>, (stage, left): &Left) -> Panel {
+    let level = |d: &f64| if *d > 0.0 { 10.0 * d.log10() } else { f64::NAN };
+    let series = |(i, (s, w)): (usize, (&Signal, &Whiteness))| {
+        curve(&s.name, &w.frequencies, &w.density.iter().map(level).collect::<Vec<f64>>(), i)
+    };
+    Panel {
+        x_label: format!("frequency in Hz, {stage}"),
+        y_label: "left, dB over the noise".into(),
+        series: problem.signals.iter().zip(left).enumerate().map(series).collect(),
+        ..Panel::default()
+    }
+}
+
+/// The nominal model against every recording used, without a diagnosis.
+///
+/// # Errors
+/// The recording that the model cannot follow, and when its simulation stops, s.
+pub fn compared(problem: &Problem<'_>, nominal: &Candidate) -> Result<Figure, (String, f64)> {
+    let x = nominal.present();
+    let mut panels = Vec::new();
+    for (i, (file, recording)) in problem.files.iter().zip(&problem.train).enumerate() {
+        if let Some(time) = nominal.stops(&x, recording) {
+            return Err((file.clone(), time));
+        }
+        let simulated = [("simulated", 1, nominal.errors(&x, recording, Some(i)))];
+        panels.extend(beside(problem, recording, &simulated, file));
+    }
+    Ok(Figure { title: format!("{} and its recordings", problem.circuit.class), panels, shared_x: false })
+}
+
+/// A recording, signal by signal, against the nominal model and the corrected one. `number`: among the recordings used.
+fn curves(
+    problem: &Problem<'_>,
+    found: &Found,
+    recording: &Recording,
+    number: Option<usize>,
+    what: &str,
+) -> Vec<Panel> {
+    let (base, last) = (&found.base.fit, &found.last.fit);
+    let of_nominal = base.candidate.errors(&at_nominal(problem, &base.candidate, &base.x), recording, number);
+    let of_last = last.candidate.errors(&last.x, recording, number);
+    beside(problem, recording, &[("nominal", 1, of_nominal), ("corrected", 0, of_last)], what)
+}
+
+/// A recording, signal by signal, with what models make of it: name, colour, what each leaves.
+fn beside(
+    problem: &Problem<'_>,
+    recording: &Recording,
+    models: &[(&str, usize, Option<Errors>)],
+    what: &str,
+) -> Vec<Panel> {
+    let behind = |errors: &Errors| recording.len() - errors.first().map_or(0, Vec::len);
+    let panel = |(i, signal): (usize, &Signal)| {
+        let measured = &recording.signals[i];
+        let (of_model, unit) = (problem.circuit.units.get(&signal.variable), &problem.shown[i].unit);
+        let units = of_model.and_then(|u| Unit::parse(u).ok()).zip(Unit::parse(unit).ok());
+        let in_unit = |values: &[f64]| -> Vec<f64> {
+            let convert = |v: &f64| units.as_ref().and_then(|(from, to)| from.convert(*v, to)).unwrap_or(*v);
+            values.iter().map(convert).collect()
+        };
+        let mut series = vec![curve("measured", &recording.times, &in_unit(measured), 6)];
+        for (name, colour, errors) in models {
+            let Some(errors) = errors else { continue };
+            let from = behind(errors);
+            let simulated: Vec<f64> = measured[from..].iter().zip(&errors[i]).map(|(y, e)| y - e).collect();
+            series.push(curve(name, &recording.times[from..], &in_unit(&simulated), *colour));
+        }
+        Panel {
+            x_label: format!("time in s, {what}"),
+            y_label: if unit.is_empty() { signal.name.clone() } else { format!("{} in {unit}", signal.name) },
+            series,
+            ..Panel::default()
+        }
+    };
+    problem.signals.iter().enumerate().map(panel).collect()
+}
+
+fn curve(name: &str, x: &[f64], y: &[f64], colour: usize) -> Series {
+    Series { name: name.into(), x: x.to_vec(), y: y.to_vec(), colour, ..Series::default() }
+}

@@ -1,0 +1,132 @@
+//! Models with hypotheses attached: what is free in them, and where they begin.
+
+use super::super::effects::{Coefficient, Shape};
+use super::super::estimate::{Candidate, Coordinate};
+use super::super::hypotheses::Hypothesis;
+use super::super::policy::{ACCURACY, GRID};
+use super::super::problem::{Chosen, Problem};
+use super::compare::Sensors;
+use bramah_syntax::diag::Diagnostic;
+
+/// A shape may lie so many times beyond its grid, a width so many times beside its value.
+const BEYOND: f64 = 3.0;
+const WIDER: f64 = 10.0;
+
+/// The sensors of a problem.
+pub fn sensors(problem: &Problem<'_>) -> Sensors {
+    Sensors { noise: problem.noise_floor.clone(), full_scale: problem.full_scale.clone() }
+}
+
+/// A model with these causes, of the first so many with free widths; tolerances, where they are given, at these values.
+pub fn candidate(
+    problem: &Problem<'_>,
+    causes: &[Chosen],
+    tolerances: Option<&[f64]>,
+    taken: usize,
+) -> Option<Candidate> {
+    attached(problem, causes, tolerances, taken, causes.len()).ok()
+}
+
+/// The nominal model with its tolerances free.
+///
+/// # Errors
+/// The diagnostics of the compiler.
+pub fn nominal(problem: &Problem<'_>) -> Result<Candidate, Vec<Diagnostic>> {
+    attached(problem, &[], None, 0, 0)
+}
+
+/// The same where only the first so many have free shapes at all.
+///
+/// # Errors
+/// The diagnostics of the compiler.
+pub fn attached(
+    problem: &Problem<'_>,
+    causes: &[Chosen],
+    tolerances: Option<&[f64]>,
+    taken: usize,
+    shapes: usize,
+) -> Result<Candidate, Vec<Diagnostic>> {
+    let mut model = problem.assembled(causes, &[], shapes)?;
+    if let Some(values) = tolerances {
+        model.theta[model.free.clone()].copy_from_slice(values);
+    }
+    let hypothesis = |c: &Chosen| &problem.hypotheses[c.hypothesis];
+    let mut coordinates: Vec<Coordinate> = Vec::new();
+    for (i, t) in problem.tolerances.iter().enumerate() {
+        let mut c = Coordinate::plain(i, t.sigma, t.min, t.max);
+        c.prior = (!t.free).then_some((t.nominal / t.sigma, 1.0));
+        coordinates.push(c);
+    }
+    let mut own = 0;
+    for (k, (cause, places)) in causes.iter().zip(&model.attached).enumerate() {
+        let h = hypothesis(cause);
+        if h.family == "parameter" {
+            coordinates[places[0]].prior = None;
+            own += 1;
+            continue;
+        }
+        let (linear, shaped) = places.split_at(h.coefficients.len());
+        let coefficients = h.coefficients.iter().zip(linear).filter_map(|(c, &p)| coefficient(c, p));
+        let is_taken = k < taken;
+        let shapes = h.shapes.iter().zip(shaped).filter_map(|(s, &p)| shape(s, p, is_taken));
+        let of_cause: Vec<Coordinate> = coefficients.chain(shapes).collect();
+        // a width has a prior, and is no size of the effect
+        own += of_cause.iter().filter(|c| c.prior.is_none()).count();
+        coordinates.extend(of_cause);
+    }
+    let deviation = |(n, f): (&f64, &f64)| n.max(ACCURACY * f);
+    let deviations = problem.noise_floor.iter().zip(&problem.full_scale).map(deviation).collect();
+    let units = problem.signals.iter().map(|s| problem.unit(s)).collect();
+    let (off, allowed) = (Vec::new(), Vec::new());
+    Ok(Candidate { causes: causes.to_vec(), taken, model, coordinates, own, units, deviations, off, allowed })
+}
+
+/// A share of a whole is not free: an effect is there or not.
+fn coefficient(c: &Coefficient, parameter: usize) -> Option<Coordinate> {
+    let bound = |b: Option<f64>, none: f64| b.unwrap_or(none);
+    let free = c.whole().is_none();
+    free.then(|| {
+        Coordinate::plain(parameter, c.nominal.abs(), bound(c.min, f64::NEG_INFINITY), bound(c.max, f64::INFINITY))
+    })
+}
+
+/// A shape with one value is a width: it is free once its effect is taken, so that no second effect makes up for a corner
+/// of another form.
+fn shape(s: &Shape, parameter: usize, is_taken: bool) -> Option<Coordinate> {
+    let (least, most) = s.grid.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, m), x| (l.min(*x), m.max(*x)));
+    let (min, max) = (s.min.unwrap_or(f64::NEG_INFINITY), s.max.unwrap_or(f64::INFINITY));
+    if s.grid.len() < 2 {
+        let free = is_taken && least > 0.0;
+        return free.then(|| {
+            let widest = s.occurs.unwrap_or(0.0).max(most * WIDER);
+            let width = Coordinate::by_logarithm(parameter, min.max(least / WIDER), max.min(widest));
+            Coordinate { prior: Some((least.ln(), WIDER.ln())), ..width }
+        });
+    }
+    Some(if least > 0.0 {
+        Coordinate::by_logarithm(parameter, min.max(least / BEYOND), max.min(most * BEYOND))
+    } else {
+        let width = most - least;
+        Coordinate::plain(parameter, width, min.max(least - width), max.min(most + width))
+    })
+}
+
+/// Values of a hypothesis where it may begin: linear coefficients where they vanish, shares as the whole, shapes on their
+/// grids.
+pub fn beginnings(h: &Hypothesis) -> Vec<Vec<f64>> {
+    // what makes no linear model where it vanishes begins at its usual size
+    let size = if h.changes_order { 1.0 } else { 0.0 };
+    let value = |c: &Coefficient| match c.whole() {
+        Some(whole) => whole,
+        None => (c.off + size * c.nominal).clamp(c.min.unwrap_or(f64::MIN), c.max.unwrap_or(f64::MAX)),
+    };
+    let with = |variant: Vec<(String, f64)>| -> Vec<f64> {
+        h.coefficients.iter().map(value).chain(variant.into_iter().map(|v| v.1)).collect()
+    };
+    let mut all: Vec<Vec<f64>> = h.variants().into_iter().map(with).collect();
+    let count = all.len();
+    if count > GRID {
+        all = (0..GRID).map(|i| all[i * (count - 1) / (GRID - 1)].clone()).collect();
+    }
+    all
+}

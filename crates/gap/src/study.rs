@@ -1,0 +1,409 @@
+//! From a study to a problem.
+
+use super::capacity;
+use super::circuit::{self, Circuit};
+use super::data::Recording;
+use super::effects::{self, Effect};
+use super::hypotheses::{self, Free, Hypothesis, Signal};
+use super::mistakes::mistakes;
+use super::problem::{Problem, Shown, Tolerance};
+use super::shapes;
+use bramah_analysis::noise;
+use bramah_analysis::study::{Bound, BoundSignal, Knowledge, Role, Study, full_scales};
+use bramah_expr::VarId;
+use bramah_expr::units::Unit;
+use bramah_model::flat::{FlatModel, Type, Variability};
+use bramah_solve::Interpolation;
+use bramah_solve::lower::{Options, lower};
+use bramah_syntax::diag::{Code, Diagnostic, Sources};
+use bramah_syntax::world::World;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Standard deviation assumed for a parameter that the study does not speak of, as part of its value.
+pub const ASSUMED: f64 = 0.05;
+
+/// Noise of a sensor of which the study says no accuracy, as part of its range, before anything was measured.
+const ACCURACY: f64 = 3e-3;
+
+/// Between the samples of a recording a model is evaluated point by point, and nothing there rings its clocks.
+const SAMPLED: &str = "the diagnosis cannot follow a model that samples";
+
+/// A study with its model read.
+pub struct Question<'a> {
+    /// What is diagnosed.
+    pub problem: Problem<'a>,
+    /// The study tied to the model.
+    pub bound: Bound,
+    /// The nominal model.
+    flat: FlatModel,
+    /// Warnings.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// Recordings that take no part in fitting.
+pub struct Held {
+    /// Their names, for messages alone.
+    pub files: Vec<String>,
+    /// What was recorded.
+    pub recordings: Vec<Recording>,
+}
+
+/// Why a study cannot be used, with the texts its messages point into.
+pub struct Unusable {
+    /// What is wrong.
+    pub diagnostics: Vec<Diagnostic>,
+    /// Texts of the model, if the trouble is there.
+    pub sources: Option<Sources>,
+    /// The nominal model is wrong, not the study.
+    pub model: bool,
+}
+
+impl Unusable {
+    fn study(diagnostics: Vec<Diagnostic>) -> Self {
+        Unusable { diagnostics, sources: None, model: false }
+    }
+
+    fn model<T>(outcome: bramah_model::compile::Outcome<T>) -> Self {
+        Unusable { diagnostics: outcome.diagnostics, sources: Some(outcome.sources), model: true }
+    }
+}
+
+/// Reads everything that a study names but its held recordings.
+///
+/// # Errors
+/// [`Unusable`].
+pub fn question<'a>(
+    world: &'a dyn World,
+    study: &Study,
+    data: Option<&Path>,
+    sources: &mut Sources,
+) -> Result<Question<'a>, Unusable> {
+    let nominal = Nominal::read(world, study)?;
+    let (train, warnings) = nominal.train(world, data, sources)?;
+    nominal.question(world, study, train, warnings)
+}
+
+/// The same before anything was measured: train recordings need inputs only, and signals are what the nominal model
+/// shows. Noise is the sensors' accuracy, where the study says none a part of their range.
+///
+/// # Errors
+/// [`Unusable`].
+pub fn planned<'a>(
+    world: &'a dyn World,
+    study: &Study,
+    data: Option<&Path>,
+    sources: &mut Sources,
+) -> Result<Question<'a>, Unusable> {
+    let mut nominal = Nominal::read(world, study)?;
+    let signals = std::mem::take(&mut nominal.bound.signals);
+    let (train, warnings) = nominal.train(world, data, sources)?;
+    nominal.bound.signals = signals;
+    let train = nominal.shown(world, study, train)?;
+    let mut question = nominal.question(world, study, train, warnings)?;
+    let problem = &mut question.problem;
+    // nothing was recorded that could be wrong
+    problem.hypotheses.retain(|h| !h.is_recording_error());
+    let accuracy = |(s, &scale): (&BoundSignal, &f64)| s.deviation(scale).unwrap_or(ACCURACY * scale);
+    let floor = question.bound.signals.iter().zip(&problem.full_scale).map(accuracy);
+    problem.noise_floor = floor.zip(&problem.full_scale).map(|(n, f)| n.max(1e-9 * f.abs())).collect();
+    Ok(question)
+}
+
+/// The nominal model of a study, and the study tied to it.
+struct Nominal {
+    flat: FlatModel,
+    dae: bramah_model::structure::Dae,
+    bound: Bound,
+    request: bramah_model::compile::Request,
+}
+
+impl Nominal {
+    fn read(world: &dyn World, study: &Study) -> Result<Self, Unusable> {
+        let request = study.request();
+        let outcome = bramah_model::compile::sort(world, &request);
+        let Some((flat, _, dae)) = outcome.value else { return Err(Unusable::model(outcome)) };
+        if let Some(sample) = dae.samples.first() {
+            let place = bramah_solve::at_origin(&dae, Code::BadStudy, SAMPLED, sample.origin, "reads at its own times");
+            let help = "record what the controller commands and make that an input of the model; `bramah identify` follows samples";
+            let (diagnostics, sources) = (vec![place.help(help)], Some(outcome.sources));
+            return Err(Unusable { diagnostics, sources, model: true });
+        }
+        let checked = study.bind(&flat);
+        let Some(bound) = checked.value else { return Err(Unusable::study(checked.diagnostics)) };
+        Ok(Nominal { flat, dae, bound, request })
+    }
+
+    /// The train recordings, with warnings.
+    fn train(
+        &self,
+        world: &dyn World,
+        data: Option<&Path>,
+        sources: &mut Sources,
+    ) -> Result<(Vec<bramah_analysis::study::Recording>, Vec<Diagnostic>), Unusable> {
+        let checked = self.bound.load(world, data, Role::Train, sources);
+        match checked.value {
+            Some(train) => Ok((train, checked.diagnostics)),
+            None => Err(Unusable::study(checked.diagnostics)),
+        }
+    }
+
+    /// Recordings of inputs with what the nominal model shows.
+    fn shown(
+        &self,
+        world: &dyn World,
+        study: &Study,
+        mut train: Vec<bramah_analysis::study::Recording>,
+    ) -> Result<Vec<bramah_analysis::study::Recording>, Unusable> {
+        let signals = signals(&self.flat, &self.bound, &vec![1.0; self.bound.signals.len()]);
+        let offer = offer(world, study, &signals, &[])?;
+        let mut problem = Problem {
+            world,
+            request: self.request.clone(),
+            folder: None,
+            circuit: offer.circuit,
+            hypotheses: Vec::new(),
+            disturbances: Vec::new(),
+            noise_floor: vec![1.0; signals.len()],
+            full_scale: vec![1.0; signals.len()],
+            shown: self.bound.signals.iter().map(shown).collect(),
+            signals,
+            tolerances: Vec::new(),
+            files: Vec::new(),
+            train: train.iter().map(|r| recording(&self.flat, &self.bound, r.clone())).collect(),
+            travel: BTreeMap::new(),
+        };
+        if problem.show().is_none() {
+            let text = "the nominal model does not reach the end of the planned recordings";
+            let help = "try `bramah simulate` with these inputs";
+            return Err(Unusable::study(vec![Diagnostic::new(Code::BadData, text.to_string()).help(help)]));
+        }
+        for (own, shown) in train.iter_mut().zip(&problem.train) {
+            own.signals = shown.signals.iter().map(|s| s.to_vec()).collect();
+        }
+        Ok(train)
+    }
+
+    fn question<'a>(
+        self,
+        world: &'a dyn World,
+        study: &Study,
+        train: Vec<bramah_analysis::study::Recording>,
+        mut diagnostics: Vec<Diagnostic>,
+    ) -> Result<Question<'a>, Unusable> {
+        let Nominal { flat, dae, bound, request } = self;
+        let full_scale = full_scales(&bound, &train);
+        let signals = signals(&flat, &bound, &full_scale);
+        let tolerances = tolerances(&flat, &bound, &parameter_values(dae));
+        let offer = offer(world, study, &signals, &free(&tolerances))?;
+        diagnostics.extend(offer.diagnostics);
+        let mut disturbances = hypotheses::hypotheses(&offer.circuit, &offer.sources, &signals, &[]);
+        disturbances.retain(|d| d.attachments.len() == 1);
+        let shown = bound.signals.iter().map(shown).collect();
+        let files = train.iter().map(|r| r.file.clone()).collect();
+        let train: Vec<Recording> = train.into_iter().map(|r| recording(&flat, &bound, r)).collect();
+        let noise_floor = full_scale.iter().enumerate().map(|(i, scale)| floor(&train, i, *scale)).collect();
+        let mut problem = Problem {
+            world,
+            request,
+            folder: offer.folder,
+            circuit: offer.circuit,
+            hypotheses: offer.hypotheses,
+            disturbances,
+            signals,
+            full_scale,
+            shown,
+            noise_floor,
+            tolerances,
+            files,
+            train,
+            travel: BTreeMap::new(),
+        };
+        problem.explore();
+        shapes::fit(&mut problem);
+        capacity::bound(&mut problem);
+        let mistakes = mistakes(&problem, &offer.effects);
+        problem.hypotheses.extend(mistakes);
+        Ok(Question { problem, bound, flat, diagnostics })
+    }
+}
+
+/// All hypotheses that a study leaves in, with warnings; recordings are not read. Sensors without a stated range count
+/// with a range of 1.
+///
+/// # Errors
+/// [`Unusable`].
+pub fn proposed(world: &dyn World, study: &Study) -> Result<(Vec<Hypothesis>, Vec<Diagnostic>), Unusable> {
+    let outcome = bramah_model::compile::flatten(world, &study.request());
+    let Some(f) = outcome.value else { return Err(Unusable::model(outcome)) };
+    let checked = study.bind(&f.flat);
+    let Some(bound) = checked.value else { return Err(Unusable::study(checked.diagnostics)) };
+    let ranges: Vec<f64> = bound.signals.iter().map(|s| s.full_scale.unwrap_or(1.0)).collect();
+    let written = |v: VarId| f.flat.variables[v.index()].binding.and_then(|b| f.flat.exprs.as_num(b)).unwrap_or(0.0);
+    let free = free(&stated(&f.flat, &bound, &written));
+    let offer = offer(world, study, &signals(&f.flat, &bound, &ranges), &free)?;
+    Ok((offer.hypotheses, offer.diagnostics))
+}
+
+/// What the network of a study's model offers.
+struct Offer {
+    circuit: Circuit,
+    folder: Option<PathBuf>,
+    hypotheses: Vec<Hypothesis>,
+    /// The whole catalogue.
+    effects: Vec<Arc<Effect>>,
+    /// Disturbances, before they are attached.
+    sources: Vec<Arc<Effect>>,
+    diagnostics: Vec<Diagnostic>,
+}
+
+fn offer(world: &dyn World, study: &Study, signals: &[Signal], free: &[Free]) -> Result<Offer, Unusable> {
+    let outcome = circuit::circuit(world, &study.request());
+    let Some(circuit) = outcome.value else { return Err(Unusable::model(outcome)) };
+    let folder = study.effects.folder.as_ref().map(|f| study.folder.join(f));
+    let read = effects::catalogue(world, folder.as_deref());
+    let Some(catalogue) = read.value else { return Err(Unusable::model(read)) };
+    let mut hypotheses = hypotheses::hypotheses(&circuit, &catalogue.effects, signals, free);
+    hypotheses::narrow(&mut hypotheses, &study.effects);
+    let measured = study.inputs.iter().filter(|i| i.measured).map(|i| i.name.as_str()).collect::<Vec<_>>();
+    hypotheses::without_commands(&mut hypotheses, &circuit, &measured);
+    let (effects, sources) = (catalogue.effects, catalogue.disturbances);
+    Ok(Offer { circuit, folder, hypotheses, effects, sources, diagnostics: read.diagnostics })
+}
+
+fn signals(flat: &FlatModel, bound: &Bound, ranges: &[f64]) -> Vec<Signal> {
+    let name = |v: VarId| flat.variables[v.index()].name.clone();
+    let signal = |(s, &scale): (&BoundSignal, &f64)| Signal { name: s.name.clone(), variable: name(s.variable), scale };
+    bound.signals.iter().zip(ranges).map(signal).collect()
+}
+
+/// The unit of a signal's column: differences are converted, so that the zero of a temperature does not matter.
+fn shown(signal: &BoundSignal) -> Shown {
+    let own = Shown { unit: signal.unit.clone(), factor: 1.0 };
+    let Some(unit) = &signal.entry.unit else { return own };
+    let (Ok(from), Ok(to)) = (Unit::parse(&signal.unit), Unit::parse(unit)) else { return own };
+    match (from.convert(1.0, &to), from.convert(0.0, &to)) {
+        (Some(one), Some(zero)) => Shown { unit: unit.clone(), factor: one - zero },
+        _ => own,
+    }
+}
+
+fn free(tolerances: &[Tolerance]) -> Vec<Free> {
+    tolerances.iter().map(|t| Free { name: t.name.clone(), nominal: t.nominal, sigma: t.sigma }).collect()
+}
+
+impl Question<'_> {
+    /// Reads the held recordings.
+    ///
+    /// # Errors
+    /// What is wrong with them.
+    pub fn held(&self, data: Option<&Path>, sources: &mut Sources) -> Result<Held, Vec<Diagnostic>> {
+        let checked = self.bound.load(self.problem.world, data, Role::Held, sources);
+        let found = checked.value.ok_or(checked.diagnostics)?;
+        let files = found.iter().map(|r| r.file.clone()).collect();
+        let recordings = found.into_iter().map(|r| recording(&self.flat, &self.bound, r)).collect();
+        Ok(Held { files, recordings })
+    }
+}
+
+/// Noise of a signal, never quite zero.
+fn floor(train: &[Recording], signal: usize, full_scale: f64) -> f64 {
+    let samples: Vec<&[f64]> = train.iter().map(|r| &*r.signals[signal]).collect();
+    noise::floor(&samples).max(1e-9 * full_scale.abs())
+}
+
+fn parameter_values(dae: bramah_model::structure::Dae) -> impl Fn(VarId) -> f64 {
+    let system = lower(Arc::new(dae), &Options::INTERPRETED);
+    let mut values = system.layout.values();
+    system.evaluate_parameters(&mut values, &[]);
+    move |v| values[system.layout.var(v)]
+}
+
+/// Inputs in the order of the model; those that the study leaves out keep their start value.
+fn recording(flat: &FlatModel, bound: &Bound, r: bramah_analysis::study::Recording) -> Recording {
+    let count = r.times.len();
+    let mut inputs: Vec<Arc<[f64]>> = Vec::new();
+    let mut linear = Vec::new();
+    for (v, variable) in (0..).map(VarId).zip(&flat.variables).filter(|(_, v)| v.input) {
+        match bound.inputs.iter().position(|i| i.variable == v) {
+            Some(i) => {
+                inputs.push(Arc::from(&r.inputs[i][..]));
+                linear.push(bound.inputs[i].interpolation == Interpolation::Linear);
+            }
+            None => {
+                let value = variable.binding.or(variable.start).and_then(|e| flat.exprs.as_num(e)).unwrap_or(0.0);
+                inputs.push(Arc::from(vec![value; count]));
+                linear.push(false);
+            }
+        }
+    }
+    let signals = r.signals.iter().map(|s| Arc::from(&s[..])).collect();
+    Recording { times: Arc::from(&r.times[..]), inputs, linear, signals }
+}
+
+/// Tolerances that the study states.
+fn stated(flat: &FlatModel, bound: &Bound, value: &impl Fn(VarId) -> f64) -> Vec<Tolerance> {
+    let mut all = Vec::new();
+    for p in &bound.parameters {
+        let nominal = value(p.variable);
+        let sigma = match p.knowledge {
+            Knowledge::Exact => continue,
+            Knowledge::Relative(part) => part * nominal.abs(),
+            Knowledge::Absolute(value) => value,
+            Knowledge::Free => nominal.abs().max(1e-12),
+        };
+        let t = tolerance(flat, p.variable, nominal, sigma, (p.min, p.max), false);
+        all.push(Tolerance { free: matches!(p.knowledge, Knowledge::Free), ..t });
+    }
+    all
+}
+
+/// Those of the study; where it states none, assumed ones of all parameters on which others do not depend.
+fn tolerances(flat: &FlatModel, bound: &Bound, value: &impl Fn(VarId) -> f64) -> Vec<Tolerance> {
+    if !bound.parameters.is_empty() {
+        return stated(flat, bound, value);
+    }
+    let mut all = Vec::new();
+    for (v, variable) in (0..).map(VarId).zip(&flat.variables) {
+        let physical = variable.unit.as_deref().is_some_and(|u| !u.is_empty() && u != "1");
+        if variable.hidden
+            || !physical
+            || variable.variability != Variability::Parameter
+            || variable.ty != Type::Real
+            || !flat.is_root(v)
+        {
+            continue;
+        }
+        let nominal = value(v);
+        if nominal != 0.0 && nominal.is_finite() {
+            all.push(tolerance(flat, v, nominal, ASSUMED * nominal.abs(), (None, None), true));
+        }
+    }
+    all
+}
+
+fn tolerance(
+    flat: &FlatModel,
+    v: VarId,
+    nominal: f64,
+    sigma: f64,
+    bounds: (Option<f64>, Option<f64>),
+    assumed: bool,
+) -> Tolerance {
+    let variable = &flat.variables[v.index()];
+    let number = |e: Option<bramah_expr::ExprId>| e.and_then(|e| flat.exprs.as_num(e)).filter(|b| b.is_finite());
+    // a parameter that must be positive stays so: a hundredth of its value is the least
+    let declared = number(variable.min).map(|m| if m == 0.0 && nominal > 0.0 { 0.01 * nominal } else { m });
+    let least = if nominal > 0.0 { Some(0.01 * nominal) } else { None };
+    Tolerance {
+        name: variable.name.clone(),
+        unit: variable.unit.as_deref().unwrap_or("").to_string(),
+        nominal,
+        sigma,
+        min: bounds.0.or(declared).or(least).unwrap_or(f64::NEG_INFINITY),
+        max: bounds.1.or(number(variable.max)).unwrap_or(f64::INFINITY),
+        assumed,
+        free: false,
+    }
+}

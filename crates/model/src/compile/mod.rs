@@ -1,0 +1,367 @@
+//! The pipeline: from files to a flat model, a DAE and a system ready to run. Every command and test goes this way.
+
+mod deep;
+mod messages;
+
+pub use deep::{STACK, deep};
+pub use messages::sort_messages;
+
+use crate::flat::{self, FlatModel};
+use crate::instance::{self, Instance, ModelRequest, Override};
+use crate::network::{self, Graph, Network};
+use crate::resolve::{ClassId, Library, Trees, nested_classes};
+use crate::shipped::Shipped;
+use crate::structure::{self, Dae, StateChoice};
+use crate::unit_check;
+use bramah_syntax::ast::{self, ClassBody, ClassKind};
+use bramah_syntax::diag::{Checked, Code, Diagnostic, Sources};
+use bramah_syntax::world::World;
+use std::path::{Path, PathBuf};
+
+/// What to compile.
+#[derive(Clone, Debug, Default)]
+pub struct Request {
+    /// A file, a folder that is a package, or the dotted name of a class that ships with bramah.
+    pub source: PathBuf,
+    /// The class to run; may be left out where only one can run.
+    pub model: Option<String>,
+    /// Values given from outside.
+    pub overrides: Vec<Override>,
+    /// Folders that hold further packages, in order of precedence.
+    pub libraries: Vec<PathBuf>,
+    /// Further files and packages whose classes `source` may name.
+    pub beside: Vec<PathBuf>,
+    /// Where relative names of data files begin, if not at the folder of `source`.
+    pub data_folder: Option<PathBuf>,
+    /// C sources and shared libraries that external functions may call; `annotations` for what their annotations name
+    /// alone. Without any, C code of a model is refused. It runs unguarded.
+    pub externals: Vec<PathBuf>,
+    /// Parameters will take other values in the same model: one that is 0 takes no derivative out of the equations.
+    pub varied: bool,
+}
+
+/// What became of a [`Request`]: texts for messages, messages, and the value if there were no errors.
+#[derive(Debug)]
+pub struct Outcome<T> {
+    /// All texts read.
+    pub sources: Sources,
+    /// Errors, warnings and notes.
+    pub diagnostics: Vec<Diagnostic>,
+    /// The result.
+    pub value: Option<T>,
+}
+
+/// A model after the front half of the pipeline.
+#[derive(Clone, Debug)]
+pub struct Flattened {
+    /// Scalar variables and equations.
+    pub flat: FlatModel,
+    /// Components and connections of the top level.
+    pub graph: Graph,
+}
+
+/// The pipeline up to the sorted equations.
+pub fn sort(world: &dyn World, request: &Request) -> Outcome<(FlatModel, Graph, Dae)> {
+    let Outcome { sources, mut diagnostics, value } = flatten(world, request);
+    let value = value.and_then(|f| {
+        diagnostics.extend(unit_check::check(&f.flat));
+        messages::of_libraries(&mut diagnostics, &sources, request);
+        let dae = analyze(&f.flat).sink(&mut diagnostics);
+        Some((f.flat, f.graph, dae?))
+    });
+    Outcome { sources, diagnostics, value }
+}
+
+/// Sorts the equations of a flat model; where they do not determine the unknowns, says why.
+pub fn analyze(flat: &FlatModel) -> Checked<Dae> {
+    let mut checked = structure::analyze(flat, &StateChoice::default());
+    if checked.diagnostics.iter().any(is_structural) {
+        checked.diagnostics = explained(flat, checked.diagnostics);
+    }
+    checked
+}
+
+fn is_structural(d: &Diagnostic) -> bool {
+    matches!(d.code, Code::Singular | Code::NoReference | Code::Overdetermined)
+}
+
+/// The first level at which something is wrong: a cause in one component is reported instead of its consequences.
+fn explained(flat: &FlatModel, found: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    let solvable = |changed: &FlatModel| structure::analyze(changed, &StateChoice::default()).value.is_some();
+    let causes = flat::explain(flat, &solvable);
+    if causes.is_empty() { found } else { causes }
+}
+
+/// The pipeline up to the flat model.
+pub fn flatten(world: &dyn World, request: &Request) -> Outcome<Flattened> {
+    inspect(world, request, |instance, network, flat| Flattened { flat, graph: network.graph(instance) })
+}
+
+/// The pipeline up to the flat model, with a look at the component tree and the connections it was made from.
+pub fn inspect<T>(
+    world: &dyn World,
+    request: &Request,
+    look: impl FnOnce(&mut Instance<'_, '_>, &Network, FlatModel) -> T,
+) -> Outcome<T> {
+    with_class(world, request, |library, class, diagnostics| {
+        with_network(library, class, request, diagnostics, |instance, network, diagnostics| {
+            let flat = flat::flatten(instance, network).sink(diagnostics)?;
+            Some(look(instance, network, flat))
+        })
+    })
+}
+
+/// The full name of a model with its components and connections, also where ports are open or equations do not fit together.
+pub fn graph(world: &dyn World, request: &Request) -> Outcome<(String, Graph)> {
+    with_class(world, request, |library, class, diagnostics| {
+        let name = library.full_name(class);
+        with_network(library, class, request, diagnostics, |instance, network, _| Some((name, network.graph(instance))))
+    })
+}
+
+/// Finds the class that is meant, and gathers what is said on the way.
+fn with_class<T>(
+    world: &dyn World,
+    request: &Request,
+    act: impl FnOnce(&mut Library<'_>, ClassId, &mut Vec<Diagnostic>) -> Option<T>,
+) -> Outcome<T> {
+    let trees = Trees::new();
+    let shipped = Shipped;
+    let mut library = Library::new(&trees, roots(world, &shipped, request));
+    library.set_data_folder(world, request.data_folder(world));
+    library.set_externals(request.externals.clone());
+    let mut diagnostics = Vec::new();
+    let value = find_model(world, &mut library, request)
+        .map_err(|d| diagnostics.push(*d))
+        .ok()
+        .filter(|_| !library.diagnostics.iter().any(Diagnostic::is_error))
+        .and_then(|class| act(&mut library, class, &mut diagnostics));
+    let mut all = std::mem::take(&mut library.diagnostics);
+    if all.iter().any(Diagnostic::is_error) {
+        // A class may be missing because its text could not be read.
+        diagnostics.retain(|d| d.code != Code::BadModel);
+    }
+    all.extend(diagnostics);
+    messages::once(&mut all);
+    all.extend(messages::other_versions(&mut library));
+    messages::missing_once(&mut all);
+    messages::of_libraries(&mut all, &library.sources, request);
+    let all: Vec<Diagnostic> = all.into_iter().map(|d| if d.is_error() { d.advised() } else { d }).collect();
+    let failed = all.iter().any(Diagnostic::is_error);
+    Outcome { sources: std::mem::take(&mut library.sources), diagnostics: all, value: value.filter(|_| !failed) }
+}
+
+/// Folders with packages, in order: the request's, then what ships with bramah.
+fn roots<'a>(world: &'a dyn World, shipped: &'a Shipped, request: &Request) -> Vec<(&'a dyn World, PathBuf)> {
+    let own = request.libraries.iter().map(|l| (world, l.clone()));
+    own.chain(Shipped::roots().map(|r| (shipped as &dyn World, r))).collect()
+}
+
+impl Request {
+    /// Where relative names of data files begin: as said, or at the folder of the model's file.
+    pub fn data_folder(&self, world: &dyn World) -> PathBuf {
+        let source = self.source.as_path();
+        let own = || if world.list(source).is_some() { Some(source) } else { source.parent() };
+        self.data_folder.as_deref().or_else(own).unwrap_or(Path::new("")).to_path_buf()
+    }
+}
+
+fn with_network<T>(
+    library: &mut Library<'_>,
+    class: ClassId,
+    request: &Request,
+    diagnostics: &mut Vec<Diagnostic>,
+    act: impl FnOnce(&mut Instance<'_, '_>, &Network, &mut Vec<Diagnostic>) -> Option<T>,
+) -> Option<T> {
+    let wanted = ModelRequest { class, overrides: request.overrides.clone() };
+    let mut instance = instance::instantiate(library, &wanted);
+    instance.varied = request.varied;
+    let network = network::network(&mut instance);
+    if instance.diagnostics.iter().any(Diagnostic::is_error) {
+        diagnostics.append(&mut instance.diagnostics);
+        return None;
+    }
+    act(&mut instance, &network, diagnostics)
+}
+
+/// The class that the request means.
+fn find_model<'a>(
+    world: &'a dyn World,
+    library: &mut Library<'a>,
+    request: &Request,
+) -> Result<ClassId, Box<Diagnostic>> {
+    let source = &request.source;
+    let exists = world.list(source).is_some() || world.read(source).is_ok();
+    let text = source.to_string_lossy();
+    if !exists && is_dotted(&text) {
+        let full = request.model.as_deref().filter(|m| m.contains('.') || *m == text).unwrap_or(&text);
+        return library.find(full).ok_or_else(|| Box::new(no_such_shipped(&text)));
+    }
+    for path in &request.beside {
+        library.add_path(world, path)?;
+    }
+    let given = library.add_path(world, source)?;
+    note_shadowed(library);
+    match &request.model {
+        Some(name) => named_model(library, &given, name),
+        None => only_model(library, source, &given),
+    }
+}
+
+fn is_dotted(text: &str) -> bool {
+    !text.is_empty()
+        && !text.ends_with(".mo")
+        && text.split('.').all(|p| p.chars().next().is_some_and(|c| c.is_alphabetic() || c == '_'))
+        && text.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '.')
+}
+
+fn no_such_shipped(name: &str) -> Diagnostic {
+    Diagnostic::new(Code::FileAccess, format!("there is no file, folder or shipped class `{name}`")).help(
+        "give the path of a `.mo` file or package folder, or the dotted name of a class such as `ServoPump.DeadZone`",
+    )
+}
+
+/// A user's top-level class hides a shipped one of the same name.
+fn note_shadowed(library: &mut Library<'_>) {
+    for id in library.own.clone() {
+        let ident = library.class(id).name;
+        let (name, file) = (ident.name.as_str(), format!("{}.mo", ident.name));
+        let hidden = Shipped::roots()
+            .iter()
+            .any(|r| Shipped.list(r).is_some_and(|entries| entries.iter().any(|(e, _)| *e == name || *e == file)));
+        if hidden {
+            library.diagnostics.push(
+                Diagnostic::new(Code::Shadowed, format!("your `{name}` hides the one that ships with bramah"))
+                    .at(ident.span, "this one is used"),
+            );
+        }
+    }
+}
+
+fn named_model(library: &mut Library<'_>, given: &[ClassId], name: &str) -> Result<ClassId, Box<Diagnostic>> {
+    if let Some(id) = library.find(name) {
+        return Ok(id);
+    }
+    // A name relative to the file's only class is understood too.
+    for &id in given {
+        let full = format!("{}.{name}", library.full_name(id));
+        if let Some(found) = library.find(&full) {
+            return Ok(found);
+        }
+    }
+    let mut runnable = Vec::new();
+    given.iter().for_each(|&id| collect_runnable(library, id, &mut runnable));
+    let names: Vec<String> = runnable.iter().map(|&id| library.full_name(id)).collect();
+    let mut d = Diagnostic::new(Code::BadModel, format!("there is no class `{name}`"));
+    if let Some(near) = bramah_syntax::diag::nearest(name, names.iter().map(String::as_str)) {
+        d = d.help(format!("did you mean `{near}`?"));
+    } else if !names.is_empty() {
+        d = d.help(listed("the file has", &names));
+    }
+    Err(Box::new(d))
+}
+
+fn listed(intro: &str, names: &[String]) -> String {
+    let shown: Vec<String> = names.iter().take(10).map(|n| format!("`{n}`")).collect();
+    let more = if names.len() > 10 { format!(" and {} more", names.len() - 10) } else { String::new() };
+    format!("{intro} {}{more}", shown.join(", "))
+}
+
+/// A model that can run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Runnable {
+    /// Its full name.
+    pub class: String,
+    /// Its description, or empty.
+    pub description: String,
+    /// It has an `experiment` annotation.
+    pub experiment: bool,
+}
+
+/// The models of a request's source that can run: those with an `experiment` annotation, or all where none has
+/// one; of the request's class alone and what stands in it, where one is named.
+///
+/// # Errors
+/// The source cannot be read, or there is no such class.
+pub fn runnable(world: &dyn World, request: &Request) -> Result<Vec<Runnable>, Vec<Diagnostic>> {
+    let trees = Trees::new();
+    let shipped = Shipped;
+    let mut library = Library::new(&trees, roots(world, &shipped, request));
+    let given = match &request.model {
+        Some(_) => find_model(world, &mut library, request).map(|id| vec![id]),
+        None => library.add_path(world, &request.source),
+    };
+    let given = given.map_err(|d| vec![*d])?;
+    let mut all = Vec::new();
+    given.iter().for_each(|&id| collect_runnable(&mut library, id, &mut all));
+    let with_experiment: Vec<ClassId> = all.iter().copied().filter(|&id| has_experiment(library.class(id))).collect();
+    let chosen = if with_experiment.is_empty() { all } else { with_experiment };
+    let described = |id| Runnable {
+        class: library.full_name(id),
+        description: library.class(id).description.as_deref().unwrap_or("").to_owned(),
+        experiment: has_experiment(library.class(id)),
+    };
+    Ok(chosen.into_iter().map(described).collect())
+}
+
+/// Without a name: the one class with an `experiment`, or the one model there is.
+fn only_model(library: &mut Library<'_>, source: &Path, given: &[ClassId]) -> Result<ClassId, Box<Diagnostic>> {
+    let mut runnable = Vec::new();
+    given.iter().for_each(|&id| collect_runnable(library, id, &mut runnable));
+    let with_experiment: Vec<ClassId> =
+        runnable.iter().copied().filter(|&id| has_experiment(library.class(id))).collect();
+    for candidates in [&with_experiment, &runnable] {
+        if let [only] = candidates[..] {
+            return Ok(only);
+        }
+    }
+    if let [only] = given
+        && runnable.contains(only)
+        && with_experiment.is_empty()
+    {
+        return Ok(*only);
+    }
+    let names: Vec<String> = runnable.iter().map(|&id| library.full_name(id)).collect();
+    let d = if names.is_empty() {
+        Diagnostic::new(Code::BadModel, format!("there is no model to run in `{}`", source.display()))
+            .help("a model is a `model` or `block` that is not `partial`")
+    } else {
+        Diagnostic::new(Code::BadModel, "several models could be run")
+            .help(format!("name one with `--model`: {}", listed("there are", &names)))
+    };
+    Err(Box::new(d))
+}
+
+/// Models of a class and its nested packages that could be run.
+fn collect_runnable(library: &mut Library<'_>, id: ClassId, out: &mut Vec<ClassId>) {
+    let class = library.class(id);
+    if matches!(class.kind, ClassKind::Model | ClassKind::Block | ClassKind::Class) && !class.prefixes.partial {
+        out.push(id);
+    }
+    if class.kind == ClassKind::Package {
+        let mut names: Vec<_> = nested_classes(class).map(|c| c.name.name).collect();
+        names.extend(library.folder_members(id));
+        for name in names {
+            if let Some(child) = library.child(id, name) {
+                collect_runnable(library, child, out);
+            }
+        }
+    }
+}
+
+fn has_experiment(class: &ast::Class) -> bool {
+    if !matches!(class.body, ClassBody::Long(_) | ClassBody::Short { .. }) {
+        return false;
+    }
+    let arguments = class.annotation.iter().flat_map(|a| &a.arguments);
+    arguments
+        .into_iter()
+        .any(|a| matches!(&a.kind, ast::ArgumentKind::Modify { path, .. } if path.parts[0].name == "experiment"))
+}
+
+/// Compiles one text held in memory; for tests and examples.
+pub fn flatten_text(text: &str, model: Option<&str>) -> Outcome<Flattened> {
+    let world = bramah_syntax::world::MemoryWorld::single("model.mo", text);
+    let request = Request { source: Path::new("model.mo").into(), model: model.map(Into::into), ..Request::default() };
+    flatten(&world, &request)
+}

@@ -1,0 +1,190 @@
+//! The balance of every component by itself: as many equations as it owes. Ports are checked before.
+
+use super::census::{Census, Role};
+use super::ports::Signals;
+use super::{Equation, FlatModel, OriginKind};
+use crate::instance::{Instance, ScopeId};
+use bramah_expr::VarId;
+use bramah_syntax::diag::{Code, Diagnostic};
+use rustc_hash::FxHashSet;
+
+/// So many places are shown.
+const MOST_PLACES: usize = 6;
+
+/// What seems wrong, at the first level that shows anything: signals, then each component, then the whole.
+pub(super) fn doubts(
+    instance: &Instance<'_, '_>,
+    signals: &Signals<'_>,
+    flat: &FlatModel,
+    census: &Census,
+    scopes: &[ScopeId],
+) -> Vec<Diagnostic> {
+    let found = signals.doubts();
+    if !found.is_empty() {
+        return found;
+    }
+    let mut blamed: FxHashSet<&str> = FxHashSet::default();
+    let mut found = Vec::new();
+    for (i, &owner) in (0u32..).zip(&census.owner) {
+        let at = i as usize;
+        if owner != i || census.unjudged[at] || census.owed[at] == census.brought[at] {
+            continue;
+        }
+        if blamed.insert(&flat.instances[at].class) {
+            found.push(Judge { instance, flat, census, scopes, at: i }.verdict());
+        }
+    }
+    if found.is_empty() { whole(flat, census).into_iter().collect() } else { found }
+}
+
+/// The count of the whole model, where components could not be judged alone.
+fn whole(flat: &FlatModel, census: &Census) -> Option<Diagnostic> {
+    if !census.unjudged.contains(&true) {
+        return None;
+    }
+    let given: usize = flat.variables.iter().filter(|v| v.input).count();
+    let unknowns = census.role.iter().filter(|r| **r != Role::Fixed).count() - given;
+    let assigned: FxHashSet<VarId> = flat.whens.iter().flat_map(super::When::assigned).collect();
+    let equations = flat.equations.len() + assigned.len();
+    if equations == unknowns {
+        return None;
+    }
+    let word = if equations < unknowns { "few" } else { "many" };
+    let span = flat.instances[0].span;
+    Some(
+        Diagnostic::new(Code::GlobalBalance, format!("`{}` has too {word} equations", flat.class))
+            .at(span, format!("{equations} equations for {unknowns} unknowns"))
+            .note("some ports have variables that are neither pairs of potential and flow nor inputs and outputs, so no component can be judged alone")
+            .help("give each port as many flows as potentials, and mark signals `input` or `output`"),
+    )
+}
+
+/// What is wrong with one component.
+struct Judge<'j, 'a, 'l> {
+    instance: &'j Instance<'a, 'l>,
+    flat: &'j FlatModel,
+    census: &'j Census,
+    scopes: &'j [ScopeId],
+    at: u32,
+}
+
+impl Judge<'_, '_, '_> {
+    fn verdict(&self) -> Diagnostic {
+        let (owed, brought) = (self.census.owed[self.at as usize], self.census.brought[self.at as usize]);
+        let info = &self.flat.instances[self.at as usize];
+        let plural = if brought == 1 { "equation" } else { "equations" };
+        let message = format!("`{}` has {brought} {plural} but needs {owed}", info.class);
+        let class = self.instance.scope(self.scopes[self.at as usize]).template.class;
+        let name = self.instance.library.class(class).name.span;
+        let text =
+            if brought < owed { format!("{} too few", owed - brought) } else { format!("{} too many", brought - owed) };
+        let mut made = Diagnostic::new(Code::Balance, message).at(name, text).class(info.class.clone());
+        if !info.name.is_empty() {
+            made = made.instance(info.name.clone());
+        }
+        made = self.needed(made);
+        if brought < owed { self.too_few(made, owed - brought) } else { self.too_many(made, brought) }
+    }
+
+    /// What the number of equations needed consists of.
+    fn needed(&self, made: Diagnostic) -> Diagnostic {
+        let of = |role: Role| -> Vec<String> {
+            let all = (0..self.census.role.len()).filter(|&i| self.census.role[i] == role);
+            all.filter(|&i| self.census.holder[i] == self.at).map(|i| self.local(i)).collect()
+        };
+        let (own, flows) = (of(Role::Own), of(Role::Flow));
+        let mut parts = Vec::new();
+        if !flows.is_empty() {
+            parts.push(format!("one for each port ({}: {})", flows.len(), listed(&flows)));
+        }
+        if !own.is_empty() {
+            parts.push(format!("one for each variable of its own ({}: {})", own.len(), listed(&own)));
+        }
+        let rest = self.census.owed[self.at as usize] - own.len() - flows.len();
+        if rest > 0 {
+            parts.push(format!("one for each input of its components ({rest})"));
+        }
+        if parts.is_empty() { made } else { made.note(format!("needed: {}", parts.join(", "))) }
+    }
+
+    fn too_few(&self, mut made: Diagnostic, missing: usize) -> Diagnostic {
+        let mentioned = self.mentioned();
+        let mut shown = 0;
+        for (i, v) in self.flat.variables.iter().enumerate() {
+            let counts = matches!(self.census.role[i], Role::Own | Role::Flow) && self.census.holder[i] == self.at;
+            let id = VarId(u32::try_from(i).expect("limited sizes"));
+            if counts && !mentioned.contains(&id) && shown < MOST_PLACES {
+                let holder = &self.flat.instances[v.origin.instance as usize];
+                let span = if v.origin.instance == self.at { v.origin.span } else { holder.span };
+                made = made.at(span, format!("no equation mentions `{}`", self.local(i)));
+                shown += 1;
+            }
+        }
+        let flows = (0..self.census.role.len())
+            .filter(|&i| self.census.holder[i] == self.at && self.census.role[i] == Role::Flow)
+            .map(|i| self.local(i))
+            .collect::<Vec<_>>();
+        match flows.as_slice() {
+            [a, b] if missing == 1 && shown < 2 => {
+                made.help(format!("a two-port without storage usually adds `{a} + {b} = 0`"))
+            }
+            _ => made.help("add the equations that are missing, or remove variables that nothing needs"),
+        }
+    }
+
+    fn too_many(&self, mut made: Diagnostic, brought: usize) -> Diagnostic {
+        let own: Vec<&Equation> = self.equations().collect();
+        let idle = |e: &&&Equation| {
+            let found = self.flat.exprs.dependencies(&[e.lhs, e.rhs]);
+            found.ders.is_empty() && found.vars.iter().all(|v| self.census.role[v.index()] == Role::Fixed)
+        };
+        if let Some(e) = own.iter().find(idle) {
+            return made
+                .at(e.origin.span, "this equation holds no unknown: everything in it is known before the run")
+                .help("if it is meant to determine a parameter, declare that without `parameter`; else remove it");
+        }
+        for (i, e) in own.iter().take(MOST_PLACES).enumerate() {
+            made = made.at(e.origin.span, format!("equation {} of {brought}", i + 1));
+        }
+        let bindings = own.iter().any(|e| e.origin.kind == OriginKind::Binding);
+        made.help(if bindings {
+            "a variable declared with `= value` needs no further equation: remove one of the two"
+        } else {
+            "remove an equation, or declare the variable that it determines"
+        })
+    }
+
+    /// The equations written in the component.
+    fn equations(&self) -> impl Iterator<Item = &Equation> {
+        let made = [OriginKind::ConnectPotential, OriginKind::ConnectFlow, OriginKind::OpenPort];
+        self.flat
+            .equations
+            .iter()
+            .filter(move |e| self.census.owner[e.origin.instance as usize] == self.at && !made.contains(&e.origin.kind))
+    }
+
+    /// Variables in equations, connections and `when`s of the component.
+    fn mentioned(&self) -> FxHashSet<VarId> {
+        let here = |instance: u32| self.census.owner[instance as usize] == self.at;
+        let all =
+            self.flat.equations.iter().filter(|e| here(e.origin.instance) && e.origin.kind != OriginKind::OpenPort);
+        let roots: Vec<_> = all.flat_map(|e| [e.lhs, e.rhs]).collect();
+        let found = self.flat.exprs.dependencies(&roots);
+        let whens = self.flat.whens.iter().filter(|w| here(w.origin.instance)).flat_map(super::When::assigned);
+        found.vars.into_iter().chain(found.ders).chain(whens).collect()
+    }
+
+    /// A variable's name as seen in the component.
+    fn local(&self, variable: usize) -> String {
+        let name = &self.flat.variables[variable].name;
+        let prefix = &self.flat.instances[self.at as usize].name;
+        let cut = name.strip_prefix(prefix.as_str()).and_then(|rest| rest.strip_prefix('.'));
+        cut.unwrap_or(name).to_owned()
+    }
+}
+
+fn listed(names: &[String]) -> String {
+    let shown: Vec<String> = names.iter().take(8).map(|n| format!("`{n}`")).collect();
+    let more = if names.len() > 8 { format!(" and {} more", names.len() - 8) } else { String::new() };
+    shown.join(", ") + &more
+}

@@ -1,0 +1,309 @@
+//! Who brings which equations and who needs them: the roles of variables in the components that hold them.
+//!
+//! A component owes one equation for each variable of its own and for each flow of its ports; the circuit around it
+//! supplies the other half of every port and the values of its inputs (MLS 4.8).
+
+use super::numbers::Numbers;
+use super::{FlatModel, OriginKind, Variability};
+use crate::instance::{Instance, ScopeId};
+use crate::network::Network;
+use bramah_expr::{ExprId, Node, VarId};
+use bramah_syntax::ast::{Causality, ClassKind};
+use bramah_syntax::symbol::Symbol;
+use rustc_hash::{FxHashMap, FxHashSet};
+use std::collections::BTreeMap;
+
+/// What a variable is to the component that holds it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Role {
+    /// A parameter or constant: nobody owes an equation.
+    Fixed,
+    /// The component owes its equation.
+    Own,
+    /// Comes from outside.
+    Input,
+    /// The potential of a port.
+    Potential,
+    /// The flow of a port: the component owes an equation.
+    Flow,
+}
+
+/// The roles of all variables, by component.
+pub(super) struct Census {
+    /// The component that an instance is part of (connectors and records belong to theirs), by instance.
+    pub owner: Vec<u32>,
+    /// The component around each component; the model is its own.
+    pub around: Vec<u32>,
+    /// By flat variable.
+    pub role: Vec<Role>,
+    /// The component of each flat variable.
+    pub holder: Vec<u32>,
+    /// Equations that each component owes.
+    pub owed: Vec<usize>,
+    /// Equations that it brings.
+    pub brought: Vec<usize>,
+    /// Inputs of components that a modifier gives a value.
+    pub bound: FxHashSet<VarId>,
+    /// Ports without pairs of potential and flow: the connector's instance, and its potentials less its flows.
+    pub uneven: Vec<(u32, i64)>,
+    /// Components that cannot be judged alone: their ports have no pairs of potential and flow.
+    pub unjudged: Vec<bool>,
+}
+
+impl Census {
+    pub(super) fn take(
+        instance: &Instance<'_, '_>,
+        network: &Network,
+        flat: &FlatModel,
+        scopes: &[ScopeId],
+        constraints: &[(Vec<u32>, usize)],
+    ) -> Self {
+        let components = components(instance, flat, scopes);
+        let n = scopes.len();
+        let around = (0..n).map(|i| components[flat.instances[components[i] as usize].parent as usize]).collect();
+        let mut census = Census {
+            owner: components,
+            around,
+            role: Vec::with_capacity(flat.variables.len()),
+            holder: Vec::with_capacity(flat.variables.len()),
+            owed: vec![0; n],
+            brought: vec![0; n],
+            bound: FxHashSet::default(),
+            uneven: Vec::new(),
+            unjudged: vec![false; n],
+        };
+        census.roles(instance, flat, scopes, constraints);
+        census.equations(flat);
+        census.connections(instance, network, scopes);
+        census.debts();
+        census
+    }
+
+    fn roles(
+        &mut self,
+        instance: &Instance<'_, '_>,
+        flat: &FlatModel,
+        scopes: &[ScopeId],
+        constraints: &[(Vec<u32>, usize)],
+    ) {
+        // Potentials less flows of each port.
+        let mut pairs: BTreeMap<u32, i64> = BTreeMap::new();
+        for (i, v) in flat.variables.iter().enumerate() {
+            let data = &instance.variables[instance.order[i] as usize];
+            let holder = self.owner[v.origin.instance as usize];
+            let (port, public) = self.place(instance, flat, scopes, v.origin.instance, &data.name);
+            let role = match (v.variability <= Variability::Parameter, data.causality) {
+                (true, _) => Role::Fixed,
+                (_, Some(Causality::Input)) if public => Role::Input,
+                // what leaves through a port is the component's to say
+                _ if data.stream => Role::Own,
+                (_, None) if port.is_some() && public && v.flow => Role::Flow,
+                (_, None) if port.is_some() && public => Role::Potential,
+                _ => Role::Own,
+            };
+            if let (Some(port), Role::Potential | Role::Flow) = (port, role) {
+                *pairs.entry(port).or_default() += if role == Role::Flow { -1 } else { 1 };
+            }
+            self.role.push(role);
+            self.holder.push(holder);
+        }
+        for (variables, size) in constraints {
+            self.overconstrained(instance, flat, scopes, variables, *size, &mut pairs);
+        }
+        for (port, difference) in pairs {
+            if difference != 0 {
+                // a bus has no pairs
+                if !instance.scope(scopes[port as usize]).template.is_expandable() {
+                    self.uneven.push((port, difference));
+                }
+                self.doubt(self.owner[port as usize]);
+            }
+        }
+    }
+
+    /// Overconstrained components of ports count by their constraints, and components with such ports cannot be judged
+    /// alone, for branches tell which of their equations hold (MLS 9.4.1).
+    fn overconstrained(
+        &mut self,
+        instance: &Instance<'_, '_>,
+        flat: &FlatModel,
+        scopes: &[ScopeId],
+        variables: &[u32],
+        size: usize,
+        pairs: &mut BTreeMap<u32, i64>,
+    ) {
+        let first = variables.first().map(|&i| &instance.variables[i as usize]);
+        let Some(data) = first.filter(|d| d.id.0 != u32::MAX) else { return };
+        let origin = flat.variables[data.id.index()].origin.instance;
+        if let (Some(port), true) = self.place(instance, flat, scopes, origin, &data.name) {
+            self.doubt(self.owner[port as usize]);
+            *pairs.entry(port).or_default() += count(size) - count(variables.len());
+        }
+    }
+
+    /// The outermost connector around a variable, and whether it can be seen from outside its component.
+    fn place(
+        &self,
+        instance: &Instance<'_, '_>,
+        flat: &FlatModel,
+        scopes: &[ScopeId],
+        mut at: u32,
+        name: &str,
+    ) -> (Option<u32>, bool) {
+        let holder = self.owner[at as usize];
+        let mut port = None;
+        let mut element = name;
+        while at != holder {
+            if is_connector(instance, scopes[at as usize]) {
+                port = Some(at);
+            }
+            element = &flat.instances[at as usize].name;
+            at = flat.instances[at as usize].parent;
+        }
+        let last = element.rsplit('.').next().unwrap_or(element);
+        let last = Symbol::new(last.split('[').next().unwrap_or(last));
+        let template = &instance.scope(scopes[holder as usize]).template;
+        let protected = template.by_name.get(&last).is_some_and(|&i| template.elements[i as usize].protected);
+        (port, !protected)
+    }
+
+    fn doubt(&mut self, component: u32) {
+        self.unjudged[component as usize] = true;
+        self.unjudged[self.around[component as usize] as usize] = true;
+    }
+
+    fn equations(&mut self, flat: &FlatModel) {
+        for e in &flat.equations {
+            let owner = self.owner[e.origin.instance as usize];
+            match e.origin.kind {
+                OriginKind::ConnectPotential | OriginKind::ConnectFlow | OriginKind::OpenPort => continue,
+                OriginKind::Binding => {
+                    let var = as_variable(flat, e.lhs);
+                    if let Some(v) = var.filter(|v| self.role[v.index()] == Role::Input) {
+                        self.bound.insert(v);
+                        continue;
+                    }
+                }
+                _ => {}
+            }
+            self.brought[owner as usize] += 1;
+        }
+        let mut assigned: FxHashSet<VarId> = FxHashSet::default();
+        for when in &flat.whens {
+            let owner = self.owner[when.origin.instance as usize];
+            for variable in when.assigned() {
+                if assigned.insert(variable) {
+                    self.brought[owner as usize] += 1;
+                }
+            }
+        }
+    }
+
+    /// Joined signals: one equation less than members. Flows of own ports that are joined inside: one each.
+    fn connections(&mut self, instance: &Instance<'_, '_>, network: &Network, scopes: &[ScopeId]) {
+        let numbers = Numbers::new(scopes);
+        for set in &network.flows {
+            for &(i, outside) in &set.members {
+                let v = instance.variables[i as usize].id;
+                if outside {
+                    self.brought[self.holder[v.index()] as usize] += 1;
+                }
+            }
+        }
+        for member in network.streams.iter().flat_map(|s| &s.members).filter(|m| m.outside) {
+            let v = instance.variables[member.variable as usize].id;
+            self.brought[self.holder[v.index()] as usize] += 1;
+        }
+        for &i in &network.open {
+            let v = instance.variables[i as usize].id;
+            if self.role[v.index()] == Role::Own {
+                self.brought[self.holder[v.index()] as usize] += 1;
+            }
+        }
+        let mut groups = Groups::default();
+        for pair in &network.signals {
+            let at = numbers.of(pair.scope);
+            if groups.join((at, pair.a), (at, pair.b)) {
+                self.brought[at as usize] += 1;
+            }
+        }
+        for set in &network.potentials {
+            for &(i, _) in &set.members {
+                let data = &instance.variables[i as usize];
+                if data.causality.is_none() && self.role[data.id.index()] == Role::Own {
+                    self.doubt(self.holder[data.id.index()]);
+                }
+            }
+        }
+    }
+
+    fn debts(&mut self) {
+        for (i, role) in self.role.iter().enumerate() {
+            let holder = self.holder[i] as usize;
+            match role {
+                Role::Own | Role::Flow => self.owed[holder] += 1,
+                Role::Input => {
+                    let v = VarId(u32::try_from(i).expect("limited sizes"));
+                    if holder != 0 && !self.bound.contains(&v) {
+                        self.owed[self.around[holder] as usize] += 1;
+                    }
+                }
+                Role::Fixed | Role::Potential => {}
+            }
+        }
+    }
+}
+
+fn count(n: usize) -> i64 {
+    i64::try_from(n).expect("limited sizes")
+}
+
+/// The variable that an expression is.
+pub(super) fn as_variable(flat: &FlatModel, e: ExprId) -> Option<VarId> {
+    match flat.exprs.node(e) {
+        Node::Var(v) => Some(v),
+        _ => None,
+    }
+}
+
+fn components(instance: &Instance<'_, '_>, flat: &FlatModel, scopes: &[ScopeId]) -> Vec<u32> {
+    let mut owner: Vec<u32> = Vec::with_capacity(scopes.len());
+    for (i, &scope) in (0u32..).zip(scopes) {
+        let part = matches!(
+            instance.scope(scope).template.kind,
+            ClassKind::Connector { .. } | ClassKind::Record { .. } | ClassKind::Type
+        );
+        let parent = flat.instances[i as usize].parent;
+        // Parents come before their children.
+        owner.push(if part && parent < i { owner[parent as usize] } else { i });
+    }
+    owner
+}
+
+fn is_connector(instance: &Instance<'_, '_>, scope: ScopeId) -> bool {
+    matches!(instance.scope(scope).template.kind, ClassKind::Connector { .. })
+}
+
+/// Disjoint sets of variables, each set within one component.
+#[derive(Default)]
+pub(super) struct Groups {
+    parent: FxHashMap<(u32, u32), (u32, u32)>,
+}
+
+impl Groups {
+    pub(super) fn root(&mut self, mut key: (u32, u32)) -> (u32, u32) {
+        while let Some(&up) = self.parent.get(&key).filter(|up| **up != key) {
+            key = up;
+        }
+        key
+    }
+
+    /// True if the two were apart.
+    pub(super) fn join(&mut self, a: (u32, u32), b: (u32, u32)) -> bool {
+        let (a, b) = (self.root(a), self.root(b));
+        if a != b {
+            self.parent.insert(b, a);
+        }
+        a != b
+    }
+}

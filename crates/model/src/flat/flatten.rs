@@ -1,0 +1,351 @@
+//! From the component tree to scalar variables and equations.
+
+use super::census::Census;
+use super::equations::Walker;
+use super::numbers::Numbers;
+use super::{
+    Confidence, Equation, Experiment, FlatModel, InstanceInfo, Origin, OriginKind, StateSelect, Type, Variability,
+    Variable,
+};
+use super::{balance, discrete, equations, overconstrained, ports, streams};
+use crate::instance::{ElementState, Instance, Node, ScopeId, View};
+use crate::network::{Network, component_scopes};
+use bramah_expr::{ExprId, Exprs, VarId};
+use bramah_syntax::ast::{self, ArgumentKind, ClassBody, Modification};
+use bramah_syntax::diag::{Checked, Code, Diagnostic};
+use bramah_syntax::symbol::Symbol;
+
+/// Flattens an instance. The instance's expression pool moves into the flat model.
+pub fn flatten(instance: &mut Instance<'_, '_>, network: &Network) -> Checked<FlatModel> {
+    let scopes = component_scopes(instance);
+    let mut flat = FlatModel { class: class_name(instance, instance.root), ..FlatModel::default() };
+    let numbers = Numbers::new(&scopes);
+    flat.instances = scopes.iter().map(|&s| instance_info(instance, s, &numbers)).collect();
+    flat.experiment = experiment(instance);
+    flat.varied = instance.varied;
+    streams::prepare(instance, network);
+    variables(instance, &numbers, &mut flat);
+    instance.check_texts();
+    Walker::new(instance, &numbers, &mut flat).walk(&scopes);
+    connections(instance, network, &numbers, &mut flat);
+    overconstrained::equations(instance, network, &numbers, &mut flat);
+    streams::equations(instance, network, &numbers, &mut flat);
+    discrete::check(instance, &flat);
+    for (v, &i) in flat.variables.iter_mut().zip(&instance.order) {
+        if v.variability == Variability::Parameter && instance.variables[i as usize].structural {
+            v.variability = Variability::Constant;
+        }
+    }
+    flat.enumerations = instance
+        .enumerations
+        .iter()
+        .map(|e| (e.name.clone(), e.literals.iter().map(|l| l.as_str().to_string()).collect()))
+        .collect();
+    let constraints = instance.constraint_sizes();
+    flat.exprs = std::mem::take(&mut instance.exprs);
+    let mut diagnostics = std::mem::take(&mut instance.diagnostics);
+    if !diagnostics.iter().any(Diagnostic::is_error) {
+        let census = Census::take(instance, network, &flat, &scopes, &constraints);
+        let signals = ports::Signals::new(instance, network, &flat, &census, &scopes);
+        let doubts = balance::doubts(instance, &signals, &flat, &census, &scopes);
+        diagnostics.extend(ports::open_lines(&flat, &census));
+        diagnostics.extend(ports::uneven(instance, &flat, &census, &scopes));
+        diagnostics.extend(signals.joined_outputs());
+        flat.doubts = doubts;
+    }
+    // Bodies of functions were built in the same pool, with variables of their own.
+    if !flat.exprs.functions.is_empty() {
+        flat.compact();
+    }
+    Checked::new(flat, diagnostics)
+}
+
+fn class_name(instance: &Instance<'_, '_>, scope: ScopeId) -> String {
+    instance.library.full_name(instance.scope(scope).template.class)
+}
+
+fn instance_info(instance: &Instance<'_, '_>, scope: ScopeId, numbers: &Numbers) -> InstanceInfo {
+    let s = instance.scope(scope);
+    let parent = s.owner.map_or(0, |owner| numbers.of(owner));
+    InstanceInfo { name: s.name.clone(), class: class_name(instance, scope), parent, span: s.span }
+}
+
+fn variables(instance: &mut Instance<'_, '_>, numbers: &Numbers, flat: &mut FlatModel) {
+    flat.variables.reserve_exact(instance.order.len());
+    for k in 0..instance.order.len() {
+        let i = instance.order[k];
+        let v = variable(instance, i, numbers, flat);
+        flat.variables.push(v);
+    }
+}
+
+fn variable(instance: &mut Instance<'_, '_>, i: u32, numbers: &Numbers, flat: &mut FlatModel) -> Variable {
+    let data = &instance.variables[i as usize];
+    let origin = Origin { span: data.span, instance: numbers.of(data.scope), kind: OriginKind::Declared };
+    let input = data.top && data.causality == Some(ast::Causality::Input);
+    let output = data.top && data.causality == Some(ast::Causality::Output);
+    let mut v = Variable {
+        input,
+        output,
+        flow: data.flow,
+        settable: data.variability == Variability::Parameter && !data.final_ && !data.hidden,
+        hidden: data.hidden,
+        unwanted: data.unwanted,
+        fixed: data.variability <= Variability::Parameter,
+        description: data.description.map(Into::into),
+        state_select: if data.ty == Type::Real { data.state_select } else { StateSelect::Default },
+        ..Variable::plain(data.name.clone(), data.ty, data.variability, origin)
+    };
+    attributes(instance, i, &mut v);
+    binding(instance, i, &mut v, flat);
+    v
+}
+
+/// In K, degC, ...
+fn is_temperature(unit: &str) -> bool {
+    let parse = bramah_expr::units::Unit::parse;
+    matches!((parse(unit), parse("K")), (Ok(unit), Ok(kelvin)) if unit.dimension == kelvin.dimension)
+}
+
+fn attributes(instance: &mut Instance<'_, '_>, i: u32, v: &mut Variable) {
+    for k in 0..instance.variables[i as usize].attributes.len() {
+        let (name, b) = instance.variables[i as usize].attributes[k].clone();
+        match name.as_str() {
+            "unit" => {
+                v.unit = instance.text_attribute(i, "unit").filter(|u| !u.is_empty()).map(Into::into);
+                v.difference = v.unit.as_deref().is_some_and(is_temperature) && instance.is_difference(i) == Some(true);
+            }
+            "displayUnit" => {
+                v.display_unit = instance.text_attribute(i, "displayUnit").filter(|u| !u.is_empty()).map(Into::into);
+            }
+            "quantity" => {
+                instance.text_attribute(i, "quantity");
+            }
+            "fixed" => {
+                if let Some(x) = instance.known_attribute(i, name, &b, Type::Boolean) {
+                    v.fixed = x != 0.0;
+                    v.confidence.free = x == 0.0;
+                }
+            }
+            "unbounded" => {
+                instance.known_attribute(i, name, &b, Type::Boolean);
+            }
+            "start" | "min" | "max" | "nominal" => {
+                let Some(value) = instance.bound(i, &b, false) else { continue };
+                let Some(value) = instance.coerce(value, v.ty, &format!("{}.{name}", v.name), b.expr.span) else {
+                    continue;
+                };
+                let e = value.scalar().map(|(e, _)| e);
+                if e.is_some_and(|e| instance.variability(e) > Variability::Parameter) {
+                    let message = format!("`{name}` of `{}` must be known before the run", v.name);
+                    instance.diagnostics.push(
+                        Diagnostic::new(Code::NotConstant, message)
+                            .at(b.expr.span, "this changes during it")
+                            .at(v.origin.span, "declared here")
+                            .help("only parameters and constants may stand here"),
+                    );
+                    continue;
+                }
+                match name.as_str() {
+                    "start" => {
+                        v.start = e;
+                        let (depth, reach) = given(instance, i, b.view.scope, e);
+                        v.confidence = Confidence { depth, reach, ..v.confidence };
+                    }
+                    "min" => v.min = e,
+                    "max" => v.max = e,
+                    _ => v.nominal = e,
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+/// How far out a start value was given, and how far that reaches in: where it is written, or further out where one of the
+/// parameters in it is.
+fn given(instance: &Instance<'_, '_>, variable: u32, written: ScopeId, start: Option<ExprId>) -> (u32, i32) {
+    let mut least = depth(instance, written);
+    for parameter in start.into_iter().flat_map(|e| instance.exprs.variables(e)) {
+        let mut next = Some(parameter);
+        // parameters in a circle have a message of their own, but this must end in any case
+        for _ in 0..LONGEST_CHAIN {
+            let Some(p) = next else { break };
+            let Some(b) = &instance.variable(p).binding else { break };
+            let (view, expr) = (b.view, b.expr);
+            least = least.min(depth(instance, view.scope));
+            next = lone_parameter(instance, view, expr);
+        }
+    }
+    let own = depth(instance, instance.variables[variable as usize].scope);
+    (least, i32::try_from(least).unwrap_or(i32::MAX).saturating_sub(i32::try_from(own).unwrap_or(i32::MAX)))
+}
+
+/// Parameters bound to each other in a chain are followed so far.
+const LONGEST_CHAIN: usize = 30;
+
+/// The parameter that a binding consists of.
+fn lone_parameter(instance: &Instance<'_, '_>, view: View, expr: &ast::Expr) -> Option<VarId> {
+    let ast::ExprKind::Reference(r) = &expr.kind else { return None };
+    let [part] = r.parts.as_slice() else { return None };
+    let scope = instance.scope(view.scope);
+    let &index = scope.template.by_name.get(&part.name.name)?;
+    let ElementState::Node(node) = scope.elements[index as usize] else { return None };
+    let Node::Var(v) = instance.node(node) else { return None };
+    Some(instance.variables[*v as usize].id)
+}
+
+/// Components around the elements of a scope; more than any for those of packages.
+fn depth(instance: &Instance<'_, '_>, mut scope: ScopeId) -> u32 {
+    let mut depth = 0;
+    while scope != instance.root {
+        let Some(owner) = instance.scope(scope).owner else { return u32::MAX };
+        scope = owner;
+        depth += 1;
+    }
+    depth
+}
+
+/// Bindings of parameters stay with the variable; bindings of other variables are equations. That of a stream is what leaves
+/// through the port of a component that says nothing else: it gives way to parts that are joined to the port.
+fn binding(instance: &mut Instance<'_, '_>, i: u32, v: &mut Variable, flat: &mut FlatModel) {
+    let parameter = v.variability <= Variability::Parameter;
+    if instance.streams.outside.contains(&i) {
+        return;
+    }
+    let Some(b) = instance.variables[i as usize].binding.clone() else {
+        if parameter && v.fixed {
+            missing_value(instance, i, v);
+        }
+        return;
+    };
+    let value = instance.bound(i, &b, false);
+    let watched = instance.take_calls();
+    let Some(value) = value else { return };
+    let Some(value) = instance.coerce(value, v.ty, &v.name, b.expr.span) else { return };
+    let Some((e, _)) = value.scalar() else { return };
+    equations::watch(instance, flat, watched, v.origin.instance);
+    if v.variability == Variability::Constant && instance.variability(e) == Variability::Parameter {
+        instance.diagnostics.push(
+            Diagnostic::new(
+                Code::NotConstant,
+                format!("the constant `{}` is given a value that parameters change", v.name),
+            )
+            .at(b.expr.span, "this is no constant")
+            .at(v.origin.span, "declared here")
+            .help("declare it as `parameter`"),
+        );
+        return;
+    }
+    if parameter && instance.variability(e) > Variability::Parameter {
+        instance.diagnostics.push(
+            Diagnostic::new(Code::NotConstant, format!("the parameter `{}` is given a value that changes", v.name))
+                .at(b.expr.span, "this is not known before the run")
+                .at(v.origin.span, "declared here")
+                .help("drop `parameter`, or use parameters only"),
+        );
+        return;
+    }
+    // What varies is no default that could be held: such an input is given by its own equation.
+    v.input &= instance.variability(e) <= Variability::Parameter;
+    if parameter || v.input {
+        v.binding = Some(e);
+        // an input starts, and unless it is driven stays, at its default
+        v.start = if v.input { Some(e) } else { v.start };
+        return;
+    }
+    if instance.variables[i as usize].stream {
+        instance.leaves_with(i, e);
+    }
+    let id = instance.variables[i as usize].id;
+    let lhs = instance.exprs.var(id);
+    let origin = Origin { span: b.expr.span, kind: OriginKind::Binding, ..v.origin };
+    flat.equations.push(Equation { lhs, rhs: e, origin });
+}
+
+/// A parameter without a value takes its start value, with no remark if that was given on purpose (MLS 8.6).
+fn missing_value(instance: &mut Instance<'_, '_>, i: u32, v: &mut Variable) {
+    if v.start.is_some() {
+        v.binding = v.start;
+        return;
+    }
+    let _ = i;
+    let short = v.name.rsplit('.').next().unwrap_or(&v.name).to_string();
+    let word = if v.variability == Variability::Constant { "constant" } else { "parameter" };
+    instance.diagnostics.push(
+        Diagnostic::new(Code::NoValue, format!("the {word} `{}` has no value", v.name))
+            .at(v.origin.span, "declared without `= value`")
+            .instance(v.name.clone())
+            .help(format!(
+                "give it one where the component is used, as in `({short} = ...)`, or with `--set {}=...`",
+                v.name
+            )),
+    );
+}
+
+/// Connection equations: potentials equal, flows summed, open flows zero (MLS 9.2).
+fn connections(instance: &mut Instance<'_, '_>, network: &Network, numbers: &Numbers, flat: &mut FlatModel) {
+    for set in &network.potentials {
+        let first = instance.variables[set.members[0].0 as usize].id;
+        let lhs = instance.exprs.var(first);
+        for &(i, span) in &set.members[1..] {
+            let rhs = instance.exprs.var(instance.variables[i as usize].id);
+            let origin = Origin { span, instance: numbers.of(set.scope), kind: OriginKind::ConnectPotential };
+            flat.equations.push(Equation { lhs, rhs, origin });
+        }
+    }
+    for set in &network.flows {
+        let mut sum: Option<ExprId> = None;
+        for &(i, outside) in &set.members {
+            let e = instance.exprs.var(instance.variables[i as usize].id);
+            sum = Some(match (sum, outside) {
+                (None, false) => e,
+                (None, true) => instance.exprs.neg(e),
+                (Some(s), false) => instance.exprs.add(s, e),
+                (Some(s), true) => instance.exprs.sub(s, e),
+            });
+        }
+        let origin = Origin { span: set.span, instance: numbers.of(set.scope), kind: OriginKind::ConnectFlow };
+        flat.equations.push(Equation { lhs: sum.unwrap_or(Exprs::ZERO), rhs: Exprs::ZERO, origin });
+    }
+    for &i in &network.unused {
+        let data = &instance.variables[i as usize];
+        let origin = Origin { span: data.span, instance: numbers.of(data.scope), kind: OriginKind::OpenPort };
+        let lhs = instance.exprs.var(data.id);
+        flat.equations.push(Equation { lhs, rhs: Exprs::ZERO, origin });
+    }
+    for &i in &network.open {
+        let data = &instance.variables[i as usize];
+        let origin = Origin { span: data.span, instance: numbers.of(data.scope), kind: OriginKind::OpenPort };
+        let lhs = instance.exprs.var(data.id);
+        flat.equations.push(Equation { lhs, rhs: Exprs::ZERO, origin });
+    }
+}
+
+/// The `experiment` annotation of the model or of a class it extends.
+fn experiment(instance: &mut Instance<'_, '_>) -> Experiment {
+    let template = instance.scope(instance.root).template.clone();
+    let mut experiment = Experiment::default();
+    for base in &template.bases {
+        if !matches!(base.ast.body, ClassBody::Long(_) | ClassBody::Short { .. }) {
+            continue;
+        }
+        let Some(m) = base.ast.annotation.as_ref().and_then(|a| argument(a, "experiment")) else { continue };
+        let number = |name: &str| argument(m, name).and_then(|m| m.value.as_ref()).and_then(ast::Expr::as_number);
+        experiment.start_time = experiment.start_time.or(number("StartTime"));
+        experiment.stop_time = experiment.stop_time.or(number("StopTime"));
+        // Tools write 0 where a number of rows was chosen instead.
+        experiment.interval = experiment.interval.or(number("Interval").filter(|interval| *interval > 0.0));
+        experiment.tolerance = experiment.tolerance.or(number("Tolerance"));
+        break;
+    }
+    experiment
+}
+
+fn argument<'m>(m: &'m Modification, name: &str) -> Option<&'m Modification> {
+    let wanted = Symbol::new(name);
+    m.arguments.iter().find_map(|a| match &a.kind {
+        ArgumentKind::Modify { path, modification: Some(m), .. } if path.parts[0].name == wanted => Some(m),
+        _ => None,
+    })
+}

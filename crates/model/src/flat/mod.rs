@@ -1,0 +1,356 @@
+//! The flat model: scalar variables and equations, each with its origin.
+
+mod balance;
+mod census;
+mod discrete;
+mod equations;
+mod explain;
+mod flatten;
+mod numbers;
+mod overconstrained;
+mod ports;
+mod print;
+mod roots;
+mod streams;
+
+pub use explain::explain;
+pub use flatten::flatten;
+
+pub use bramah_expr::types::{MessagePart, StateSelect, Type, Variability};
+
+use bramah_expr::{ExprId, Exprs, Node, VarId};
+use bramah_syntax::diag::{Diagnostic, Span};
+
+/// The flattened circuit.
+#[derive(Clone, Debug, Default)]
+pub struct FlatModel {
+    /// The class that was instantiated, by its full name.
+    pub class: String,
+    /// All expressions.
+    pub exprs: Exprs,
+    /// All scalar variables in declaration order; `VarId` indexes here.
+    pub variables: Vec<Variable>,
+    /// Equations of the `equation` sections, bindings of variables, connection equations.
+    pub equations: Vec<Equation>,
+    /// Equations of the `initial equation` sections. `fixed` starts are not listed here: see [`Variable::fixed`].
+    pub initial_equations: Vec<Equation>,
+    /// `when` clauses (also those of algorithms, already made single assignments).
+    pub whens: Vec<When>,
+    /// `assert`s outside `when`.
+    pub asserts: Vec<Assert>,
+    /// Statements `Connections.conserved(..)`.
+    pub conserved: Vec<Conserved>,
+    /// Component instances, parents before children; entry 0 is the model itself with an empty name.
+    pub instances: Vec<InstanceInfo>,
+    /// What seems wrong with signals or with the balance of single components: reported when the equations turn out not to
+    /// determine the unknowns.
+    pub doubts: Vec<Diagnostic>,
+    /// Enumeration types: full name and literals.
+    pub enumerations: Vec<(String, Vec<String>)>,
+    /// The model's `experiment` annotation.
+    pub experiment: Experiment,
+    /// Parameters get other values without compiling again: none that is 0 may be fixed with the structure for that.
+    pub varied: bool,
+}
+
+impl FlatModel {
+    /// Whether a parameter's binding reads no other parameter: the roots of all parameter values.
+    pub fn is_root(&self, v: VarId) -> bool {
+        let variable = &self.variables[v.index()];
+        let reads = |e: ExprId| {
+            let variables = self.exprs.variables(e);
+            variables.iter().any(|w| self.variables[w.index()].variability == Variability::Parameter)
+                || matches!(self.exprs.node(e), Node::Time)
+        };
+        variable.variability == Variability::Parameter && !variable.binding.is_some_and(reads)
+    }
+}
+
+/// `annotation(experiment(...))`; `None` where nothing is said.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[allow(missing_docs, reason = "the names of the annotation, in SI units")]
+pub struct Experiment {
+    pub start_time: Option<f64>,
+    pub stop_time: Option<f64>,
+    pub interval: Option<f64>,
+    pub tolerance: Option<f64>,
+}
+
+/// A component instance, for messages and for grouping.
+#[derive(Clone, Debug, PartialEq)]
+pub struct InstanceInfo {
+    /// Full dotted name with indices.
+    pub name: String,
+    /// Full name of its class.
+    pub class: String,
+    /// The instance it belongs to (itself for entry 0).
+    pub parent: u32,
+    /// Where it is declared.
+    pub span: Span,
+}
+
+/// Where a variable or equation comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Origin {
+    /// The place in the text.
+    pub span: Span,
+    /// The instance that holds it: index into `FlatModel::instances`.
+    pub instance: u32,
+    /// Why it exists.
+    pub kind: OriginKind,
+}
+
+/// Why a variable or equation exists.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OriginKind {
+    /// Written by the user.
+    Declared,
+    /// The binding of a declaration or a modifier.
+    Binding,
+    /// Equal potentials of a connection set.
+    ConnectPotential,
+    /// The sum of flows of a connection set.
+    ConnectFlow,
+    /// The zero flow of a port that nothing is connected to from outside.
+    OpenPort,
+    /// The time derivative of another equation, made by index reduction.
+    Differentiated,
+    /// A relation that makes events.
+    Relation,
+    /// The condition of a `when`.
+    WhenCondition,
+    /// A `fixed` start value, or one chosen by the compiler.
+    Start,
+    /// A start value that is not `fixed` and yields to one that is.
+    Guess,
+    /// Made by the compiler for another reason.
+    Made,
+}
+
+/// A scalar variable.
+#[derive(Clone, Debug)]
+pub struct Variable {
+    /// Full dotted name with indices, as in `pump.b.p` or `v[3].p`.
+    pub name: String,
+    /// Its type.
+    pub ty: Type,
+    /// When it may change.
+    pub variability: Variability,
+    /// A top-level `input`: its value comes from outside. Its binding, if any, is the default.
+    pub input: bool,
+    /// A top-level `output`.
+    pub output: bool,
+    /// Declared `flow`.
+    pub flow: bool,
+    /// A parameter that may be given from outside: neither `final` nor protected.
+    pub settable: bool,
+    /// `protected`, or annotated `HideResult`: left out of results but for protected states.
+    pub hidden: bool,
+    /// Annotated `HideResult`.
+    pub unwanted: bool,
+    /// Binding of a parameter or constant, or default of an input. Bindings of variables are equations.
+    pub binding: Option<ExprId>,
+    /// `start`: a parameter expression. `None` when not given (0 or `false`, first literal).
+    pub start: Option<ExprId>,
+    /// How much `start` counts beside the starts of others, where not all can hold.
+    pub confidence: Confidence,
+    /// `fixed`: the start value holds at the beginning of the run (for parameters: false means found at initialization).
+    pub fixed: bool,
+    /// `min`
+    pub min: Option<ExprId>,
+    /// `max`
+    pub max: Option<ExprId>,
+    /// `nominal`: a parameter expression.
+    pub nominal: Option<ExprId>,
+    /// `unit`, as written.
+    pub unit: Option<Box<str>>,
+    /// A difference of temperatures: a value in degC means as many K.
+    pub difference: bool,
+    /// `displayUnit`, as written.
+    pub display_unit: Option<Box<str>>,
+    /// The description string.
+    pub description: Option<Box<str>>,
+    /// `stateSelect`
+    pub state_select: StateSelect,
+    /// Where it was declared.
+    pub origin: Origin,
+}
+
+/// Who gave a start value that is not `fixed`: of two for one quantity the one given further outside counts (the
+/// confidence numbers of MLS 8.6.2), and of two given equally far outside the one that reaches further in. Less is more
+/// confident.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Confidence {
+    /// `fixed = false` was written: the start of any other goes first.
+    pub free: bool,
+    /// Components around the place where the value was written; 0 in the model itself.
+    pub depth: u32,
+    /// Components from there in to the variable's own class, as a negative number.
+    pub reach: i32,
+}
+
+impl Confidence {
+    /// Whether the model itself says how one of its components starts.
+    pub fn is_said(&self) -> bool {
+        !self.free && self.depth == 0 && self.reach < 0
+    }
+
+    /// Whether it is the start of a component: by its class, or as the model says.
+    pub fn is_of_component(&self) -> bool {
+        self.depth != u32::MAX && (self.depth > 0 || self.reach < 0)
+    }
+}
+
+impl Default for Confidence {
+    /// Of a variable without a start.
+    fn default() -> Self {
+        Confidence { free: false, depth: u32::MAX, reach: 0 }
+    }
+}
+
+impl Variable {
+    /// Whether its start is a condition: `fixed`, or said by the model of one of its components.
+    pub fn start_is_said(&self) -> bool {
+        self.fixed || self.start.is_some() && self.confidence.is_said()
+    }
+
+    /// A variable of which nothing is said but this: no attributes, visible, not fixed.
+    pub fn plain(name: impl Into<String>, ty: Type, variability: Variability, origin: Origin) -> Self {
+        Variable {
+            name: name.into(),
+            ty,
+            variability,
+            input: false,
+            output: false,
+            flow: false,
+            settable: false,
+            hidden: false,
+            unwanted: false,
+            binding: None,
+            start: None,
+            confidence: Confidence::default(),
+            fixed: false,
+            min: None,
+            max: None,
+            nominal: None,
+            unit: None,
+            difference: false,
+            display_unit: None,
+            description: None,
+            state_select: StateSelect::Default,
+            origin,
+        }
+    }
+}
+
+/// `lhs = rhs`.
+///
+/// If the left side is a lone discrete-valued variable (Boolean, Integer, enumeration, or `discrete Real`), or both
+/// sides are discrete, this is a discrete equation, active at events; else a continuous one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Equation {
+    /// Left side.
+    pub lhs: ExprId,
+    /// Right side.
+    pub rhs: ExprId,
+    /// Where it comes from.
+    pub origin: Origin,
+}
+
+/// `when c1 then ... elsewhen c2 then ... end when`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct When {
+    /// The branches in order of priority.
+    pub branches: Vec<WhenBranch>,
+    /// Where it comes from.
+    pub origin: Origin,
+}
+
+impl When {
+    /// The variables that its branches assign.
+    pub fn assigned(&self) -> impl Iterator<Item = VarId> {
+        self.branches.iter().flat_map(|b| &b.actions).filter_map(|a| match a {
+            WhenAction::Assign { variable, .. } => Some(*variable),
+            _ => None,
+        })
+    }
+}
+
+/// One branch of a `when`. `when {c1, c2}` has several conditions: it fires when any of them becomes true.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WhenBranch {
+    /// Conditions; `Node::Initial` stands for `initial()`.
+    pub conditions: Vec<ExprId>,
+    /// What is done.
+    pub actions: Vec<WhenAction>,
+}
+
+/// What a `when` does.
+#[derive(Clone, Debug, PartialEq)]
+pub enum WhenAction {
+    /// `v = value`
+    Assign {
+        /// A discrete-time variable.
+        variable: VarId,
+        /// Its new value.
+        value: ExprId,
+        /// Where it stands.
+        origin: Origin,
+    },
+    /// `reinit(x, value)`
+    Reinit {
+        /// The variable whose derivative appears.
+        variable: VarId,
+        /// Its new value.
+        value: ExprId,
+        /// 1 unless it stood in an `if`.
+        guard: ExprId,
+        /// Where it stands.
+        origin: Origin,
+    },
+    /// `assert(condition, message, level)`
+    Assert(Assert),
+    /// `terminate(message)`
+    Terminate {
+        /// The message.
+        message: Message,
+        /// 1 unless it stood in an `if`.
+        guard: ExprId,
+        /// Where it stands.
+        origin: Origin,
+    },
+}
+
+/// `Connections.conserved(quantity, rate, state)`: what the equations imply, said so that the solver can integrate the
+/// quantity and let the state follow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Conserved {
+    /// What changes by its rate alone: an expression of states.
+    pub quantity: ExprId,
+    /// Its rate.
+    pub rate: ExprId,
+    /// The variable that follows from it.
+    pub state: ExprId,
+    /// Where it is stated.
+    pub origin: Origin,
+}
+
+/// `assert(condition, message, level)`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Assert {
+    /// Must hold.
+    pub condition: ExprId,
+    /// What to say otherwise.
+    pub message: Message,
+    /// True for `AssertionLevel.warning`.
+    pub warning: bool,
+    /// Where it stands.
+    pub origin: Origin,
+}
+
+/// A text with values in it, `"p = " + String(p)`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Message {
+    /// The pieces in order.
+    pub parts: Vec<MessagePart>,
+}

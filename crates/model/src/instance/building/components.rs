@@ -1,0 +1,748 @@
+//! Components: from declarations with their modifiers to nodes, on demand and then all.
+
+use crate::instance::building::given::Override;
+use crate::instance::evaluation::ranges::Extent;
+use crate::instance::lookup::{Builtin, Found, STATE_SELECT, predefined_enumerations};
+use crate::instance::modifiers::{Access, Arg, ArgKind, At, Binding, Reached, extended, indexed};
+use crate::instance::template::{Kind, Template, What};
+use crate::instance::{ClassRef, ElementState, Inherited, Instance, Node, NodeId, ROOT, ScopeId, VarData, View, state};
+use crate::resolve::{ClassId, Library};
+use bramah_expr::types::{StateSelect, Type, Variability};
+use bramah_expr::{Exprs, VarId};
+use bramah_syntax::ast::{self, ClassKind, Expr, ExprKind, Subscript};
+use bramah_syntax::diag::{Code, Diagnostic, Span};
+use bramah_syntax::symbol::Symbol;
+use rustc_hash::{FxHashMap, FxHashSet};
+use std::rc::Rc;
+
+/// The most scalar variables a model may have; beyond, a size is probably mistaken.
+const MOST_VARIABLES: usize = 20_000_000;
+/// The deepest nesting of components.
+const DEEPEST: usize = 60;
+
+/// What to instantiate.
+#[derive(Clone, Debug)]
+pub struct ModelRequest {
+    /// The class.
+    pub class: ClassId,
+    /// Values from outside.
+    pub overrides: Vec<Override>,
+}
+
+/// The component tree of a class.
+///
+/// Diagnostics are collected in the returned [`Instance`]; with an error among them the tree may be incomplete.
+pub fn instantiate<'a, 'l>(library: &'l mut Library<'a>, request: &ModelRequest) -> Instance<'a, 'l> {
+    let mut instance = Instance {
+        library,
+        scopes: Vec::new(),
+        nodes: Vec::new(),
+        variables: Vec::new(),
+        order: Vec::new(),
+        exprs: Exprs::default(),
+        enumerations: predefined_enumerations(),
+        enumeration_index: FxHashMap::default(),
+        root: ScopeId(1),
+        diagnostics: Vec::new(),
+        templates: FxHashMap::default(),
+        packages: FxHashMap::default(),
+        bare: FxHashMap::default(),
+        gathering: Vec::new(),
+        constrained: Vec::new(),
+        gathered: 0,
+        tangled: false,
+        dynamic_packages: Vec::new(),
+        array_values: FxHashMap::default(),
+        inner_declared: FxHashMap::default(),
+        functions_checked: FxHashSet::default(),
+        classes_checked: FxHashSet::default(),
+        at_start: FxHashMap::default(),
+        procedures: FxHashMap::default(),
+        externals: FxHashMap::default(),
+        #[cfg(feature = "fmi")]
+        compiled_c: FxHashMap::default(),
+        outer_checked: FxHashMap::default(),
+        varied: false,
+        streams: crate::instance::Streams::default(),
+        connected: FxHashMap::default(),
+        overconstrained: crate::instance::overconstrained::Overconstrained::default(),
+        variabilities: Vec::new(),
+        operator_records: Vec::new(),
+        functions: Vec::new(),
+        tables: FxHashMap::default(),
+        #[cfg(feature = "fmi")]
+        units: FxHashMap::default(),
+        given_elements: Vec::new(),
+        eval: state::State::default(),
+    };
+    instance.build_model(request);
+    instance
+}
+
+impl<'a> Instance<'a, '_> {
+    fn build_model(&mut self, request: &ModelRequest) {
+        let class = self.library.class(request.class);
+        let name = self.library.full_name(request.class);
+        let nothing = Rc::new(Template::empty(request.class, ClassKind::Class));
+        self.new_scope(nothing.clone(), String::new(), Rc::from([]), None, class.name.span);
+        let parent = self.surroundings(request.class);
+        // The model's scope is number 1, so that `Instance::root` is known before it is built.
+        let root = self.scopes.len();
+        if root != 1 {
+            self.root = ScopeId(u32::try_from(root).expect("small"));
+        }
+        self.root = self.new_scope(nothing, String::new(), Rc::from([]), None, class.name.span);
+        if !self.can_run(class, &name) {
+            return;
+        }
+        let template = self.template(request.class, parent);
+        let args = self.override_args(request);
+        let elements = vec![ElementState::Unknown; template.elements.len()];
+        let root = self.root;
+        let scope = self.scope_mut(root);
+        (scope.template, scope.args, scope.elements, scope.component) = (template, args, elements, true);
+        self.build_elements(root, 0);
+        self.expand_connectors();
+        self.check_streams();
+        self.elements_not_met();
+        self.number_variables();
+    }
+
+    /// A stream belongs to a connector with one flow (MLS 15.1).
+    fn check_streams(&mut self) {
+        for i in 0..u32::try_from(self.variables.len()).expect("limited above") {
+            if !self.variables[i as usize].stream || self.stream_flow(i).is_some() {
+                continue;
+            }
+            let (name, at) = (self.variables[i as usize].name.clone(), self.variables[i as usize].span);
+            let d = Diagnostic::new(Code::Restricted, format!("`{name}` is a stream without a flow"));
+            let d = d.at(at, "no connector with one `flow` variable around it").instance(name);
+            self.report(d.note("Modelica 3.6, 15.1").help("declare it in a connector that has a `flow` variable"));
+        }
+    }
+
+    /// The view from which a class given by its full name sees its surroundings.
+    fn surroundings(&mut self, class: ClassId) -> View {
+        let Some(parent) = self.library.parent(class) else { return ROOT };
+        let around = self.surroundings(parent);
+        let found = ClassRef { class: parent, parent: around, args: Rc::from([]) };
+        View { scope: self.package(&found), base: 0 }
+    }
+
+    fn can_run(&mut self, class: &'a ast::Class, name: &str) -> bool {
+        let kind = match class.kind {
+            ClassKind::Model | ClassKind::Block | ClassKind::Class => None,
+            ClassKind::Package => Some("package"),
+            ClassKind::Function { .. } => Some("function"),
+            ClassKind::Record { .. } => Some("record"),
+            ClassKind::Connector { .. } => Some("connector"),
+            ClassKind::Type => Some("type"),
+            ClassKind::Operator => Some("operator"),
+        };
+        if let Some(kind) = kind {
+            self.report(
+                Diagnostic::new(Code::BadModel, format!("`{name}` is a {kind}, not a model"))
+                    .at(class.name.span, "only a model or block can be run")
+                    .help("name a model with `--model CLASS`"),
+            );
+            return false;
+        }
+        if class.prefixes.partial {
+            self.report(
+                Diagnostic::new(Code::Partial, format!("`{name}` is partial and cannot be run"))
+                    .at(class.name.span, "declared `partial`")
+                    .help("run a class that extends it"),
+            );
+            return false;
+        }
+        true
+    }
+
+    /// Builds all components of an instance.
+    fn build_elements(&mut self, scope: ScopeId, depth: usize) {
+        let template = self.scope(scope).template.clone();
+        self.check_targets(scope, &template);
+        if depth > DEEPEST {
+            self.too_deep(scope);
+            return;
+        }
+        for (i, element) in (0u32..).zip(&template.elements) {
+            if matches!(element.kind, Kind::Component(_)) {
+                self.component_at(scope, i, depth);
+            }
+        }
+    }
+
+    fn too_deep(&mut self, scope: ScopeId) {
+        let s = self.scope(scope);
+        let (span, class) = (s.span, s.template.class);
+        let class = self.library.full_name(class);
+        self.report(
+            Diagnostic::new(Code::Recursion, format!("components of `{class}` are nested without end"))
+                .at(span, "this component contains itself")
+                .class(class)
+                .help("a class cannot hold a component of its own kind"),
+        );
+    }
+
+    /// Every modifier must mean an element.
+    fn check_targets(&mut self, scope: ScopeId, template: &Template<'a>) {
+        if template.broken {
+            return;
+        }
+        let args = self.scope(scope).args.clone();
+        for arg in args.iter() {
+            let name = match arg.kind {
+                ArgKind::Modify(path, _) => path[0],
+                ArgKind::Component(c) => c.name,
+                ArgKind::Class(c) => c.name,
+            };
+            if let Some(&i) = template.by_name.get(&name.name) {
+                if template.elements[i as usize].protected {
+                    self.protected_modifier(name, template);
+                }
+                continue;
+            }
+            let class = self.library.full_name(template.class);
+            let names: Vec<Symbol> = template.elements.iter().filter(|e| !e.protected).map(|e| e.name).collect();
+            let reported = self.diagnostics.iter().any(|d| d.labels.first().is_some_and(|l| l.span == name.span));
+            if !reported {
+                self.unknown_modifier(name, &class, &names);
+            }
+        }
+    }
+
+    /// A component cannot change what its class keeps to itself; a class that extends it can (MLS 4.1, 7.2).
+    fn protected_modifier(&mut self, name: ast::Ident, template: &Template<'a>) {
+        if self.diagnostics.iter().any(|d| d.labels.first().is_some_and(|l| l.span == name.span)) {
+            return;
+        }
+        let class = self.library.full_name(template.class);
+        self.report(
+            Diagnostic::new(Code::UnknownModifier, format!("`{}` of `{class}` is protected", name.name))
+                .at(name.span, "cannot be modified from outside")
+                .class(class)
+                .help("modify it in a class that extends this one, or declare it above `protected`"),
+        );
+    }
+
+    /// The node of a component element; `None` if it is conditional and absent, or could not be built.
+    pub fn component(&mut self, scope: ScopeId, index: u32) -> Option<NodeId> {
+        self.component_at(scope, index, 0)
+    }
+
+    fn component_at(&mut self, scope: ScopeId, index: u32, depth: usize) -> Option<NodeId> {
+        match &self.scope(scope).elements[index as usize] {
+            ElementState::Node(node) => return Some(*node),
+            ElementState::Unknown => {}
+            ElementState::Busy | ElementState::Absent | ElementState::Class(_) => return None,
+        }
+        self.scope_mut(scope).elements[index as usize] = ElementState::Busy;
+        let mark = self.diagnostics.len();
+        let node = self.build_component(scope, index, depth);
+        if scope == self.root && self.diagnostics.len() > mark {
+            let element = &self.scope(scope).template.elements[index as usize];
+            let (name, span) = (element.name.as_str().to_owned(), element.span);
+            self.point_at(mark, &name, span);
+        }
+        let state = node.map_or(ElementState::Absent, ElementState::Node);
+        self.scope_mut(scope).elements[index as usize] = state;
+        node
+    }
+
+    fn build_component(&mut self, scope: ScopeId, index: u32, depth: usize) -> Option<NodeId> {
+        let template = self.scope(scope).template.clone();
+        let element = &template.elements[index as usize];
+        let Kind::Component(declared) = element.kind else { return None };
+        let own = View { scope, base: element.base };
+        if declared.prefixes.outer && !declared.prefixes.inner {
+            self.check_outer_unmodified(scope, declared);
+            return self.outer_component(scope, declared, own);
+        }
+        let reached = self.reached(scope, index);
+        if let Some(condition) = &declared.condition
+            && !self.constant_boolean(condition, own)?
+        {
+            return None;
+        }
+        let (component, view) = match reached.redeclare {
+            Some((ArgKind::Component(c), view, ..)) => (c, view),
+            _ => (declared, own),
+        };
+        let found = self.class_at(view, &component.class)?;
+        #[cfg(feature = "fmi")]
+        let found = self.with_unit(found, &reached.args, declared.name.span)?;
+        self.check_redeclaration(declared, own, component, &found);
+        self.check_chain(declared, own, &reached.redeclarations, &found);
+        let plan = Plan {
+            name: joined(&self.scope(scope).name, element.name),
+            scope,
+            index: Some(index),
+            declared,
+            prefix: self.prefixes(scope, element.protected, component, declared),
+            span: declared.name.span,
+            depth,
+        };
+        let subscripts = if component.subscripts.is_empty() { &declared.subscripts } else { &component.subscripts };
+        let shape = reached.binding.clone().or_else(|| start_of(&reached.args));
+        let dims = self.dimensions(Some(declared.name.name), subscripts, own, shape.as_ref(), 0)?;
+        self.build_shaped(&plan, &found, &dims, reached)
+    }
+
+    fn prefixes(
+        &self,
+        scope: ScopeId,
+        protected: bool,
+        component: &ast::Component,
+        declared: &ast::Component,
+    ) -> Inherited {
+        let outer = self.scope(scope).prefix;
+        let prefix = if component.prefix.variability.is_some() { component.prefix } else { declared.prefix };
+        let stricter = match (outer.variability, prefix.variability) {
+            (Some(a), Some(b)) => Some(a.min(b)),
+            (a, b) => a.or(b),
+        };
+        // `HideResult = false` shows what is protected, too (MLS 18.3)
+        let said = annotated(declared, "HideResult");
+        Inherited {
+            variability: stricter,
+            causality: component.prefix.causality.or(declared.prefix.causality).or(outer.causality),
+            flow: outer.flow || component.prefix.flow || declared.prefix.flow,
+            stream: outer.stream || component.prefix.stream || declared.prefix.stream,
+            hidden: said.unwrap_or(outer.hidden || protected),
+            unwanted: said.unwrap_or(outer.unwanted),
+            mixes: outer.mixes || annotated(declared, "__bramah_mixes") == Some(true),
+            nested: outer.nested,
+        }
+    }
+
+    /// Array dimensions of an element; `:` is taken from the value, `size(A, 1)` of `A` itself from the sizes before it.
+    pub(in crate::instance) fn dimensions(
+        &mut self,
+        own: Option<Symbol>,
+        subscripts: &'a [Subscript],
+        view: View,
+        binding: Option<&Binding<'a>>,
+        skip: usize,
+    ) -> Option<Vec<Extent>> {
+        let mut dims = Vec::with_capacity(subscripts.len());
+        for (i, s) in subscripts.iter().enumerate() {
+            let before = own.and_then(|name| own_size(s, name)).and_then(|k| dims.get(k.checked_sub(1)?));
+            let extent = match s {
+                Subscript::Expr(_) if before.is_some() => before.copied()?,
+                Subscript::Expr(e) => self.extent(e, view)?,
+                Subscript::All(span) => {
+                    let Some(b) = binding else {
+                        self.report(
+                            Diagnostic::new(Code::NoValue, "the size `:` needs a value to be taken from")
+                                .at(*span, "no binding gives this size")
+                                .help("write a size, or bind the array to a value"),
+                        );
+                        return None;
+                    };
+                    let known = if b.access.is_empty() { self.shape(b.expr, b.view) } else { None };
+                    let sizes = match known {
+                        Some(sizes) => sizes,
+                        None => self.binding_value(b, true)?.dims().to_vec(),
+                    };
+                    match sizes.get(skip + i) {
+                        Some(&size) => Extent { size, by: Type::Integer },
+                        None => {
+                            self.report(
+                                Diagnostic::new(Code::SizeMismatch, "the value has fewer dimensions than the array")
+                                    .at(b.expr.span, "this value")
+                                    .at(*span, "should give this size"),
+                            );
+                            return None;
+                        }
+                    }
+                }
+            };
+            dims.push(extent);
+        }
+        Some(dims)
+    }
+
+    /// Builds a component with the array dimensions of its declaration and of its type.
+    pub(in crate::instance) fn build_shaped(
+        &mut self,
+        plan: &Plan<'a>,
+        found: &Found<'a>,
+        dims: &[Extent],
+        reached: Reached<'a>,
+    ) -> Option<NodeId> {
+        let mut all = dims.to_vec();
+        let template = match found {
+            Found::Class(class) => {
+                let t = self.template(class.class, class.parent);
+                for (subscripts, base) in t.dims.iter().rev() {
+                    let view = t.bases[*base as usize].parent;
+                    all.extend(self.dimensions(None, subscripts, view, reached.binding.as_ref(), dims.len())?);
+                }
+                Some(t)
+            }
+            _ => None,
+        };
+        let count = all.iter().try_fold(1usize, |n, d| n.checked_mul(d.size));
+        if count.is_none_or(|n| n + self.variables.len() > MOST_VARIABLES) {
+            self.report(
+                Diagnostic::new(
+                    Code::TooLarge,
+                    format!("`{}` would have more than {MOST_VARIABLES} elements", plan.name),
+                )
+                .at(plan.span, "this array")
+                .help("check the parameters that give its size"),
+            );
+            return None;
+        }
+        let of_type = match found {
+            Found::Class(class) => class.args.clone(),
+            _ => Rc::from([]),
+        };
+        let args = (reached.args.into(), of_type);
+        let part = Part { binding: reached.binding, final_: reached.final_ };
+        let node = self.build_array(plan, found, template.as_ref(), (&all, dims.len()), &args, part)?;
+        if let Some(template) = template {
+            self.note_constraints(node, dims.is_empty(), found, &template);
+        }
+        Some(node)
+    }
+
+    fn build_array(
+        &mut self,
+        plan: &Plan<'a>,
+        found: &Found<'a>,
+        template: Option<&Rc<Template<'a>>>,
+        (extents, declared): (&[Extent], usize),
+        // what the declaration says of the component, and what its class has been modified by
+        (args, of_type): &(Rc<[Arg<'a>]>, Rc<[Arg<'a>]>),
+        part: Part<'a>,
+    ) -> Option<NodeId> {
+        let all = |args: Rc<[Arg<'a>]>, of_type: Rc<[Arg<'a>]>| match of_type.is_empty() {
+            true => args,
+            false => args.iter().chain(of_type.iter()).cloned().collect(),
+        };
+        if extents.is_empty() {
+            let args = all(args.clone(), of_type.clone());
+            return self.build_one(plan, (&plan.name, &[]), found, template, args, part);
+        }
+        let dims: Vec<usize> = extents.iter().map(|e| e.size).collect();
+        let count: usize = dims.iter().product();
+        let mut elements = Vec::with_capacity(count);
+        for flat in 0..count {
+            let index = unravel(flat, &dims);
+            let text: Vec<String> = index.iter().map(|i| (i.place + 1).to_string()).collect();
+            let name = format!("{}[{}]", plan.name, text.join(","));
+            // a type is one value inside whatever array it is used in
+            let args = all(indexed(args, &index), indexed(of_type, &index[declared..]));
+            let binding = part.binding.clone().map(|b| Binding { access: extended(&b.access, &index), ..b });
+            let part = Part { binding, ..part.clone() };
+            // The attributes of an array type are indexed by the type's own dimensions only.
+            let own = &index[declared..];
+            elements.push(self.build_one(plan, (&name, own), found, template, args, part)?);
+        }
+        Some(self.add_node(Node::Array { dims, by: extents.iter().map(|e| e.by).collect(), elements: elements.into() }))
+    }
+
+    fn build_one(
+        &mut self,
+        plan: &Plan<'a>,
+        (name, index): (&str, &[At]),
+        found: &Found<'a>,
+        template: Option<&Rc<Template<'a>>>,
+        args: Rc<[Arg<'a>]>,
+        part: Part<'a>,
+    ) -> Option<NodeId> {
+        match (found, template) {
+            (Found::Builtin(b), _) => Some(self.build_variable(plan, name, *b, &args, (&[], None), part)),
+            (Found::Class(_), Some(t)) => match t.builtin {
+                Some(b) => {
+                    let chain = self.type_args(t, index);
+                    Some(self.build_variable(plan, name, b, &args, (&chain, t.prefix.causality), part))
+                }
+                None => self.build_object(plan, name, t, args, part),
+            },
+            _ => None,
+        }
+    }
+
+    /// Attribute modifications of a type chain, each seen from around the class it stands in.
+    fn type_args(&self, t: &Template<'a>, index: &[At]) -> Vec<Arg<'a>> {
+        let none: Rc<[Access]> = Rc::from([]);
+        // A type is scalar inside the class that gives it its dimensions.
+        let shaped = t.dims.iter().map(|(_, base)| *base).min().unwrap_or(0);
+        let mut chain = Vec::new();
+        for s in &t.builtin_args {
+            let What::Argument(a) = s.what else { continue };
+            let arg = Arg::new(a, t.bases[s.base as usize].parent, &none, false);
+            let own = if s.base <= shaped { index } else { &[] };
+            chain.extend(arg.iter().flat_map(|a| indexed(std::slice::from_ref(a), own).to_vec()));
+        }
+        chain
+    }
+
+    fn build_object(
+        &mut self,
+        plan: &Plan<'a>,
+        name: &str,
+        template: &Rc<Template<'a>>,
+        args: Rc<[Arg<'a>]>,
+        part: Part<'a>,
+    ) -> Option<NodeId> {
+        if !self.can_be_component(plan, template) {
+            return None;
+        }
+        self.check_prefixes(plan.declared, template);
+        let owner = self.scope(plan.scope).template.kind;
+        if matches!((owner, template.kind), (ClassKind::Block, ClassKind::Connector { .. })) && !plan.prefix.hidden {
+            self.check_block_port(plan.declared, template);
+        }
+        let scope = self.new_scope(template.clone(), name.to_string(), args, Some(plan.scope), plan.span);
+        let mut prefix = plan.prefix;
+        prefix.causality = plan.prefix.causality.or(template.prefix.causality);
+        prefix.nested = prefix.nested || !matches!(template.kind, ClassKind::Connector { .. });
+        // a connector may be a record, as `connector ComplexOutput = output Complex` is
+        let record = template.bases.iter().any(|b| matches!(b.ast.kind, ClassKind::Record { .. }));
+        let s = self.scope_mut(scope);
+        (s.prefix, s.component) = (prefix, true);
+        match part.binding {
+            Some(b) if record => s.binding = Some(b),
+            Some(b) => {
+                let class = self.library.full_name(template.class);
+                self.report(
+                    Diagnostic::new(Code::TypeMismatch, format!("`{name}` is a component and cannot have a value"))
+                        .at(b.expr.span, format!("`{class}` is not a type with values"))
+                        .help("modify its elements in brackets instead"),
+                );
+            }
+            None => {}
+        }
+        let node = self.add_node(Node::Object(scope));
+        if let Some(index) = plan.index.filter(|_| name == plan.name) {
+            // a modifier may ask for sizes of the component that it modifies: its elements are built when asked for
+            self.scope_mut(plan.scope).elements[index as usize] = ElementState::Node(node);
+        }
+        self.build_elements(scope, plan.depth + 1);
+        Some(node)
+    }
+
+    fn can_be_component(&mut self, plan: &Plan<'a>, template: &Template<'a>) -> bool {
+        let ast = template.bases[0].ast;
+        let class = || self.library.full_name(template.class);
+        let d = match template.kind {
+            ClassKind::Package => Diagnostic::new(Code::WrongClassKind, format!("`{}` is a package", class())),
+            ClassKind::Function { .. } => Diagnostic::new(Code::WrongClassKind, format!("`{}` is a function", class())),
+            _ if ast.prefixes.partial => {
+                Diagnostic::new(Code::Partial, format!("`{}` is partial and cannot be a component", class()))
+                    .help("use a class that extends it, or redeclare the component")
+            }
+            _ => return true,
+        };
+        self.report(d.at(plan.span, format!("`{}` is declared here", plan.name)).instance(plan.name.clone()));
+        false
+    }
+
+    fn build_variable(
+        &mut self,
+        plan: &Plan<'a>,
+        name: &str,
+        builtin: Builtin,
+        args: &[Arg<'a>],
+        // Modifications of the type chain, and `input` or `output` where the type is a connector declared so.
+        (chain, declared): (&[Arg<'a>], Option<ast::Causality>),
+        part: Part<'a>,
+    ) -> NodeId {
+        let causality = plan.prefix.causality.or(declared);
+        let ty = match builtin {
+            Builtin::Real | Builtin::String | Builtin::Object => Type::Real,
+            Builtin::Integer => Type::Integer,
+            Builtin::Boolean => Type::Boolean,
+            Builtin::Enumeration(i) => Type::Enumeration(i),
+        };
+        let variability = match plan.prefix.variability {
+            Some(ast::Variability::Constant) => Variability::Constant,
+            Some(ast::Variability::Parameter) => Variability::Parameter,
+            Some(ast::Variability::Discrete) => Variability::Discrete,
+            None if ty != Type::Real => Variability::Discrete,
+            None => Variability::Continuous,
+        };
+        let mut attributes = self.attributes(args.iter().chain(chain), builtin);
+        let mut binding = part.binding;
+        if !self.given_elements.is_empty() {
+            if variability <= Variability::Parameter && !plan.prefix.hidden {
+                let given = self.given_element(name);
+                if given.is_some() && part.final_ {
+                    let d = Diagnostic::new(Code::BadSet, format!("`{name}` is final and cannot be set"));
+                    self.report(d.at(plan.span, "declared here").help("set what it is made of"));
+                }
+                binding = given.or(binding);
+            }
+            if let Some(start) = self.given_element(&format!("{name}.start")) {
+                attributes.retain(|a| a.0 != "start");
+                attributes.push((Symbol::new("start"), start));
+            }
+        }
+        let data = VarData {
+            name: name.to_string(),
+            ty,
+            string: builtin == Builtin::String,
+            object: builtin == Builtin::Object,
+            variability,
+            causality,
+            top: !plan.prefix.nested && causality.is_some() && !plan.prefix.hidden,
+            flow: plan.prefix.flow,
+            stream: plan.prefix.stream,
+            hidden: plan.prefix.hidden,
+            unwanted: plan.prefix.unwanted,
+            mixes: plan.prefix.mixes,
+            final_: part.final_,
+            structural: false,
+            evaluate: annotated(plan.declared, "Evaluate") == Some(true),
+            binding,
+            attributes,
+            state_select: StateSelect::Default,
+            description: plan.declared.description.as_deref(),
+            span: plan.span,
+            scope: plan.scope,
+            constant: None,
+            busy: false,
+            id: VarId(u32::MAX),
+        };
+        self.variables.push(data);
+        let index = u32::try_from(self.variables.len() - 1).expect("limited above");
+        let state_select = self.state_select(index);
+        self.variables[index as usize].state_select = state_select;
+        self.add_node(Node::Var(index))
+    }
+
+    fn attributes<'x>(
+        &mut self,
+        args: impl Iterator<Item = &'x Arg<'a>>,
+        builtin: Builtin,
+    ) -> Vec<(Symbol, Binding<'a>)>
+    where
+        'a: 'x,
+    {
+        let mut attributes: Vec<(Symbol, Binding<'a>)> = Vec::new();
+        for arg in args {
+            let ArgKind::Modify(path, modification) = arg.kind else { continue };
+            let attribute = path[0].name;
+            if !attributes_of(builtin).contains(&attribute.as_str()) || path.len() > 1 {
+                self.unknown_attribute(attribute, path[0].span, builtin);
+                continue;
+            }
+            let Some(expr) = modification.and_then(|m| m.value.as_ref()) else { continue };
+            if let Some((_, given)) = attributes.iter().find(|(a, _)| *a == attribute) {
+                let outer = given.expr.span;
+                self.check_final(arg.final_, Some(outer), arg.span, attribute);
+                continue;
+            }
+            let binding = Binding { expr, view: arg.view, access: arg.access.clone(), final_: arg.final_ };
+            attributes.push((attribute, binding));
+        }
+        attributes
+    }
+
+    fn state_select(&mut self, i: u32) -> StateSelect {
+        let attributes = &self.variables[i as usize].attributes;
+        let Some((name, b)) = attributes.iter().find(|(n, _)| *n == "stateSelect").cloned() else {
+            return StateSelect::Default;
+        };
+        match self.known_attribute(i, name, &b, Type::Enumeration(STATE_SELECT)) {
+            Some(1.0) => StateSelect::Never,
+            Some(2.0) => StateSelect::Avoid,
+            Some(4.0) => StateSelect::Prefer,
+            Some(5.0) => StateSelect::Always,
+            _ => StateSelect::Default,
+        }
+    }
+}
+
+/// What is the same for all elements of a component array.
+#[derive(Clone)]
+pub(in crate::instance) struct Plan<'a> {
+    pub name: String,
+    pub scope: ScopeId,
+    /// Which element of the scope; none for what was added.
+    pub index: Option<u32>,
+    pub declared: &'a ast::Component,
+    pub prefix: Inherited,
+    pub span: Span,
+    pub depth: usize,
+}
+
+/// Value of a component.
+#[derive(Clone)]
+struct Part<'a> {
+    binding: Option<Binding<'a>>,
+    final_: bool,
+}
+
+/// The attributes of a predefined type (MLS 4.9).
+pub(in crate::instance) fn attributes_of(builtin: Builtin) -> &'static [&'static str] {
+    match builtin {
+        Builtin::Real => {
+            &["start", "fixed", "min", "max", "nominal", "unit", "displayUnit", "quantity", "stateSelect", "unbounded"]
+        }
+        Builtin::Integer | Builtin::Enumeration(_) => &["start", "fixed", "min", "max", "quantity"],
+        Builtin::Boolean | Builtin::String => &["start", "fixed", "quantity"],
+        Builtin::Object => &[],
+    }
+}
+
+fn joined(owner: &str, name: Symbol) -> String {
+    if owner.is_empty() { name.as_str().to_string() } else { format!("{owner}.{name}") }
+}
+
+/// Row-major index of an element.
+fn unravel(mut flat: usize, dims: &[usize]) -> Vec<At> {
+    let small = |n: usize| u32::try_from(n).expect("limited above");
+    let mut index = vec![At { place: 0, of: 0 }; dims.len()];
+    for (i, &d) in dims.iter().enumerate().rev() {
+        index[i] = At { place: small(flat % d), of: small(d) };
+        flat /= d;
+    }
+    index
+}
+
+/// The start value that modifiers give an array.
+fn start_of<'a>(args: &[Arg<'a>]) -> Option<Binding<'a>> {
+    args.iter().find_map(|arg| match arg.kind {
+        ArgKind::Modify([name], Some(m)) if name.name == "start" && !arg.each => {
+            let expr = m.value.as_ref()?;
+            Some(Binding { expr, view: arg.view, access: arg.access.clone(), final_: arg.final_ })
+        }
+        _ => None,
+    })
+}
+
+/// What an annotation of a component that is true or false says (MLS 18.3).
+fn annotated(c: &ast::Component, name: &str) -> Option<bool> {
+    says(c.annotation.as_ref()?, name)
+}
+
+/// What an annotation says of something that is true or false.
+pub(in crate::instance) fn says(annotation: &ast::Modification, name: &str) -> Option<bool> {
+    annotation.arguments.iter().find_map(|a| match &a.kind {
+        ast::ArgumentKind::Modify { path, modification: Some(m), .. } if path.parts[0].name == name => {
+            match m.value.as_ref().map(|v| &v.kind) {
+                Some(ExprKind::Boolean(said)) => Some(*said),
+                _ => None,
+            }
+        }
+        _ => None,
+    })
+}
+
+/// `k` of `size(A, k)` in the dimensions of `A`.
+fn own_size(subscript: &Subscript, own: Symbol) -> Option<usize> {
+    let Subscript::Expr(Expr { kind: ExprKind::Call { function, args, .. }, .. }) = subscript else { return None };
+    let named =
+        |e: &Expr| matches!(&e.kind, ExprKind::Reference(r) if r.parts.len() == 1 && r.parts[0].name.name == own);
+    match (function.parts.as_slice(), args.as_slice()) {
+        ([size], [array, Expr { kind: ExprKind::Integer(k), .. }]) if size.name.name == "size" && named(array) => {
+            usize::try_from(*k).ok()
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,235 @@
+//! Expandable connectors (MLS 9.1.3): what is connected to a name that a bus does not have becomes a member of it, and buses
+//! that are joined have the same members.
+
+use crate::instance::components::Plan;
+use crate::instance::deduce::Body;
+use crate::instance::lookup::{Builtin, Found};
+use crate::instance::modifiers::Reached;
+use crate::instance::template::{Element, Kind};
+use crate::instance::{ClassRef, ElementState, Inherited, Instance, Node, NodeId, ScopeId, View};
+use bramah_expr::types::Type;
+use bramah_syntax::ast::{self, ClassBody, Equation, EquationKind, Expr, ExprKind};
+use bramah_syntax::symbol::Symbol;
+use std::rc::Rc;
+
+/// Times that members travel from bus to bus; more than any chain of buses is long.
+const ROUNDS: usize = 100;
+
+/// One side of a connection.
+enum Side {
+    /// A member that a bus lacks.
+    Missing(ScopeId, Symbol),
+    /// A bus.
+    Bus(ScopeId),
+    /// Another port.
+    Port(NodeId),
+}
+
+impl<'a> Instance<'a, '_> {
+    /// Gives all buses the members that connections ask for.
+    pub(in crate::instance) fn expand_connectors(&mut self) {
+        if !self.scopes.iter().any(|s| s.component && s.template.is_expandable()) {
+            return;
+        }
+        for _ in 0..ROUNDS {
+            let before = self.nodes.len();
+            let scopes = (0u32..).zip(&self.scopes).filter(|(_, s)| s.component).map(|(i, _)| ScopeId(i));
+            for scope in scopes.collect::<Vec<_>>() {
+                let template = self.scope(scope).template.clone();
+                for (base, i) in template.bases.iter().zip(0u32..) {
+                    if let ClassBody::Long(body) = &base.ast.body {
+                        self.expand_by(&body.equations, View { scope, base: i });
+                    }
+                }
+            }
+            if self.nodes.len() == before {
+                return;
+            }
+        }
+    }
+
+    fn expand_by(&mut self, equations: &'a [Equation], view: View) {
+        for e in equations {
+            match &e.kind {
+                EquationKind::Connect(a, b) => {
+                    if let (Some(a), Some(b)) = (self.side(a, view), self.side(b, view)) {
+                        self.expand_pair(&a, &b);
+                    }
+                }
+                EquationKind::For { iterators, body } => {
+                    self.for_each(iterators, Body::Equations(body), view, &mut |s| s.expand_by(body, view));
+                }
+                EquationKind::If { branches, otherwise } => {
+                    let mark = self.diagnostics.len();
+                    let mut chosen = Some(otherwise.as_slice());
+                    for (condition, body) in branches {
+                        match self.constant_boolean(condition, view) {
+                            Some(true) => chosen = Some(body),
+                            Some(false) => continue,
+                            None => chosen = None,
+                        }
+                        break;
+                    }
+                    // what cannot be told before the run has no connections, or its message comes with the network
+                    self.diagnostics.truncate(mark);
+                    if let Some(body) = chosen {
+                        self.expand_by(body, view);
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// What a side of a connection names; `None` where the network has to say what is wrong, or nothing is there.
+    fn side(&mut self, e: &'a Expr, view: View) -> Option<Side> {
+        let ExprKind::Reference(r) = &e.kind else { return None };
+        let Found::Component(scope, index) = self.lookup(view, r.parts[0].name.name)? else { return None };
+        let mut node = self.component(scope, index)?;
+        let last = r.parts.len() - 1;
+        for (i, part) in r.parts.iter().enumerate() {
+            if i > 0 {
+                let Node::Object(s) = *self.node(node) else { return None };
+                let template = self.scope(s).template.clone();
+                match template.by_name.get(&part.name.name) {
+                    Some(&k) => node = self.component(s, k)?,
+                    None if template.is_expandable() && i == last && part.subscripts.is_empty() => {
+                        return Some(Side::Missing(s, part.name.name));
+                    }
+                    None => return None,
+                }
+            }
+            if !part.subscripts.is_empty() {
+                let at = self.selection(node);
+                let picked = self.subscript_selection(&at, part, view, r.span)?.ok()?;
+                let [one] = picked.nodes[..] else { return None };
+                node = one;
+            }
+        }
+        match self.node(node) {
+            Node::Object(s) if self.scope(*s).template.is_expandable() => Some(Side::Bus(*s)),
+            _ => Some(Side::Port(node)),
+        }
+    }
+
+    fn expand_pair(&mut self, a: &Side, b: &Side) {
+        match (a, b) {
+            (Side::Missing(bus, name), Side::Port(port)) | (Side::Port(port), Side::Missing(bus, name)) => {
+                self.add_member(*bus, *name, *port);
+            }
+            (Side::Missing(bus, name), Side::Bus(other)) | (Side::Bus(other), Side::Missing(bus, name)) => {
+                let node = self.node_of(*other);
+                if let Some(node) = node {
+                    self.add_member(*bus, *name, node);
+                }
+            }
+            (Side::Bus(x), Side::Bus(y)) => {
+                for (from, to) in [(*x, *y), (*y, *x)] {
+                    let template = self.scope(from).template.clone();
+                    for (i, element) in (0u32..).zip(&template.elements) {
+                        let known = self.scope(to).template.by_name.contains_key(&element.name);
+                        if !known && let Some(node) = self.component(from, i) {
+                            self.add_member(to, element.name, node);
+                        }
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn node_of(&self, scope: ScopeId) -> Option<NodeId> {
+        let at = self.nodes.iter().position(|n| matches!(n, Node::Object(s) if *s == scope))?;
+        Some(NodeId(u32::try_from(at).expect("fewer than 2^32 components")))
+    }
+
+    /// A new member of a bus, like the port that is connected to it, but with no direction of its own.
+    fn add_member(&mut self, bus: ScopeId, name: Symbol, like: NodeId) {
+        let Some((declared, found, dims)) = self.declaration_of(like) else { return };
+        let around = self.scope(bus);
+        let full = if around.name.is_empty() { name.as_str().to_owned() } else { format!("{}.{name}", around.name) };
+        let (span, hidden) = (around.span, around.prefix.hidden);
+        let plan = Plan {
+            name: full,
+            scope: bus,
+            index: None,
+            declared,
+            prefix: Inherited { hidden, nested: true, ..Inherited::default() },
+            span,
+            depth: 0,
+        };
+        let Some(node) = self.build_like(&plan, &found, &dims) else { return };
+        self.take_attributes(node, like);
+        let mut template = (*self.scope(bus).template).clone();
+        let index = u32::try_from(template.elements.len()).expect("fewer than 2^32 elements");
+        template.by_name.insert(name, index);
+        template.bases[0].names.insert(name);
+        template.elements.push(Element {
+            name,
+            kind: Kind::Component(declared),
+            base: 0,
+            modified: Vec::new(),
+            protected: false,
+            span,
+        });
+        let s = self.scope_mut(bus);
+        s.template = Rc::new(template);
+        s.elements.push(ElementState::Node(node));
+    }
+
+    /// The declaration, class and sizes of a port.
+    fn declaration_of(&mut self, node: NodeId) -> Option<(&'a ast::Component, Found<'a>, Vec<usize>)> {
+        let (dims, one) = match self.node(node) {
+            Node::Array { dims, elements, .. } => (dims.clone(), *elements.first()?),
+            _ => (Vec::new(), node),
+        };
+        let (owner, name, found) = match self.node(one) {
+            Node::Var(i) => {
+                let data = &self.variables[*i as usize];
+                let builtin = match data.ty {
+                    Type::Real => Builtin::Real,
+                    Type::Integer => Builtin::Integer,
+                    Type::Boolean => Builtin::Boolean,
+                    Type::Enumeration(e) => Builtin::Enumeration(e),
+                };
+                (data.scope, data.name.clone(), Found::Builtin(builtin))
+            }
+            Node::Object(s) => {
+                let s = self.scope(*s);
+                let base = &s.template.bases[0];
+                let class = ClassRef { class: base.class, parent: base.parent, args: s.args.clone() };
+                (s.owner?, s.name.clone(), Found::Class(class))
+            }
+            Node::Array { .. } => return None,
+        };
+        let last = name.rsplit('.').next().unwrap_or(&name);
+        let last = Symbol::new(last.split('[').next().unwrap_or(last));
+        let template = &self.scope(owner).template;
+        let Kind::Component(declared) = template.elements[*template.by_name.get(&last)? as usize].kind else {
+            return None;
+        };
+        Some((declared, found, dims))
+    }
+
+    fn build_like(&mut self, plan: &Plan<'a>, found: &Found<'a>, dims: &[usize]) -> Option<NodeId> {
+        let extents: Vec<crate::instance::evaluation::ranges::Extent> =
+            dims.iter().map(|&size| crate::instance::evaluation::ranges::Extent { size, by: Type::Integer }).collect();
+        self.build_shaped(plan, found, &extents, Reached::default())
+    }
+
+    /// Units and bounds of the port hold for the member, too.
+    fn take_attributes(&mut self, to: NodeId, from: NodeId) {
+        match (self.node(to).clone(), self.node(from).clone()) {
+            (Node::Var(a), Node::Var(b)) => {
+                self.variables[a as usize].attributes = self.variables[b as usize].attributes.clone();
+                self.variables[a as usize].causality = None;
+            }
+            (Node::Array { elements: a, .. }, Node::Array { elements: b, .. }) => {
+                for (a, b) in a.iter().zip(b.iter()) {
+                    self.take_attributes(*a, *b);
+                }
+            }
+            _ => {}
+        }
+    }
+}

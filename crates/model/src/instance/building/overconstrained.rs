@@ -1,0 +1,187 @@
+//! Overconstrained connectors (MLS 9.4): types whose values depend on each other, such as an orientation, and that say by a
+//! function `equalityConstraint` when two of them are equal. `network` finds out which connections need it.
+
+use crate::instance::algorithm::AlgorithmCall;
+use crate::instance::call::Callee;
+use crate::instance::lookup::Found;
+use crate::instance::template::{Kind, Template};
+use crate::instance::value::Val;
+use crate::instance::{ClassRef, ElementState, Instance, Node, NodeId, View};
+use bramah_expr::types::Type;
+use bramah_expr::{ExprId, Exprs};
+use bramah_syntax::ast::{self, Expr, ExprKind};
+use bramah_syntax::diag::{Code, Span};
+use bramah_syntax::symbol::Symbol;
+use indexmap::IndexMap;
+use rustc_hash::{FxBuildHasher, FxHashSet};
+
+/// The function by which a type says when two of its values are equal.
+const CONSTRAINT: &str = "equalityConstraint";
+
+/// The overconstrained components of a model, and what the network says of them.
+pub struct Overconstrained<'a> {
+    /// `equalityConstraint`
+    name: Symbol,
+    /// All of them, with the classes of those that are variables and arrays; records know theirs themselves.
+    nodes: IndexMap<NodeId, Option<ClassRef<'a>>, FxBuildHasher>,
+    /// Roots of the connection graph, once the network is known.
+    pub roots: FxHashSet<NodeId>,
+    /// First sides of branches that are nearer to the root than their second sides.
+    pub rooted: FxHashSet<NodeId>,
+}
+
+/// When two overconstrained components are equal.
+pub struct Residue {
+    /// All are zero.
+    pub values: Vec<ExprId>,
+    /// What must hold besides.
+    pub asserts: Vec<AlgorithmCall>,
+}
+
+impl Default for Overconstrained<'_> {
+    fn default() -> Self {
+        Overconstrained {
+            name: Symbol::new(CONSTRAINT),
+            nodes: IndexMap::default(),
+            roots: FxHashSet::default(),
+            rooted: FxHashSet::default(),
+        }
+    }
+}
+
+impl<'a> Instance<'a, '_> {
+    /// Remembers a component of a type with a constraint, or all of an array of such records.
+    pub(in crate::instance) fn note_constraints(
+        &mut self,
+        node: NodeId,
+        one: bool,
+        found: &Found<'a>,
+        template: &Template<'a>,
+    ) {
+        let at = template.by_name.get(&self.overconstrained.name);
+        if !at.is_some_and(|&i| matches!(template.elements[i as usize].kind, Kind::Class(_))) {
+            return;
+        }
+        let class = match found {
+            Found::Class(class) => template.builtin.map(|_| class.clone()),
+            _ => None,
+        };
+        let nodes = match self.node(node) {
+            Node::Array { elements, .. } if !one => elements.to_vec(),
+            _ => vec![node],
+        };
+        for node in nodes {
+            self.overconstrained.nodes.insert(node, class.clone());
+        }
+    }
+
+    /// Whether a component is overconstrained.
+    pub fn is_overconstrained(&self, node: NodeId) -> bool {
+        self.overconstrained.nodes.contains_key(&node)
+    }
+
+    /// The constraint function of a component.
+    fn constraint_of(&mut self, node: NodeId) -> Option<ClassRef<'a>> {
+        let name = self.overconstrained.name;
+        let found = match *self.node(node) {
+            Node::Object(scope) => self.lookup(View { scope, base: 0 }, name),
+            _ => {
+                let class = self.overconstrained.nodes.get(&node)?.clone()?;
+                self.member(&Found::Class(class), name)
+            }
+        };
+        match found {
+            Some(Found::Class(function)) => Some(function),
+            _ => None,
+        }
+    }
+
+    /// What holds where two overconstrained components are equal; `None` after a message.
+    pub fn constraint_residue(&mut self, a: NodeId, b: NodeId, span: Span) -> Option<Residue> {
+        let function = self.constraint_of(a)?;
+        let values = vec![self.node_value(a, span)?, self.node_value(b, span)?];
+        let template = self.template(function.class, function.parent);
+        let name = self.library.full_name(function.class);
+        let callee = Callee { scope: self.package(&function), template, name };
+        let mark = self.eval.calls.len();
+        let value = self.in_mode(|m| m.keep_asserts = true, |s| s.call_function(&callee, values, Vec::new(), span));
+        let asserts = self.eval.calls.split_off(mark);
+        let mut values = Vec::new();
+        value?.scalars(&mut values);
+        Some(Residue { values, asserts })
+    }
+
+    /// The number of equations that equality of two such components means: the size of the function's output.
+    fn constraint_size(&mut self, node: NodeId) -> Option<usize> {
+        let function = self.constraint_of(node)?;
+        let template = self.template(function.class, function.parent);
+        let scope = self.package(&function);
+        let output = template.elements.iter().find_map(|e| match e.kind {
+            Kind::Component(c) if c.prefix.causality == Some(ast::Causality::Output) => Some((c, e.base)),
+            _ => None,
+        });
+        let (output, base) = output?;
+        let mut size = 1;
+        for s in &output.subscripts {
+            let ast::Subscript::Expr(e) = s else { return None };
+            size *= self.dimension(e, View { scope, base })?;
+        }
+        Some(size)
+    }
+
+    /// The variables of all overconstrained components, each with the size of their constraint.
+    pub fn constraint_sizes(&mut self) -> Vec<(Vec<u32>, usize)> {
+        let mut found = Vec::new();
+        for k in 0..self.overconstrained.nodes.len() {
+            let (&node, _) = self.overconstrained.nodes.get_index(k).expect("counted");
+            let mut variables = Vec::new();
+            self.variables_of(node, &mut variables);
+            let size = self.constraint_size(node).unwrap_or(variables.len());
+            found.push((variables, size));
+        }
+        found
+    }
+
+    fn variables_of(&self, node: NodeId, found: &mut Vec<u32>) {
+        match self.node(node) {
+            Node::Var(i) => found.push(*i),
+            Node::Array { elements, .. } => elements.iter().for_each(|&e| self.variables_of(e, found)),
+            Node::Object(s) => {
+                for e in &self.scope(*s).elements {
+                    if let ElementState::Node(n) = e {
+                        self.variables_of(*n, found);
+                    }
+                }
+            }
+        }
+    }
+
+    /// `Connections.isRoot(R)` and `Connections.rooted(R)`.
+    pub(in crate::instance) fn connection_query(
+        &mut self,
+        name: &str,
+        args: &'a [Expr],
+        view: View,
+        span: Span,
+    ) -> Option<Val> {
+        let [arg] = args else {
+            return self.fail(Code::BadCall, &format!("`{name}` takes one overconstrained component"), span);
+        };
+        let node = self.overconstrained_node(arg, view)?;
+        let found = &self.overconstrained;
+        let holds = if name == "isRoot" { found.roots.contains(&node) } else { found.rooted.contains(&node) };
+        Some(Val::Scalar(if holds { Exprs::ONE } else { Exprs::ZERO }, Type::Boolean))
+    }
+
+    /// The overconstrained component that an argument names, or a message.
+    pub fn overconstrained_node(&mut self, e: &'a Expr, view: View) -> Option<NodeId> {
+        let node = match &e.kind {
+            ExprKind::Reference(r) => self.named_node(r, view).filter(|&n| self.is_overconstrained(n)),
+            _ => None,
+        };
+        if node.is_some() {
+            return node;
+        }
+        self.fail(Code::BadConnect, "this is no component of a type with an `equalityConstraint`", e.span)
+    }
+}

@@ -1,0 +1,225 @@
+//! Arguments bound to the inputs of a function or the fields of a record, with defaults and checks.
+
+use crate::instance::call::{Callee, Formal};
+use crate::instance::lookup::{Builtin, Found};
+use crate::instance::template::Kind;
+use crate::instance::value::Val;
+use crate::instance::{ClassRef, Instance, View};
+use bramah_expr::types::Type;
+use bramah_syntax::ast::{self, Causality, ClassKind, Ident};
+use bramah_syntax::diag::{Code, Diagnostic, Span};
+use bramah_syntax::symbol::Symbol;
+
+impl<'a> Instance<'a, '_> {
+    /// Components of a function or record that pass a test.
+    pub(in crate::instance) fn formals(
+        &self,
+        callee: &Callee<'a>,
+        wanted: impl Fn(&ast::Component, bool) -> bool,
+    ) -> Vec<Formal<'a>> {
+        let with_index = (0u32..).zip(&callee.template.elements);
+        let found = with_index.filter_map(|(index, e)| match e.kind {
+            Kind::Component(component) if wanted(component, e.protected) => {
+                Some(Formal { name: e.name, component, index, view: View { scope: callee.scope, base: e.base } })
+            }
+            _ => None,
+        });
+        found.collect()
+    }
+
+    /// Does something in a frame of its own, with the arguments of a call bound to the inputs of its function.
+    pub(in crate::instance) fn with_inputs<T>(
+        &mut self,
+        callee: &Callee<'a>,
+        positional: Vec<Val>,
+        named: Vec<(Ident, Val)>,
+        span: Span,
+        f: impl FnOnce(&mut Self) -> Option<T>,
+    ) -> Option<T> {
+        let inputs = self.formals(callee, is_input);
+        self.in_frame(|s| s.bind(callee, &inputs, positional, named, span).and_then(|()| f(s)))
+    }
+
+    /// Binds arguments to inputs in a fresh frame; defaults may use inputs before them.
+    pub(in crate::instance) fn bind(
+        &mut self,
+        callee: &Callee<'a>,
+        formals: &[Formal<'a>],
+        positional: Vec<Val>,
+        named: Vec<(Ident, Val)>,
+        span: Span,
+    ) -> Option<()> {
+        if positional.len() > formals.len() {
+            let message =
+                format!("`{}` takes {} arguments, and {} are given", callee.name, formals.len(), positional.len());
+            return self.fail(Code::BadCall, &message, span);
+        }
+        if let Some((name, _)) = named.iter().find(|(n, _)| formals.iter().all(|f| f.name != n.name)) {
+            let names: Vec<Symbol> = formals.iter().map(|f| f.name).collect();
+            let mut d = Diagnostic::new(Code::BadCall, format!("`{}` has no input `{}`", callee.name, name.name))
+                .at(name.span, "not an input");
+            d = match crate::instance::errors::nearest(name.name.as_str(), names.iter().map(|n| n.as_str())) {
+                Some(near) => d.meant(near),
+                None => d.help(crate::instance::errors::list_names("it takes", &names)),
+            };
+            self.report(d);
+            return None;
+        }
+        let mut positional = positional.into_iter();
+        for f in formals {
+            let given =
+                positional.next().or_else(|| named.iter().find(|(n, _)| n.name == f.name).map(|(_, v)| v.clone()));
+            let given_here = given.is_some();
+            let value = match given {
+                Some(v @ Val::Function(..)) if self.is_functional(f) => v,
+                Some(v) => self.fit_argument(callee, f, v, span)?,
+                None => match self.default_value(f)? {
+                    Some(v) => v,
+                    None => {
+                        let message = format!("`{}` needs a value for its input `{}`", callee.name, f.name);
+                        let d = Diagnostic::new(Code::BadCall, message)
+                            .at(span, "this call")
+                            .at(f.component.name.span, "declared here without a default");
+                        self.report(d);
+                        return None;
+                    }
+                },
+            };
+            let place = match given_here {
+                true => span,
+                false => self.reached(f.view.scope, f.index).binding.map_or(span, |b| b.expr.span),
+            };
+            self.check_bounds(callee, f, &value, place);
+            self.eval.locals.push((f.name, value));
+        }
+        Some(())
+    }
+
+    /// A number given to an input must lie within the bounds of its declaration; reported once however often it is called.
+    pub(in crate::instance) fn check_bounds(&mut self, callee: &Callee<'a>, f: &Formal<'a>, value: &Val, span: Span) {
+        let Some(x) = value.as_number(&self.exprs) else { return };
+        let bound = match (declared_number(f.component, "min"), declared_number(f.component, "max")) {
+            (Some(low), _) if x < low => format!("less than its `min`, {low}"),
+            (_, Some(high)) if x > high => format!("more than its `max`, {high}"),
+            _ => return,
+        };
+        let message = format!("the input `{}` of `{}` is {x}, {bound}", f.name, callee.name);
+        if self.diagnostics.iter().all(|d| d.message != message) {
+            self.report(
+                Diagnostic::new(Code::OutOfRange, message)
+                    .at(span, "this value")
+                    .at(f.component.name.span, "declared here")
+                    .help("give a value within the bounds, in the unit of the input"),
+            );
+        }
+    }
+
+    /// Checks an argument against the declared type and number of dimensions.
+    pub(in crate::instance) fn fit_argument(
+        &mut self,
+        callee: &Callee<'a>,
+        f: &Formal<'a>,
+        value: Val,
+        span: Span,
+    ) -> Option<Val> {
+        let wanted = match self.class_at(f.view, &f.component.class)? {
+            Found::Builtin(b) => Some(b),
+            Found::Class(c) => {
+                let t = self.template(c.class, c.parent);
+                if matches!(t.kind, ClassKind::Function { .. }) {
+                    let message = format!(
+                        "input `{}` of `{}` is a function, and this is {}",
+                        f.name,
+                        callee.name,
+                        value.describe()
+                    );
+                    return self.fail(Code::BadCall, &message, span);
+                }
+                if t.dims.is_empty() { t.builtin } else { None }
+            }
+            Found::Component(..) => None,
+        };
+        let Some(b) = wanted else { return Some(value) };
+        let declared = f.component.subscripts.len();
+        if value.dims().len() != declared {
+            let message = format!(
+                "input `{}` of `{}` is {}, and this is {}",
+                f.name,
+                callee.name,
+                if declared == 0 { "a single value".into() } else { format!("an array of {declared} dimensions") },
+                value.describe()
+            );
+            return self.fail(Code::BadCall, &message, span);
+        }
+        let fits = match (b, value.element_type()) {
+            (Builtin::Real, Some(Type::Real | Type::Integer)) => true,
+            (Builtin::Integer, Some(Type::Integer)) | (Builtin::Boolean, Some(Type::Boolean)) => true,
+            (Builtin::Enumeration(a), Some(Type::Enumeration(b))) => a == b,
+            (Builtin::Object, _) => matches!(value, Val::Object(_)),
+            (Builtin::String, _) => matches!(value.elements().first(), Some(Val::Text(_)) | None),
+            (_, None) => value.elements().is_empty(),
+            _ => false,
+        };
+        if !fits {
+            let message = format!(
+                "input `{}` of `{}` is of type {}, and this is {}",
+                f.name,
+                callee.name,
+                crate::instance::errors::builtin_name(b),
+                value.describe()
+            );
+            return self.fail(Code::BadCall, &message, span);
+        }
+        Some(if b == Builtin::Real { value.with_type(Type::Real) } else { value })
+    }
+
+    /// The declared default: `None` on failure, `Some(None)` when there is none.
+    pub(in crate::instance) fn default_value(&mut self, f: &Formal<'a>) -> Option<Option<Val>> {
+        let reached = self.reached(f.view.scope, f.index);
+        match reached.binding {
+            Some(b) => {
+                // In the frame of the call, so that earlier inputs are seen.
+                let value = if b.access.is_empty() { self.eval(b.expr, b.view) } else { self.binding_value(&b, true) };
+                value.map(Some)
+            }
+            None => match self.class_at(f.view, &f.component.class)? {
+                // A record without a value takes its fields' defaults.
+                Found::Class(c) if f.component.subscripts.is_empty() => self.default_record(&c),
+                _ => Some(None),
+            },
+        }
+    }
+
+    pub(in crate::instance) fn default_record(&mut self, class: &ClassRef<'a>) -> Option<Option<Val>> {
+        let template = self.template(class.class, class.parent);
+        if !matches!(template.kind, ClassKind::Record { .. }) {
+            return Some(None);
+        }
+        let scope = self.package(class);
+        let name = self.library.full_name(class.class);
+        let callee = Callee { scope, template, name };
+        let span = self.library.class(class.class).name.span;
+        let mark = self.diagnostics.len();
+        let value = self.construct(&callee, Vec::new(), Vec::new(), span);
+        if value.is_none() {
+            self.diagnostics.truncate(mark);
+        }
+        Some(value)
+    }
+}
+
+/// An attribute that is written as a number.
+pub(in crate::instance) fn declared_number(component: &ast::Component, attribute: &str) -> Option<f64> {
+    let arguments = &component.modification.as_ref()?.arguments;
+    let value = arguments.iter().find_map(|argument| match &argument.kind {
+        ast::ArgumentKind::Modify { path, modification, .. } if path.parts[0].name.as_str() == attribute => {
+            modification.as_ref()?.value.as_ref()
+        }
+        _ => None,
+    });
+    value?.as_number()
+}
+
+pub(in crate::instance) fn is_input(c: &ast::Component, protected: bool) -> bool {
+    !protected && c.prefix.causality == Some(Causality::Input)
+}

@@ -1,0 +1,227 @@
+//! Calls of a user's own C functions, where he has allowed them: their signatures by the declarations in Modelica
+//! (MLS 12.9.1), and what their annotations name (MLS 12.9.4).
+
+use crate::instance::Instance;
+use crate::instance::call::Callee;
+use crate::instance::calls::external::{Argument, CCall, external_text};
+use crate::instance::value::Val;
+use bramah_expr::function::External;
+use bramah_expr::types::Type;
+use bramah_external::c::{self, Kind, Signature};
+use bramah_syntax::ast::{Causality, Ident};
+use bramah_syntax::diag::{Code, Diagnostic, Span};
+use std::ffi::OsString;
+use std::sync::Arc;
+
+/// Where libraries for this machine lie below those for all (MLS 12.9.4).
+const MACHINE: &str = "linux64";
+
+impl<'a> Instance<'a, '_> {
+    pub(in crate::instance) fn call_c(
+        &mut self,
+        callee: &Callee<'a>,
+        positional: Vec<Val>,
+        named: Vec<(Ident, Val)>,
+        span: Span,
+    ) -> Option<Val> {
+        if !self.library.calls_c() {
+            self.report(
+                Diagnostic::new(Code::Unsupported, format!("the external function `{}` is not supported", callee.name))
+                    .at(span, "C code is not called unasked")
+                    .help("allow it: --external FILE for a C source or a shared library, --external annotations for what the function's annotations name"),
+            );
+            return None;
+        }
+        self.with_inputs(callee, positional, named, span, |s| s.carry_out_c(callee, span))
+    }
+
+    fn carry_out_c(&mut self, callee: &Callee<'a>, span: Span) -> Option<Val> {
+        let is_c = !external_text(callee)?.trim_start().starts_with("\"FORTRAN");
+        let Some(call) = self.c_call(callee).filter(|_| is_c) else {
+            self.unsupported(span, &format!("the language or the call of the external function `{}`", callee.name));
+            return None;
+        };
+        self.prepare_locals(callee)?;
+        let signature = self.signature(&call, callee, span)?;
+        let wrapper = signature.wrapper();
+        let function = match self.compiled_c.get(&wrapper) {
+            Some(known) => known.clone(),
+            None => self.compiled(&signature, &wrapper, callee, span)?,
+        };
+        let mut scalars = Vec::new();
+        for argument in &call.arguments {
+            if let (Argument::Name(name), Some(value)) = (argument, self.input_of_c(argument))
+                && !self.is_output(callee, *name)
+                && !matches!(value, Val::Text(_))
+            {
+                value.scalars(&mut scalars);
+            }
+        }
+        self.external_function(function, &wrapper, &call, callee, &scalars)
+    }
+
+    /// Compiles a wrapper, and says what was run for it.
+    fn compiled(
+        &mut self,
+        signature: &Signature,
+        wrapper: &str,
+        callee: &Callee<'a>,
+        span: Span,
+    ) -> Option<Arc<dyn External>> {
+        let arguments = self.compiler_arguments(callee);
+        let compiled = self.library.compile_c(wrapper, c::UTILITIES, arguments);
+        let ran = compiled.as_ref().map(|c| c.command.clone()).unwrap_or_default();
+        match compiled.and_then(|compiled| c::bind(compiled, signature)) {
+            Ok(function) => {
+                let said = format!("`{}` is C code, which runs unguarded", callee.name);
+                self.report(Diagnostic::new(Code::RunsC, said).at(span, "this call").note(format!("ran: {ran}")));
+                self.compiled_c.insert(wrapper.to_owned(), function.clone());
+                Some(function)
+            }
+            Err(why) => {
+                let said = format!("the external function `{}` cannot be called: {why}", callee.name);
+                self.report(
+                    Diagnostic::new(Code::BadCall, said)
+                        .at(span, "this call")
+                        .help("give every C source and library that it takes with --external"),
+                );
+                None
+            }
+        }
+    }
+
+    fn is_output(&mut self, callee: &Callee<'a>, name: bramah_syntax::symbol::Symbol) -> bool {
+        self.formals(callee, |c, _| c.prefix.causality == Some(Causality::Output)).iter().any(|f| f.name == name)
+    }
+
+    /// The types in C of a call's arguments.
+    fn signature(&mut self, call: &CCall, callee: &Callee<'a>, span: Span) -> Option<Signature> {
+        let outputs = self.formals(callee, |c, _| c.prefix.causality == Some(Causality::Output));
+        let mut arguments = Vec::new();
+        for argument in &call.arguments {
+            let made = match argument {
+                Argument::Text(words) => Some(c::Argument::Text(words.clone())),
+                Argument::Number(x) => Some(c::Argument::Number(*x)),
+                Argument::Size(name, dimension) => {
+                    let value = self.input_of_c(&Argument::Name(*name))?;
+                    value.dims().get(dimension - 1).map(|n| c::Argument::Size(*n))
+                }
+                Argument::Name(name) => match outputs.iter().find(|f| f.name == *name) {
+                    Some(formal) => {
+                        let blank = self.declared_local(formal)?;
+                        number(&blank).map(|(kind, n)| c::Argument::Output(kind, n))
+                    }
+                    None => match self.input_of_c(argument)? {
+                        text @ Val::Text(_) => text.as_text(&self.exprs).map(c::Argument::Text),
+                        value => number(&value).map(|(kind, n)| c::Argument::Input(kind, n)),
+                    },
+                },
+                Argument::Other => None,
+            };
+            let Some(made) = made else {
+                self.unsupported(span, &format!("an argument of `{}` in the C call of `{}`", call.name, callee.name));
+                return None;
+            };
+            arguments.push(made);
+        }
+        let result = match call.result.and_then(|name| outputs.iter().find(|f| f.name == name)) {
+            Some(formal) => Some(number(&self.declared_local(formal)?)?.0),
+            None => None,
+        };
+        let include = annotation_texts(external_text(callee)?, "Include").join("\n");
+        Some(Signature { name: call.name.clone(), result, arguments, include })
+    }
+
+    /// Folders and libraries of the annotations, as the compiler takes them.
+    fn compiler_arguments(&mut self, callee: &Callee<'a>) -> Vec<OsString> {
+        let text = external_text(callee).unwrap_or_default();
+        let package = callee.name.split('.').next().unwrap_or_default().to_owned();
+        let mut folder = |key: &str, usual: &str| {
+            let named = annotation_texts(text, key);
+            let usual = vec![format!("modelica://{package}/Resources/{usual}")];
+            let addresses = if named.is_empty() { usual } else { named };
+            addresses.iter().filter_map(|address| self.library.resource(address)).collect::<Vec<_>>()
+        };
+        let (headers, sources) = (folder("IncludeDirectory", "Include"), folder("SourceDirectory", "Source"));
+        let libraries = folder("LibraryDirectory", "Library");
+        let mut made: Vec<OsString> = Vec::new();
+        let mut flag = |flag: &str, of: &std::path::Path| {
+            let mut argument = OsString::from(flag);
+            argument.push(of);
+            made.push(argument);
+        };
+        headers.iter().chain(&sources).for_each(|path| flag("-I", path));
+        for path in libraries.iter().flat_map(|path| [path.join(MACHINE), path.clone()]) {
+            flag("-L", &path);
+            flag("-Wl,-rpath,", &path);
+        }
+        annotation_texts(text, "Library").iter().for_each(|name| flag("-l", std::path::Path::new(name)));
+        made
+    }
+}
+
+/// Whether a value is of numbers, of which kind and how many.
+fn number(value: &Val) -> Option<(Kind, Option<usize>)> {
+    let kind = if value.element_type()? == Type::Real { Kind::Real } else { Kind::Integer };
+    let dims = value.dims();
+    Some((kind, (!dims.is_empty()).then(|| dims.iter().product())))
+}
+
+/// The texts that an annotation has under a key: one, or several in braces.
+fn annotation_texts(text: &str, key: &str) -> Vec<String> {
+    let mut rest = text;
+    while let Some(at) = rest.find(key) {
+        let before = rest[..at].chars().next_back();
+        rest = &rest[at + key.len()..];
+        let value = rest.trim_start();
+        let is_key = before.is_none_or(|c| !c.is_alphanumeric() && c != '_');
+        if let Some(value) = value.strip_prefix('=').filter(|_| is_key) {
+            let value = value.trim_start();
+            return match value.strip_prefix('{') {
+                Some(list) => quoted(list, true),
+                None => quoted(value, false),
+            };
+        }
+    }
+    Vec::new()
+}
+
+/// Texts in quotes with their escapes resolved, up to the brace that closes a list, or the first one.
+fn quoted(text: &str, list: bool) -> Vec<String> {
+    let (mut found, mut open): (Vec<String>, Option<String>) = (Vec::new(), None);
+    let mut characters = text.chars();
+    while let Some(c) = characters.next() {
+        match (&mut open, c) {
+            (None, '"') => open = Some(String::new()),
+            (None, ',') | (None, ' ' | '\n' | '\t' | '\r') if list => {}
+            (None, _) => break,
+            (Some(words), '\\') => words.extend(characters.next().map(|c| match c {
+                'n' => '\n',
+                't' => '\t',
+                other => other,
+            })),
+            (Some(_), '"') => {
+                found.extend(open.take());
+                if !list {
+                    break;
+                }
+            }
+            (Some(words), c) => words.push(c),
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn annotations_have_texts_alone_and_in_lists() {
+        let text = r##""C" y = f(x) annotation(IncludeDirectory = "modelica://A/B", Include="#include \"f.h\"", Library={"a", "b"});"##;
+        assert_eq!(annotation_texts(text, "Include"), ["#include \"f.h\""]);
+        assert_eq!(annotation_texts(text, "Library"), ["a", "b"]);
+        assert_eq!(annotation_texts(text, "IncludeDirectory"), ["modelica://A/B"]);
+        assert!(annotation_texts(text, "LibraryDirectory").is_empty());
+    }
+}

@@ -1,0 +1,472 @@
+//! Calls: built-in functions, record constructors, user functions (written out as expressions where that is possible).
+
+use crate::instance::algorithm::Flow;
+use crate::instance::builtin::retyped;
+use crate::instance::calls::binding::is_input;
+use crate::instance::calls::locals::in_order_of_use;
+use crate::instance::evaluation::state::{Mode, Work};
+use crate::instance::files::Place;
+use crate::instance::lookup::{Builtin, Found};
+use crate::instance::template::{Kind, Template};
+use crate::instance::value::Val;
+use crate::instance::vectorised::Given;
+use crate::instance::{ClassRef, Instance, ScopeId, View};
+use bramah_expr::ExprId;
+use bramah_expr::types::{Type, Variability};
+use bramah_syntax::ast::{self, Causality, ClassKind, Expr, Ident, Reference};
+use bramah_syntax::diag::{Code, Diagnostic, Span};
+use bramah_syntax::symbol::Symbol;
+use std::rc::Rc;
+
+/// Deepest nesting of function calls that are written out.
+const DEEPEST_INLINE: usize = 40;
+/// Most statements executed to write one call out.
+const MOST_STEPS: usize = 20_000;
+/// The same when all arguments are known, so that the call is simply carried out.
+const MOST_KNOWN_STEPS: usize = 2_000_000;
+/// Deepest nesting when all arguments are known.
+const DEEPEST_KNOWN: usize = 150;
+
+/// A function ready to be called.
+pub(in crate::instance) struct Callee<'a> {
+    pub scope: ScopeId,
+    pub template: Rc<Template<'a>>,
+    pub name: String,
+}
+
+/// One declared input, output or local of a function.
+pub(in crate::instance) struct Formal<'a> {
+    pub name: Symbol,
+    pub component: &'a ast::Component,
+    pub index: u32,
+    pub view: View,
+}
+
+impl<'a> Instance<'a, '_> {
+    pub(in crate::instance) fn call(
+        &mut self,
+        function: &'a Reference,
+        args: &'a [Expr],
+        named: &'a [(Ident, Expr)],
+        view: View,
+        span: Span,
+    ) -> Option<Val> {
+        if let Some((class, bound)) = self.functional_input(function) {
+            return self.call_bound(class, args, named, &bound, view, span);
+        }
+        if !self.is_redefined(function, view)
+            && let Some(v) = self.builtin_call(function, args, named, view, span)
+        {
+            return v;
+        }
+        let path = ast::Path {
+            global: function.global,
+            parts: function.parts.iter().map(|p| p.name).collect(),
+            span: function.span,
+        };
+        match self.lookup_path(view, &path) {
+            Ok(Found::Class(class)) => self.call_bound(class, args, named, &[], view, span),
+            Ok(Found::Builtin(Builtin::Enumeration(i))) => self.enumeration_of(i, args, view, span),
+            _ => match self.instance_function(function, view) {
+                Some(class) => self.call_class(class, args, named, &[], view, span),
+                None => {
+                    self.unknown_function(function);
+                    None
+                }
+            },
+        }
+    }
+
+    /// Whether a class that is visible here bears the name of a built-in function, as after
+    /// `import Modelica.ComplexMath.abs`: it is nearer (MLS 5.3.1).
+    fn is_redefined(&mut self, function: &Reference, view: View) -> bool {
+        let [part] = function.parts.as_slice() else { return false };
+        !function.global && matches!(self.lookup_nested(view, part.name.name), Some(Found::Class(_)))
+    }
+
+    /// Calls a function some of whose inputs were given before.
+    fn call_bound(
+        &mut self,
+        class: ClassRef<'a>,
+        args: &'a [Expr],
+        named: &'a [(Ident, Expr)],
+        bound: &[(Ident, Val)],
+        view: View,
+        span: Span,
+    ) -> Option<Val> {
+        match self.external_builtin(&class) {
+            Some(name) => self.named_mathematics(&name, args, named, view, span),
+            None => self.call_class(class, args, named, bound, view, span),
+        }
+    }
+
+    /// The built-in function that `external "builtin" y = sin(u)` stands for.
+    fn external_builtin(&self, class: &ClassRef<'a>) -> Option<String> {
+        let ast::ClassBody::Long(body) = &self.library.class(class.class).body else { return None };
+        let called = body.external_text.as_deref()?.trim_start().strip_prefix("\"builtin\"")?;
+        let called = called.split_once('=').map_or(called, |(_, right)| right);
+        Some(called.split('(').next()?.trim().to_string())
+    }
+
+    /// A function named through a component, as in `oil.density(p)`.
+    fn instance_function(&mut self, function: &Reference, view: View) -> Option<ClassRef<'a>> {
+        let Found::Component(scope, index) = self.lookup(view, function.parts[0].name.name)? else { return None };
+        let mut node = self.component(scope, index)?;
+        let (last, middle) = function.parts[1..].split_last()?;
+        for (k, part) in middle.iter().enumerate() {
+            let crate::instance::Node::Object(s) = *self.node(node) else { return None };
+            let &i = self.scope(s).template.by_name.get(&part.name.name)?;
+            if matches!(self.scope(s).template.elements[i as usize].kind, Kind::Class(_)) {
+                let mut found = self.lookup(View { scope: s, base: 0 }, part.name.name)?;
+                for next in middle[k + 1..].iter().chain([last]) {
+                    found = self.member(&found, next.name.name)?;
+                }
+                let Found::Class(class) = found else { return None };
+                return Some(class);
+            }
+            node = self.component(s, i)?;
+        }
+        let crate::instance::Node::Object(s) = *self.node(node) else { return None };
+        match self.lookup(View { scope: s, base: 0 }, last.name.name)? {
+            Found::Class(class) => Some(class),
+            _ => None,
+        }
+    }
+
+    fn call_class(
+        &mut self,
+        class: ClassRef<'a>,
+        args: &'a [Expr],
+        named: &'a [(Ident, Expr)],
+        bound: &[(Ident, Val)],
+        view: View,
+        span: Span,
+    ) -> Option<Val> {
+        let template = self.template(class.class, class.parent);
+        if let Some(Builtin::Enumeration(i)) = template.builtin {
+            return self.enumeration_of(i, args, view, span);
+        }
+        // a function without outputs only asserts
+        let text = gives_text(&template) || gives_nothing(&template);
+        let positional: Option<Vec<Val>> = args.iter().map(|a| self.argument(a, text, view)).collect();
+        let mut by_name = Vec::new();
+        for (name, e) in named {
+            by_name.push((*name, self.argument(e, text, view)?));
+        }
+        let mut positional = positional?;
+        if !bound.is_empty() {
+            let inputs =
+                template.elements.iter().filter(|e| matches!(e.kind, Kind::Component(c) if is_input(c, e.protected)));
+            let open: Vec<Ident> = inputs
+                .filter(|e| bound.iter().all(|(n, _)| n.name != e.name))
+                .map(|e| Ident { name: e.name, span })
+                .collect();
+            if positional.len() <= open.len() {
+                by_name.extend(open.into_iter().zip(std::mem::take(&mut positional)));
+            }
+        }
+        by_name.extend_from_slice(bound);
+        if template.builtin == Some(Builtin::Object) {
+            let place = Place { call: span, given: None };
+            return self.construct_object(&class, Given { positional, named: by_name }, place);
+        }
+        if matches!(template.kind, ClassKind::Record { operator: true }) {
+            let given = Given { positional: positional.clone(), named: by_name.clone() };
+            if let Some(made) = self.overloaded_constructor(&class, &given, span) {
+                return made;
+            }
+        }
+        let scope = self.package(&class);
+        let name = self.library.full_name(class.class);
+        let callee = Callee { scope, template, name };
+        match callee.template.kind {
+            ClassKind::Record { .. } => self.construct(&callee, positional, by_name, span),
+            ClassKind::Function { .. } => match self.file_function(&callee) {
+                Some(function) => {
+                    let place = self.file_place(args.first(), view, span);
+                    self.call_file_function(function, &callee, positional, by_name, place)
+                }
+                None => self.call_elementwise(&callee, Given { positional, named: by_name }, span),
+            },
+            _ => {
+                let message = format!("`{}` is not a function", callee.name);
+                self.fail(Code::UnknownFunction, &message, span)
+            }
+        }
+    }
+
+    /// An argument; whole numbers that parameters give are taken by value, for sizes and loops depend on them, and
+    /// whatever a text depends on.
+    fn argument(&mut self, e: &'a Expr, text: bool, view: View) -> Option<Val> {
+        let value = self.eval(e, view)?;
+        if text && !value.dims().is_empty() && self.eval.frame == 0 && !self.eval.mode.procedure {
+            let mut scalars = Vec::new();
+            value.scalars(&mut scalars);
+            let fixed = scalars.iter().all(|e| self.variability(*e) <= Variability::Parameter);
+            if fixed && !self.all_known(std::slice::from_ref(&value)) {
+                return self.constant(e, view);
+            }
+        }
+        if let Val::Scalar(id, ty) = value
+            && (text || ty == Type::Integer)
+        {
+            let outside = self.eval.frame == 0 && !self.eval.mode.procedure;
+            let open = self.exprs.as_num(id).is_none() && self.variability(id) <= Variability::Parameter;
+            if outside
+                && open
+                && (text || !self.found_at_start(id))
+                && !self.eval.locals.iter().any(|(_, v)| v.scalar().is_some_and(|(l, _)| l == id))
+            {
+                return self.constant(e, view);
+            }
+        }
+        Some(value)
+    }
+
+    fn enumeration_of(&mut self, i: u32, args: &'a [Expr], view: View, span: Span) -> Option<Val> {
+        let [arg] = args else {
+            return self.fail(Code::BadCall, "a conversion to an enumeration takes one Integer", span);
+        };
+        Some(retyped(&self.eval(arg, view)?, Type::Enumeration(i)))
+    }
+
+    /// A value of a record class from its constructor.
+    pub(in crate::instance) fn construct(
+        &mut self,
+        callee: &Callee<'a>,
+        positional: Vec<Val>,
+        named: Vec<(Ident, Val)>,
+        span: Span,
+    ) -> Option<Val> {
+        let formals = self.formals(callee, |c, protected| {
+            !protected && !matches!(c.prefix.variability, Some(ast::Variability::Constant))
+        });
+        let fields = self.in_frame(|s| {
+            s.bind(callee, &formals, positional, named, span)?;
+            let value = |f: &Formal<'a>| Some((f.name, s.eval.locals[s.local(f.name)?].1.clone()));
+            formals.iter().map(value).collect::<Option<Vec<_>>>()
+        })?;
+        let class = self.operator_class_of(&callee.template);
+        Some(Val::Record(Rc::new(crate::instance::value::Record { fields, class })))
+    }
+
+    pub(in crate::instance) fn call_function(
+        &mut self,
+        callee: &Callee<'a>,
+        positional: Vec<Val>,
+        named: Vec<(Ident, Val)>,
+        span: Span,
+    ) -> Option<Val> {
+        if let Some(how) = self.external_builtin_of(callee) {
+            return self.call_external(how, callee, positional, named, Place { call: span, given: None });
+        }
+        if callee.template.bases[0].ast.prefixes.partial {
+            let message = format!("`{}` is partial and cannot be called", callee.name);
+            return self.fail(Code::Partial, &message, span);
+        }
+        if callee.template.bases.iter().any(|b| has_external(b.ast)) {
+            #[cfg(feature = "fmi")]
+            return self.call_c(callee, positional, named, span);
+            #[cfg(not(feature = "fmi"))]
+            {
+                self.unsupported(span, &format!("the external function `{}`", callee.name));
+                return None;
+            }
+        }
+        let known = self.all_known(&positional) && named.iter().all(|(_, v)| self.known(v));
+        if !self.well_formed(callee) {
+            return None;
+        }
+        let limit = if known { DEEPEST_KNOWN } else { DEEPEST_INLINE };
+        if self.eval.depth >= limit {
+            if known {
+                let message = format!("`{}` calls itself without end", callee.name);
+                let d = Diagnostic::new(Code::Recursion, message).at(span, "this call");
+                if !self.diagnostics.iter().any(|d| d.code == Code::Recursion) {
+                    self.report(d.help("a recursive function must reach a case in which it does not call itself"));
+                }
+                return None;
+            }
+            self.eval.not_inline = true;
+            return None;
+        }
+        let mark = (self.diagnostics.len(), self.eval.calls.len());
+        let work = self.eval.work;
+        if self.eval.depth == 0 {
+            self.eval.work = Work::allowed([MOST_STEPS, MOST_KNOWN_STEPS]);
+        }
+        self.eval.work.known = known;
+        self.eval.depth += 1;
+        let outer = std::mem::replace(&mut self.eval.not_inline, false);
+        let value = self.inline(callee, positional.clone(), named.clone(), span);
+        self.eval.depth -= 1;
+        if self.eval.depth == 0 {
+            self.eval.work = work;
+        }
+        self.eval.work.known = work.known;
+        let refused = std::mem::replace(&mut self.eval.not_inline, outer);
+        if value.is_some() || !refused {
+            return value;
+        }
+        if known && !std::mem::take(&mut self.eval.may_fail) {
+            let message = format!("`{}` does not come to an end", callee.name);
+            return self.fail(Code::Recursion, &message, span);
+        }
+        self.diagnostics.truncate(mark.0);
+        self.eval.calls.truncate(mark.1);
+        if gives_nothing(&callee.template) {
+            return self.call_for_effect(callee, positional, named, span);
+        }
+        self.call_procedure(callee, positional, named, span)
+    }
+
+    /// A call of a function without outputs whose assertions values that change decide: part of the procedure around it.
+    fn call_for_effect(
+        &mut self,
+        callee: &Callee<'a>,
+        positional: Vec<Val>,
+        named: Vec<(Ident, Val)>,
+        span: Span,
+    ) -> Option<Val> {
+        if self.eval.mode.procedure {
+            return self.procedure_body(callee, positional, named, span);
+        }
+        if self.eval.depth > 0 {
+            (self.eval.not_inline, self.eval.may_fail) = (true, true);
+            return None;
+        }
+        let what = format!("a call of `{}`, which has no output, with arguments that change,", callee.name);
+        self.unsupported(span, &what);
+        None
+    }
+
+    /// Whether a function keeps to what functions may do (MLS 12.2).
+    fn well_formed(&mut self, callee: &Callee<'a>) -> bool {
+        let class = callee.template.class;
+        if self.functions_checked.contains(&class) {
+            return true;
+        }
+        let inputs = self.formals(callee, is_input);
+        let mut wrong = None;
+        for base in &callee.template.bases {
+            let ast::ClassBody::Long(body) = &base.ast.body else { continue };
+            if let Some(e) = body.equations.first().or_else(|| body.initial_equations.first()) {
+                let message = format!("the function `{}` holds an equation", callee.name);
+                let d = Diagnostic::new(Code::Syntax, message).at(e.span, "a function has statements only");
+                wrong = Some(d.help("write `algorithm` and `:=`"));
+            }
+            let (mut targets, mut in_when) = (Vec::new(), Vec::new());
+            body.algorithms
+                .iter()
+                .for_each(|s| crate::instance::algorithm::assigned(s, false, &mut targets, &mut in_when));
+            let names = targets.iter().map(|r| &r.parts[0]);
+            if let Some(part) = names.into_iter().find(|p| inputs.iter().any(|f| f.name == p.name.name)) {
+                let message =
+                    format!("`{}` is an input of `{}` and cannot be assigned to", part.name.name, callee.name);
+                let d = Diagnostic::new(Code::TypeMismatch, message).at(part.name.span, "assigned here");
+                wrong = Some(d.help("give its value to a protected variable, and change that"));
+            }
+        }
+        match wrong {
+            None => self.functions_checked.insert(class),
+            Some(d) => {
+                if self.diagnostics.iter().all(|other| other.message != d.message) {
+                    self.report(d);
+                }
+                false
+            }
+        }
+    }
+
+    fn all_known(&self, values: &[Val]) -> bool {
+        values.iter().all(|v| self.known(v))
+    }
+
+    fn known(&self, v: &Val) -> bool {
+        let mut scalars: Vec<ExprId> = Vec::new();
+        v.scalars(&mut scalars);
+        scalars.iter().all(|&e| self.exprs.as_num(e).is_some())
+    }
+
+    /// Carries the function out on symbolic values.
+    fn inline(
+        &mut self,
+        callee: &Callee<'a>,
+        positional: Vec<Val>,
+        named: Vec<(Ident, Val)>,
+        span: Span,
+    ) -> Option<Val> {
+        let change = |m: &mut Mode| {
+            m.under_procedure |= m.procedure;
+            m.procedure = false;
+        };
+        self.in_mode(change, |s| s.in_frame(|s| s.inline_body(callee, positional, named, span)))
+    }
+
+    fn inline_body(
+        &mut self,
+        callee: &Callee<'a>,
+        positional: Vec<Val>,
+        named: Vec<(Ident, Val)>,
+        span: Span,
+    ) -> Option<Val> {
+        let inputs = self.formals(callee, is_input);
+        self.bind(callee, &inputs, positional, named, span)?;
+        let locals = self.formals(callee, |c, p| !is_input(c, p));
+        for f in in_order_of_use(&locals) {
+            let value = self.declared_local(f)?;
+            self.eval.locals.push((f.name, value));
+        }
+        for (section, view) in sections(callee) {
+            if self.execute(section, view)? == Flow::Return {
+                break;
+            }
+        }
+        let outputs: Vec<Val> = locals
+            .iter()
+            .filter(|f| f.component.prefix.causality == Some(Causality::Output))
+            .filter_map(|f| self.local(f.name).map(|i| self.eval.locals[i].1.clone()))
+            .collect();
+        Self::outputs(outputs)
+    }
+
+    pub(in crate::instance) fn outputs(mut outputs: Vec<Val>) -> Option<Val> {
+        match outputs.len() {
+            1 => outputs.pop(),
+            _ => Some(Val::Tuple(Rc::new(outputs))),
+        }
+    }
+}
+
+/// The algorithm sections of a function, those of its bases included, with where their names are looked up.
+pub(in crate::instance) fn sections<'a>(callee: &Callee<'a>) -> Vec<(&'a [ast::Statement], View)> {
+    let mut found = Vec::new();
+    for (base, i) in callee.template.bases.iter().zip(0u32..) {
+        if let ast::ClassBody::Long(body) = &base.ast.body {
+            let view = View { scope: callee.scope, base: i };
+            found.extend(body.algorithms.iter().map(|section| (section.as_slice(), view)));
+        }
+    }
+    found
+}
+
+/// Whether a function has no output.
+fn gives_nothing(template: &Template<'_>) -> bool {
+    matches!(template.kind, ClassKind::Function { .. })
+        && !template
+            .elements
+            .iter()
+            .any(|e| matches!(e.kind, Kind::Component(c) if c.prefix.causality == Some(Causality::Output)))
+}
+
+/// Whether a function has a text as an output.
+fn gives_text(template: &Template<'_>) -> bool {
+    template.elements.iter().any(|e| match e.kind {
+        Kind::Component(c) => c.prefix.causality == Some(Causality::Output) && c.class.parts[0].name == "String",
+        Kind::Class(_) => false,
+    })
+}
+
+fn has_external(class: &ast::Class) -> bool {
+    matches!(&class.body, ast::ClassBody::Long(b) if b.external.is_some())
+}

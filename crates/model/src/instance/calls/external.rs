@@ -1,0 +1,377 @@
+//! Calls of external functions: those that [`bramah_external`] knows by their C names are carried out, with the arguments
+//! of the C call in its order.
+
+use crate::instance::Instance;
+use crate::instance::call::Callee;
+use crate::instance::files::Place;
+use crate::instance::value::Val;
+use bramah_expr::ExprId;
+use bramah_expr::function::{External, Function, Handle, Stmt, Term};
+use bramah_expr::types::Type;
+use bramah_external::{Builtin, Given, NO_NAME};
+use bramah_syntax::ast::{Causality, ClassBody, Ident};
+use bramah_syntax::diag::Code;
+use bramah_syntax::symbol::Symbol;
+use std::sync::Arc;
+
+/// `result = name(arguments)`, as it stands behind `external`.
+pub(super) struct CCall {
+    pub name: String,
+    /// The output to which the result goes.
+    pub result: Option<Symbol>,
+    pub arguments: Vec<Argument>,
+}
+
+/// An argument of a C call.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Argument {
+    /// An input or output of the function.
+    Name(Symbol),
+    /// A text.
+    Text(String),
+    /// A number or truth value.
+    Number(f64),
+    /// `size(name, dimension)`
+    Size(Symbol, usize),
+    /// Anything else.
+    Other,
+}
+
+impl Argument {
+    fn parse(text: &str) -> Self {
+        match text {
+            "true" => Argument::Number(1.0),
+            "false" => Argument::Number(0.0),
+            _ if is_name(text) => Argument::Name(Symbol::new(text)),
+            _ => match (text.parse(), text.strip_prefix('"').and_then(|t| t.strip_suffix('"'))) {
+                (Ok(number), _) => Argument::Number(number),
+                (_, Some(words)) => Argument::Text(words.to_owned()),
+                _ => Self::size(text).unwrap_or(Argument::Other),
+            },
+        }
+    }
+
+    fn size(text: &str) -> Option<Self> {
+        let (name, dimension) = text.strip_prefix("size(")?.strip_suffix(')')?.split_once(',')?;
+        let dimension = dimension.trim().parse().ok().filter(|d| *d > 0)?;
+        is_name(name.trim()).then(|| Argument::Size(Symbol::new(name.trim()), dimension))
+    }
+
+    fn name(&self) -> Option<Symbol> {
+        match self {
+            Argument::Name(name) => Some(*name),
+            _ => None,
+        }
+    }
+}
+
+impl CCall {
+    /// Parses what stands between `external` and its semicolon; without a call the function's own name, inputs and output
+    /// are meant (MLS 12.9).
+    fn parse(text: &str) -> Option<Self> {
+        let text = text.trim_start();
+        let text = text.strip_prefix('"').map_or(text, |t| t.split_once('"').map_or("", |(_, rest)| rest));
+        let (head, rest) = text.split_once('(')?;
+        let (result, name) = match head.split_once('=') {
+            Some((result, name)) => (Some(result.trim()), name.trim()),
+            None => (None, head.trim()),
+        };
+        if name.is_empty() || name.contains(char::is_whitespace) {
+            return None;
+        }
+        Some(CCall {
+            name: name.to_owned(),
+            result: result.map(Symbol::new),
+            arguments: arguments(rest).into_iter().map(Argument::parse).collect(),
+        })
+    }
+}
+
+/// What stands between commas, up to the bracket that closes.
+fn arguments(text: &str) -> Vec<&str> {
+    let (mut depth, mut begin, mut found, mut quoted) = (0, 0, Vec::new(), false);
+    for (at, c) in text.char_indices() {
+        quoted ^= c == '"';
+        match c {
+            _ if quoted => {}
+            '(' | '[' | '{' => depth += 1,
+            ')' if depth == 0 => {
+                found.push(text[begin..at].trim());
+                break;
+            }
+            ')' | ']' | '}' => depth -= 1,
+            ',' if depth == 0 => {
+                found.push(text[begin..at].trim());
+                begin = at + 1;
+            }
+            _ => {}
+        }
+    }
+    found
+}
+
+fn is_name(text: &str) -> bool {
+    let letter = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    text.chars().all(letter) && text.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
+}
+
+/// What stands behind `external`, annotations included.
+pub(super) fn external_text<'a>(callee: &Callee<'a>) -> Option<&'a str> {
+    callee.template.bases.iter().find_map(|b| match &b.ast.body {
+        ClassBody::Long(body) => body.external_text.as_deref(),
+        _ => None,
+    })
+}
+
+impl<'a> Instance<'a, '_> {
+    /// How an external function is carried out, if it is known.
+    pub(in crate::instance) fn external_builtin_of(&self, callee: &Callee<'a>) -> Option<Builtin> {
+        bramah_external::builtin(&self.c_call(callee)?.name)
+    }
+
+    pub(super) fn c_call(&self, callee: &Callee<'a>) -> Option<CCall> {
+        CCall::parse(external_text(callee)?)
+    }
+
+    pub(in crate::instance) fn call_external(
+        &mut self,
+        how: Builtin,
+        callee: &Callee<'a>,
+        positional: Vec<Val>,
+        named: Vec<(Ident, Val)>,
+        place: Place,
+    ) -> Option<Val> {
+        self.with_inputs(callee, positional, named, place.call, |s| s.carry_out_external(how, callee, place))
+    }
+
+    fn carry_out_external(&mut self, how: Builtin, callee: &Callee<'a>, place: Place) -> Option<Val> {
+        let call = self.c_call(callee)?;
+        self.prepare_locals(callee)?;
+        let values: Vec<Option<Val>> = call.arguments.iter().map(|a| self.input_of_c(a)).collect();
+        let given: Vec<Given> = values.iter().map(|v| self.given(v.as_ref())).collect();
+        match how {
+            #[cfg(feature = "fmi")]
+            Builtin::MockUp => self.mock_up(&given, place),
+            #[cfg(not(feature = "fmi"))]
+            Builtin::MockUp => self.fail(Code::Unsupported, "this build has no functional mock-up units", place.call),
+            Builtin::Nothing => Some(Val::Tuple(Vec::new().into())),
+            Builtin::Object(make) => {
+                let given = self.table_given(given, place)?;
+                match make(&given) {
+                    Ok(object) => Some(Val::Object(object)),
+                    Err(why) => self.fail(Code::BadCall, &format!("the table cannot be used: {why}"), place.call),
+                }
+            }
+            Builtin::Values(make) => match make(&given) {
+                Some(found) => self.external_values(found, &call, callee),
+                None => {
+                    let message = format!("the arguments of `{}` must be known before the run", callee.name);
+                    self.fail(Code::NotConstant, &message, place.call)
+                }
+            },
+            Builtin::Function(make) => {
+                let Some(function) = make(&given) else {
+                    let message = format!("these arguments do not fit `{}`", callee.name);
+                    return self.fail(Code::BadCall, &message, place.call);
+                };
+                let object = given.iter().find_map(|g| match g {
+                    Given::Object(object) => Some(object.address()),
+                    _ => None,
+                });
+                let mut scalars = Vec::new();
+                values.iter().flatten().for_each(|v| v.scalars(&mut scalars));
+                let key = format!("{} of {:x}", call.name, object.unwrap_or(0));
+                self.external_function(function, &key, &call, callee, &scalars)
+            }
+        }
+    }
+
+    /// The value of an argument that is an input of the function or written out.
+    pub(super) fn input_of_c(&mut self, argument: &Argument) -> Option<Val> {
+        match argument {
+            Argument::Name(name) => self.local(*name).map(|i| self.eval.locals[i].1.clone()),
+            Argument::Text(words) => Some(Val::text(words.as_str())),
+            Argument::Number(x) => Some(Val::Scalar(self.exprs.num(*x), Type::Real)),
+            Argument::Size(..) | Argument::Other => None,
+        }
+    }
+
+    /// The values with which outputs and protected variables go into the call, where they are declared with one.
+    pub(super) fn prepare_locals(&mut self, callee: &Callee<'a>) -> Option<()> {
+        let formals = self.formals(callee, |c, p| {
+            !crate::instance::calls::binding::is_input(c, p)
+                && c.modification.as_ref().is_some_and(|m| m.value.is_some())
+        });
+        for f in crate::instance::calls::locals::in_order_of_use(&formals) {
+            let value = self.declared_local(f)?;
+            self.eval.locals.push((f.name, value));
+        }
+        Some(())
+    }
+
+    fn given(&self, value: Option<&Val>) -> Given {
+        match value {
+            Some(text @ Val::Text(_)) => match text.as_text(&self.exprs) {
+                Some(text) => Given::Text(text),
+                None => Given::Numbers { dims: Vec::new(), values: vec![None] },
+            },
+            Some(Val::Object(object)) => Given::Object(object.clone()),
+            Some(value) => {
+                let mut scalars = Vec::new();
+                value.scalars(&mut scalars);
+                let values = scalars.iter().map(|e| self.exprs.as_num(*e)).collect();
+                Given::Numbers { dims: value.dims().to_vec(), values }
+            }
+            None => Given::Numbers { dims: Vec::new(), values: Vec::new() },
+        }
+    }
+
+    /// A table from its file, where one is named.
+    fn table_given(&mut self, mut given: Vec<Given>, place: Place) -> Option<Vec<Given>> {
+        let (Some(Given::Text(file)), Some(Given::Text(name))) = (given.first(), given.get(1)) else {
+            return Some(given);
+        };
+        if file == NO_NAME {
+            return Some(given);
+        }
+        let name = if name == NO_NAME { String::new() } else { name.clone() };
+        let matrix = self.table(&file.clone(), &name, place)?;
+        let values = matrix.values.iter().copied().map(Some).collect();
+        given[2] = Given::Numbers { dims: vec![matrix.rows, matrix.columns], values };
+        Some(given)
+    }
+
+    /// The outputs of a call in the order of the C call: the result, then those among the arguments.
+    fn c_outputs(&self, call: &CCall, callee: &Callee<'a>) -> Vec<Symbol> {
+        let formals = self.formals(callee, |c, _| c.prefix.causality == Some(Causality::Output));
+        let outputs = call.arguments.iter().filter_map(Argument::name).filter(|n| formals.iter().any(|f| f.name == *n));
+        call.result.into_iter().chain(outputs).collect()
+    }
+
+    fn external_values(&mut self, found: Vec<Given>, call: &CCall, callee: &Callee<'a>) -> Option<Val> {
+        let names = self.c_outputs(call, callee);
+        let mut outputs = Vec::new();
+        for f in self.formals(callee, |c, _| c.prefix.causality == Some(Causality::Output)) {
+            let at = names.iter().position(|n| *n == f.name)?;
+            let ty = self.declared_local(&f)?.element_type().unwrap_or(Type::Real);
+            outputs.push(match found.get(at)? {
+                Given::Text(text) => Val::text(text.as_str()),
+                Given::Object(object) => Val::Object(object.clone()),
+                Given::Numbers { dims, values } => {
+                    let number = |x: &Option<f64>| Some(Val::Scalar(self.exprs.num((*x)?), ty));
+                    let mut numbers: Vec<Val> = values.iter().map(number).collect::<Option<_>>()?;
+                    if dims.is_empty() { numbers.pop()? } else { Val::array(dims.clone(), numbers) }
+                }
+            });
+        }
+        Self::outputs(outputs)
+    }
+
+    /// A call that stays one, or its numbers where all arguments are known.
+    pub(super) fn external_function(
+        &mut self,
+        function: Arc<dyn External>,
+        key: &str,
+        call: &CCall,
+        callee: &Callee<'a>,
+        scalars: &[ExprId],
+    ) -> Option<Val> {
+        let names = self.c_outputs(call, callee);
+        let formals = self.formals(callee, |c, _| c.prefix.causality == Some(Causality::Output));
+        let mut blanks = Vec::new();
+        for name in &names {
+            let f = formals.iter().find(|f| f.name == *name)?;
+            blanks.push((*name, self.declared_local(f)?));
+        }
+        let count: usize = blanks.iter().map(|(_, v)| v.elements().len()).sum();
+        let known: Option<Vec<f64>> = scalars.iter().map(|e| self.exprs.as_num(*e)).collect();
+        let results: Vec<ExprId> = match known {
+            Some(args) => (0..count).map(|k| self.exprs.num(function.value(k, &args))).collect(),
+            None => {
+                let id = self.external_id(function, key, &callee.name, scalars.len(), count);
+                let output = |k: usize| u32::try_from(k).expect("few outputs");
+                (0..count).map(|k| self.exprs.call(id, output(k), scalars)).collect()
+            }
+        };
+        let mut results = results.into_iter();
+        let mut filled: Vec<(Symbol, Val)> = Vec::new();
+        for (name, blank) in blanks {
+            filled.push((name, blank.map(&mut |e, _| results.next().unwrap_or(e))));
+        }
+        let output =
+            |f: &crate::instance::call::Formal<'a>| filled.iter().find(|(n, _)| *n == f.name).map(|(_, v)| v.clone());
+        let outputs: Option<Vec<Val>> = formals.iter().map(output).collect();
+        Self::outputs(outputs?)
+    }
+
+    fn external_id(
+        &mut self,
+        function: Arc<dyn External>,
+        key: &str,
+        name: &str,
+        inputs: usize,
+        outputs: usize,
+    ) -> bramah_expr::FunctionId {
+        if let Some(&id) = self.externals.get(key) {
+            return id;
+        }
+        let small = |n: usize| u32::try_from(n).expect("few arguments");
+        let handle = Handle(function);
+        let args: Vec<Term> = (0..small(inputs)).map(Term::Slot).collect();
+        let slots: Vec<u32> = (0..outputs).map(|k| small(inputs + k)).collect();
+        let assign =
+            |(k, slot): (usize, &u32)| Stmt::Assign(*slot, Term::External(handle.clone(), small(k), args.clone()));
+        let id = self.exprs.add_function(Function {
+            name: name.to_owned(),
+            inputs: small(inputs),
+            slots: small(inputs + outputs),
+            outputs: slots.clone(),
+            body: slots.iter().enumerate().map(assign).collect(),
+        });
+        self.externals.insert(key.to_owned(), id);
+        id
+    }
+
+    /// The constructor of an external object, called by the name of its class (MLS 12.9.7).
+    pub(in crate::instance) fn construct_object(
+        &mut self,
+        class: &crate::instance::ClassRef<'a>,
+        given: crate::instance::vectorised::Given,
+        place: Place,
+    ) -> Option<Val> {
+        let constructor =
+            match self.member(&crate::instance::lookup::Found::Class(class.clone()), Symbol::new("constructor")) {
+                Some(crate::instance::lookup::Found::Class(c)) => c,
+                _ => {
+                    let message = format!("`{}` has no `constructor`", self.library.full_name(class.class));
+                    return self.fail(Code::BadCall, &message, place.call);
+                }
+            };
+        let template = self.template(constructor.class, constructor.parent);
+        let scope = self.package(&constructor);
+        let callee = Callee { scope, template, name: self.library.full_name(constructor.class) };
+        match self.external_builtin_of(&callee) {
+            Some(how) => self.call_external(how, &callee, given.positional, given.named, place),
+            None => {
+                self.unsupported(place.call, &format!("the external object `{}`", callee.name));
+                None
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn calls_are_read_as_they_are_written() {
+        let call = CCall::parse(r#""C" y = f_x(a, size(b, 1), b) annotation(Library="m")"#).expect("a call");
+        assert_eq!((call.name.as_str(), call.result), ("f_x", Some(Symbol::new("y"))));
+        let name = |n| Argument::Name(Symbol::new(n));
+        assert_eq!(call.arguments, [name("a"), Argument::Size(Symbol::new("b"), 1), name("b")]);
+        let literal = CCall::parse(r#"f("x, y", 2.5, true)"#).expect("a call");
+        assert_eq!(literal.arguments, [Argument::Text("x, y".into()), Argument::Number(2.5), Argument::Number(1.0)]);
+        assert!(CCall::parse("\"C\"").is_none());
+    }
+}

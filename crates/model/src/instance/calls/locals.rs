@@ -1,0 +1,142 @@
+//! Outputs and protected variables of functions as they begin: with their declared values, or zeros in their shape.
+
+use crate::instance::Instance;
+use crate::instance::call::{Callee, Formal};
+use crate::instance::lookup::{Builtin, Found};
+use crate::instance::template::Template;
+use crate::instance::value::{Val, size_text};
+use bramah_expr::Exprs;
+use bramah_expr::types::Type;
+use bramah_syntax::ast::{self};
+use bramah_syntax::diag::{Code, Span};
+use bramah_syntax::symbol::Symbol;
+use std::rc::Rc;
+
+impl<'a> Instance<'a, '_> {
+    /// The initial value of an output or protected component of a function; zero where nothing is said.
+    pub(in crate::instance) fn declared_local(&mut self, f: &Formal<'a>) -> Option<Val> {
+        let reached = self.reached(f.view.scope, f.index);
+        let value = match reached.binding {
+            Some(b) if b.access.is_empty() => Some(self.eval(b.expr, b.view)?),
+            Some(b) => Some(self.binding_value(&b, true)?),
+            None => None,
+        };
+        let blank = self.blank(f, value.as_ref())?;
+        match value {
+            None => Some(blank),
+            Some(v) => {
+                if v.dims() != blank.dims() {
+                    let message = format!(
+                        "`{}` has size {}, and its value {}",
+                        f.name,
+                        size_text(blank.dims()),
+                        size_text(v.dims())
+                    );
+                    return self.fail(Code::SizeMismatch, &message, f.component.name.span);
+                }
+                let ty = blank.element_type().unwrap_or(Type::Real);
+                Some(if ty == Type::Real { v.with_type(ty) } else { v })
+            }
+        }
+    }
+
+    /// Zeros in the declared shape.
+    pub(in crate::instance) fn blank(&mut self, f: &Formal<'a>, value: Option<&Val>) -> Option<Val> {
+        let mut found = self.class_at(f.view, &f.component.class)?;
+        // `output R r(x = u)`: fields take what the declaration says of them
+        let given = self.reached(f.view.scope, f.index).args;
+        if let Found::Class(c) = &mut found
+            && !given.is_empty()
+        {
+            c.args = given.into_iter().chain(c.args.iter().cloned()).collect();
+        }
+        let one = self.blank_one(&found, f.component.name.span)?;
+        let mut dims = Vec::new();
+        for (i, s) in f.component.subscripts.iter().enumerate() {
+            dims.push(match s {
+                // without a value of its own it takes the size of what is assigned to it (MLS 12.4.5)
+                ast::Subscript::All(_) => value.and_then(|v| v.dims().get(i).copied()).unwrap_or(0),
+                ast::Subscript::Expr(e) => match self.enumeration_range(e, f.view) {
+                    Some(all) => all.len(),
+                    None => self.known_number(e, f.view)?.0.max(0.0) as usize,
+                },
+            });
+        }
+        if dims.iter().product::<usize>() > 1_000_000 {
+            return self.fail(Code::TooLarge, "this array has more than a million elements", f.component.name.span);
+        }
+        Some(repeated(&one, dims))
+    }
+
+    pub(in crate::instance) fn blank_one(&mut self, found: &Found<'a>, span: Span) -> Option<Val> {
+        let of = |b: Builtin| match b {
+            Builtin::Real => Val::Scalar(Exprs::ZERO, Type::Real),
+            Builtin::Integer => Val::Scalar(Exprs::ZERO, Type::Integer),
+            Builtin::Boolean => Val::Scalar(Exprs::ZERO, Type::Boolean),
+            Builtin::Enumeration(i) => Val::Scalar(Exprs::ONE, Type::Enumeration(i)),
+            // an output of this type is made by what Rust knows of the function
+            Builtin::String | Builtin::Object => Val::text(""),
+        };
+        match found {
+            Found::Builtin(b) => Some(of(*b)),
+            Found::Class(c) => {
+                let t = self.template(c.class, c.parent);
+                let dims = self.type_dims(&t)?;
+                if let Some(b) = t.builtin {
+                    return Some(repeated(&of(b), dims));
+                }
+                let mut fields = Vec::new();
+                let scope = self.package(c);
+                let callee = Callee { scope, template: t, name: String::new() };
+                for f in self.formals(&callee, |_, _| true) {
+                    let value = self.declared_local(&f)?;
+                    fields.push((f.name, value));
+                }
+                let class = self.operator_class(c);
+                let one = Val::Record(Rc::new(crate::instance::value::Record { fields, class }));
+                Some(repeated(&one, dims))
+            }
+            Found::Component(..) => self.fail(Code::WrongClassKind, "a type is needed here", span),
+        }
+    }
+
+    /// The dimensions that a type brings, as `type Orientation = Real[3, 3]` does.
+    pub(in crate::instance) fn type_dims(&mut self, t: &Template<'a>) -> Option<Vec<usize>> {
+        let mut dims = Vec::new();
+        for (subscripts, base) in t.dims.iter().rev() {
+            let view = t.bases[*base as usize].parent;
+            for s in *subscripts {
+                dims.push(match s {
+                    ast::Subscript::All(span) => return self.fail(Code::NoValue, "this size is not given", *span),
+                    ast::Subscript::Expr(e) => self.extent(e, view)?.size,
+                });
+            }
+        }
+        Some(dims)
+    }
+}
+
+/// Locals so that each comes after those that its sizes and its value name (MLS 12.4.4).
+pub(in crate::instance) fn in_order_of_use<'f, 'a>(locals: &'f [Formal<'a>]) -> Vec<&'f Formal<'a>> {
+    let named: Vec<Vec<Symbol>> =
+        locals.iter().map(|f| crate::instance::deduce::names_of_declaration(f.component)).collect();
+    let mut sorted: Vec<&Formal<'a>> = Vec::with_capacity(locals.len());
+    let mut open: Vec<usize> = (0..locals.len()).collect();
+    while !open.is_empty() {
+        let waits = |k: usize, on: usize| on != k && named[k].contains(&locals[on].name);
+        // those that use each other stay as they are declared
+        let at = open.iter().position(|&k| !open.iter().any(|&on| waits(k, on))).unwrap_or(0);
+        sorted.push(&locals[open.remove(at)]);
+    }
+    sorted
+}
+
+/// An array of these dimensions, all elements of which are one value.
+pub(in crate::instance) fn repeated(one: &Val, dims: Vec<usize>) -> Val {
+    if dims.is_empty() {
+        return one.clone();
+    }
+    let inner = one.dims().to_vec();
+    let elements = (0..dims.iter().product()).flat_map(|_| one.elements().to_vec()).collect();
+    Val::array(dims.into_iter().chain(inner).collect(), elements)
+}

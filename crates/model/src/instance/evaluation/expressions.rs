@@ -1,0 +1,323 @@
+//! Expressions of the language to values: symbolic in the flat model, by number where a value must be known.
+
+use crate::instance::evaluation::state::Mode;
+use crate::instance::modifiers::{Access, Binding};
+use crate::instance::value::{Val, size_text, stack};
+use crate::instance::{Instance, View};
+use bramah_expr::types::{Type, Variability};
+use bramah_expr::{ExprId, Exprs};
+use bramah_syntax::ast::{Expr, ExprKind};
+use bramah_syntax::diag::{Code, Diagnostic, Span};
+use std::rc::Rc;
+
+impl<'a> Instance<'a, '_> {
+    /// Evaluates an expression; `None` after a message. A call with several outputs counts as its first (MLS 12.4.3).
+    pub fn eval(&mut self, e: &'a Expr, view: View) -> Option<Val> {
+        match self.eval_all(e, view)? {
+            Val::Tuple(values) => match values.first() {
+                Some(first) => Some(first.clone()),
+                None => self.no_output(e),
+            },
+            value => Some(value),
+        }
+    }
+
+    /// A call that gives nothing cannot be a value.
+    fn no_output(&mut self, e: &'a Expr) -> Option<Val> {
+        let name = match &e.kind {
+            ExprKind::Call { function, .. } => {
+                function.parts.iter().map(|p| p.name.name.as_str()).collect::<Vec<_>>().join(".")
+            }
+            _ => "this".to_owned(),
+        };
+        self.fail(Code::BadCall, &format!("`{name}` has no output"), e.span)
+    }
+
+    /// Evaluates an expression with all outputs of a call.
+    pub fn eval_all(&mut self, e: &'a Expr, view: View) -> Option<Val> {
+        match &e.kind {
+            ExprKind::Integer(i) => Some(self.integer(*i as f64)),
+            ExprKind::Real(x) => Some(Val::Scalar(self.exprs.num(*x), Type::Real)),
+            ExprKind::Boolean(b) => Some(Val::Scalar(self.exprs.boolean(*b), Type::Boolean)),
+            ExprKind::String(s) => Some(Val::text(&**s)),
+            ExprKind::Reference(r) => self.reference(r, view),
+            ExprKind::Unary(op, a) => {
+                let value = self.eval(a, view)?;
+                self.unary(*op, value, e.span)
+            }
+            ExprKind::Binary(op, a, b) => {
+                let (x, y) = (self.eval(a, view), self.eval(b, view));
+                self.binary(*op, x?, y?, e.span)
+            }
+            ExprKind::If { branches, otherwise } => self.if_expression(branches, otherwise, view, e.span),
+            ExprKind::Range { .. } => self.range(e, view),
+            ExprKind::Call { function, args, named } => self.call(function, args, named, view, e.span),
+            ExprKind::Comprehension { function, body, iterators } => {
+                self.comprehension(function.as_ref(), body, iterators, view, e.span)
+            }
+            ExprKind::Array(items) => {
+                let values: Option<Vec<Val>> = items.iter().map(|i| self.eval(i, view)).collect();
+                self.stacked(values?, e.span)
+            }
+            ExprKind::Matrix(rows) => self.matrix(rows, view, e.span),
+            ExprKind::Tuple(items) => {
+                let values: Option<Vec<Val>> =
+                    items.iter().map(|i| i.as_ref().map_or(Some(Val::text("")), |i| self.eval(i, view))).collect();
+                Some(Val::Tuple(Rc::new(values?)))
+            }
+            ExprKind::Index(inner, subscripts) => {
+                let value = self.eval(inner, view)?;
+                self.subscript(value, subscripts, view, e.span)
+            }
+            ExprKind::End => match self.eval.ends.last() {
+                // of an enumeration its last literal, of truth values `true` (MLS 10.5)
+                Some(&(_, Type::Boolean)) => Some(Val::Scalar(Exprs::ONE, Type::Boolean)),
+                Some(&(n, by)) => Some(Val::Scalar(self.exprs.num(n as f64), by)),
+                None => self.fail(Code::BadIndex, "`end` is only known inside brackets `[...]`", e.span),
+            },
+            ExprKind::PartialApplication { function, named } => self.partial_application(function, named, view),
+            ExprKind::Error => None,
+        }
+    }
+
+    /// Evaluates with parameters by value.
+    pub fn constant(&mut self, e: &'a Expr, view: View) -> Option<Val> {
+        self.in_mode(|m| m.constant = true, |s| s.eval(e, view))
+    }
+
+    /// A truth value that must be known.
+    pub fn constant_boolean(&mut self, e: &'a Expr, view: View) -> Option<bool> {
+        let value = self.constant(e, view)?;
+        match (value.scalar(), value.as_number(&self.exprs)) {
+            (Some((_, Type::Boolean)), Some(x)) => Some(x != 0.0),
+            (Some((_, Type::Boolean)), None) => {
+                self.fail(Code::NotConstant, "this condition must be known before the run", e.span)
+            }
+            _ => self.wrong_type("a Boolean", &value, e.span),
+        }
+    }
+
+    pub(in crate::instance) fn integer(&mut self, x: f64) -> Val {
+        Val::Scalar(self.exprs.num(x), Type::Integer)
+    }
+
+    pub(in crate::instance) fn fail<T>(&mut self, code: Code, message: &str, span: Span) -> Option<T> {
+        self.report(Diagnostic::new(code, message).at(span, ""));
+        None
+    }
+
+    pub(in crate::instance) fn wrong_type<T>(&mut self, wanted: &str, got: &Val, span: Span) -> Option<T> {
+        let message = format!("{wanted} is needed here, and this is {}", got.describe());
+        self.fail(Code::TypeMismatch, &message, span)
+    }
+
+    /// The value of a binding, or the part of it that is meant for one element.
+    pub fn binding_value(&mut self, b: &Binding<'a>, constant: bool) -> Option<Val> {
+        if b.access.is_empty() {
+            return self.isolated(b, constant);
+        }
+        let key = (std::ptr::from_ref(b.expr), b.view, constant);
+        let whole = match self.array_values.get(&key) {
+            Some(v) => v.clone(),
+            None => {
+                let v = self.isolated(b, constant)?;
+                self.array_values.insert(key, v.clone());
+                v
+            }
+        };
+        self.access(whole, &b.access, b.expr.span)
+    }
+
+    fn isolated(&mut self, b: &Binding<'a>, constant: bool) -> Option<Val> {
+        let frame = std::mem::replace(&mut self.eval.frame, self.eval.locals.len());
+        let ends = std::mem::take(&mut self.eval.ends);
+        let change = |m: &mut Mode| (m.constant, m.no_event) = (constant, false);
+        let value = self.in_mode(change, |s| s.eval(b.expr, b.view));
+        self.eval.frame = frame;
+        self.eval.ends = ends;
+        value
+    }
+
+    fn access(&mut self, mut value: Val, access: &[Access], span: Span) -> Option<Val> {
+        for step in access {
+            let next = match step {
+                Access::Index(at) if value.dims().first().is_some_and(|&n| n == at.of as usize) => {
+                    value.slice(at.place as usize)
+                }
+                Access::Index(_) => None,
+                Access::Field(name) => match &value {
+                    Val::Record(record) => record.fields.iter().find(|(n, _)| n == name).map(|(_, v)| v.clone()),
+                    _ => None,
+                },
+            };
+            value = match (next, step) {
+                (Some(v), _) => v,
+                (None, Access::Index(at)) => {
+                    self.wrong_count(at.of, &value, span);
+                    return None;
+                }
+                (None, Access::Field(name)) => {
+                    let message = format!("this has no field `{name}`: it is {}", value.describe());
+                    return self.fail(Code::TypeMismatch, &message, span);
+                }
+            };
+        }
+        Some(value)
+    }
+
+    /// A value for an array of another size, reported once for all its elements.
+    fn wrong_count(&mut self, wanted: u32, value: &Val, span: Span) {
+        let message = format!("an array of {wanted} elements is needed here, and this is {}", value.describe());
+        if self.diagnostics.iter().any(|d| d.message == message && d.labels.first().is_some_and(|l| l.span == span)) {
+            return;
+        }
+        self.report(
+            Diagnostic::new(Code::SizeMismatch, message)
+                .at(span, "the value for an array")
+                .help("give one value for each element, or write `each` to give all of them the same"),
+        );
+    }
+
+    pub(in crate::instance) fn stacked(&mut self, values: Vec<Val>, span: Span) -> Option<Val> {
+        let shapes: Vec<String> = values.iter().map(Val::describe).collect();
+        match stack(values) {
+            Some(v) => Some(v),
+            None => {
+                let message = format!("the elements of an array differ in size: {}", shapes.join(", "));
+                self.fail(Code::SizeMismatch, &message, span)
+            }
+        }
+    }
+
+    fn matrix(&mut self, rows: &'a [Vec<Expr>], view: View, span: Span) -> Option<Val> {
+        let mut lines = Vec::new();
+        for row in rows {
+            let values: Option<Vec<Val>> = row.iter().map(|e| self.eval(e, view)).collect();
+            let values = values?.into_iter().map(as_matrix).collect();
+            lines.push(self.concatenate(2, values, span)?);
+        }
+        self.concatenate(1, lines, span)
+    }
+
+    /// `cat(k, ...)`
+    pub(in crate::instance) fn concatenate(&mut self, along: usize, values: Vec<Val>, span: Span) -> Option<Val> {
+        let Some(first) = values.first() else { return Some(Val::array(vec![0], Vec::new())) };
+        let mut dims = first.dims().to_vec();
+        if along == 0 || along > dims.len() {
+            return self.fail(Code::SizeMismatch, &format!("there is no dimension {along} to join along"), span);
+        }
+        let k = along - 1;
+        for v in &values[1..] {
+            let fits = v.dims().len() == dims.len() && (0..dims.len()).all(|i| i == k || v.dims()[i] == dims[i]);
+            if !fits {
+                let message = format!("sizes {} and {} cannot be joined", size_text(&dims), size_text(v.dims()));
+                return self.fail(Code::SizeMismatch, &message, span);
+            }
+        }
+        dims[k] = values.iter().map(|v| v.dims()[k]).sum();
+        let outer: usize = dims[..k].iter().product();
+        let mut elements = Vec::with_capacity(dims.iter().product());
+        for o in 0..outer {
+            for v in &values {
+                let chunk = v.elements().len() / outer.max(1);
+                elements.extend_from_slice(&v.elements()[o * chunk..(o + 1) * chunk]);
+            }
+        }
+        Some(Val::array(dims, elements))
+    }
+
+    fn if_expression(
+        &mut self,
+        branches: &'a [(Expr, Expr)],
+        otherwise: &'a Expr,
+        view: View,
+        span: Span,
+    ) -> Option<Val> {
+        let Some(((condition, value), rest)) = branches.split_first() else { return self.eval(otherwise, view) };
+        let c = self.eval(condition, view)?;
+        let Some((test, Type::Boolean)) = c.scalar() else {
+            return self.wrong_type("a Boolean", &c, condition.span);
+        };
+        if let Some(known) = self.exprs.as_num(test) {
+            return if known == 0.0 { self.if_expression(rest, otherwise, view, span) } else { self.eval(value, view) };
+        }
+        if self.is_evaluated(test) {
+            let mark = self.diagnostics.len();
+            match self.constant_boolean(condition, view) {
+                Some(true) => return self.eval(value, view),
+                Some(false) => return self.if_expression(rest, otherwise, view, span),
+                // in the body of a function that is inlined, arguments are expressions
+                None => self.diagnostics.truncate(mark),
+            }
+        }
+        let mark = (self.diagnostics.len(), self.eval.calls.len());
+        let not = self.exprs.not(test);
+        let a = self.guarded(test, |s| s.eval(value, view));
+        let b = self.guarded(not, |s| s.if_expression(rest, otherwise, view, span));
+        let by_parameter =
+            self.variability(test) <= Variability::Parameter && !self.eval.mode.procedure && self.eval.frame == 0;
+        // what is a state must be known before the run
+        if by_parameter
+            && let (Some(a), Some(b)) = (&a, &b)
+            && self.derivatives_differ(a, b)
+            && !self.found_at_start(test)
+        {
+            self.eval.calls.truncate(mark.1);
+            return match self.constant_boolean(condition, view)? {
+                true => self.eval(value, view),
+                false => self.if_expression(rest, otherwise, view, span),
+            };
+        }
+        let merged = match (&a, &b) {
+            (Some(a), Some(b)) => a.zip(b, &mut |x, y, _| self.exprs.if_(test, x, y)),
+            _ => None,
+        };
+        if merged.is_some() {
+            return merged;
+        }
+        // A branch that has no meaning here (an absent component, another size) is allowed when a parameter decides.
+        if by_parameter {
+            self.diagnostics.truncate(mark.0);
+            self.eval.calls.truncate(mark.1);
+            return match self.constant_boolean(condition, view)? {
+                true => self.eval(value, view),
+                false => self.if_expression(rest, otherwise, view, span),
+            };
+        }
+        let (a, b) = (a?, b?);
+        if let (Val::Text(_), Val::Text(_)) = (&a, &b) {
+            return self.fail(Code::NotConstant, "this text must be known before the run", span);
+        }
+        self.sizes_differ(&a, &b, span)
+    }
+
+    /// Whether a condition hangs on nothing but parameters annotated `Evaluate` (MLS 18.3).
+    fn is_evaluated(&self, test: ExprId) -> bool {
+        let variables = self.exprs.variables(test);
+        let own = !self.eval.mode.procedure && self.eval.frame == 0;
+        own && !variables.is_empty() && variables.iter().all(|v| self.variable(*v).evaluate)
+    }
+
+    /// Whether one of two values has derivatives that the other one has not.
+    fn derivatives_differ(&self, a: &Val, b: &Val) -> bool {
+        let of = |v: &Val| {
+            let mut scalars = Vec::new();
+            v.scalars(&mut scalars);
+            let mut found: Vec<_> = scalars.into_iter().flat_map(|e| self.exprs.derivatives(e)).collect();
+            found.sort_unstable();
+            found.dedup();
+            found
+        };
+        of(a) != of(b)
+    }
+}
+
+/// A scalar or vector as a matrix, for `[a, b; c, d]`: vectors are columns.
+fn as_matrix(v: Val) -> Val {
+    let mut dims = v.dims().to_vec();
+    while dims.len() < 2 {
+        dims.push(1);
+    }
+    let elements = v.elements().to_vec();
+    Val::array(dims, elements)
+}

@@ -1,0 +1,228 @@
+//! Operators on values: numbers, arrays and matrices, texts, relations.
+
+use crate::instance::Instance;
+use crate::instance::value::{Val, wider};
+use bramah_expr::types::{MessagePart, Type, Variability};
+use bramah_expr::{Binary, Exprs, Rel};
+use bramah_syntax::ast::{BinaryOp, UnaryOp};
+use bramah_syntax::diag::{Code, Diagnostic, Span};
+use std::rc::Rc;
+
+impl<'a> Instance<'a, '_> {
+    pub(in crate::instance) fn unary(&mut self, op: UnaryOp, value: Val, span: Span) -> Option<Val> {
+        if let Some(result) = self.overloaded_unary(op, &value, span) {
+            return result;
+        }
+        let ty = value.element_type();
+        match op {
+            UnaryOp::Not => match ty {
+                Some(Type::Boolean) => Some(value.map(&mut |e, _| self.exprs.not(e))),
+                _ => self.wrong_type("a Boolean", &value, span),
+            },
+            UnaryOp::Plus | UnaryOp::ElementPlus => Some(value),
+            UnaryOp::Minus | UnaryOp::ElementMinus => match ty {
+                Some(Type::Real | Type::Integer) => Some(value.map(&mut |e, _| self.exprs.neg(e))),
+                None if value.elements().is_empty() => Some(value),
+                _ => self.wrong_type("a number", &value, span),
+            },
+        }
+    }
+
+    pub(in crate::instance) fn binary(&mut self, op: BinaryOp, a: Val, b: Val, span: Span) -> Option<Val> {
+        use BinaryOp as B;
+        if let Some(result) = self.overloaded_binary(op, &a, &b, span) {
+            return result;
+        }
+        if let (Val::Text(x), Val::Text(y)) = (&a, &b) {
+            return self.texts(op, x, y, span);
+        }
+        match op {
+            B::Add | B::Sub | B::ElementAdd | B::ElementSub => self.elementwise(op, &a, &b, span),
+            B::Mul => self.product(&a, &b, span),
+            B::Div if b.dims().is_empty() => self.broadcast(op, &a, &b, span),
+            B::Pow if !a.dims().is_empty() => self.matrix_power(&a, &b, span),
+            // arrays are divided and raised element by element with `./` and `.^` only (MLS 10.6)
+            B::Div => self.wrong_type("a single number as divisor", &b, span),
+            B::Pow if !b.dims().is_empty() => self.wrong_type("a single number as exponent", &b, span),
+            B::Pow | B::ElementMul | B::ElementDiv | B::ElementPow => self.broadcast(op, &a, &b, span),
+            B::Lt | B::Le | B::Gt | B::Ge | B::Eq | B::Ne => self.relation(op, &a, &b, span),
+            B::And | B::Or => {
+                let (ta, tb) = (a.element_type(), b.element_type());
+                if ta != Some(Type::Boolean) {
+                    return self.wrong_type("a Boolean", &a, span);
+                }
+                if tb != Some(Type::Boolean) {
+                    return self.wrong_type("a Boolean", &b, span);
+                }
+                let and = op == B::And;
+                let zipped = a.zip(&b, &mut |x, y, _| if and { self.exprs.and(x, y) } else { self.exprs.or(x, y) });
+                zipped.or_else(|| self.sizes_differ(&a, &b, span))
+            }
+        }
+    }
+
+    pub(in crate::instance) fn texts(
+        &mut self,
+        op: BinaryOp,
+        x: &Rc<Vec<MessagePart>>,
+        y: &Rc<Vec<MessagePart>>,
+        span: Span,
+    ) -> Option<Val> {
+        if op == BinaryOp::Add {
+            return Some(Val::Text(Rc::new(x.iter().chain(y.iter()).cloned().collect())));
+        }
+        let words = |p: &Rc<Vec<MessagePart>>| Val::Text(p.clone()).as_text(&self.exprs);
+        let (Some(x), Some(y)) = (words(x), words(y)) else {
+            return self.fail(Code::NotConstant, "this text must be known before the run", span);
+        };
+        let truth = match op {
+            BinaryOp::Eq => x == y,
+            BinaryOp::Ne => x != y,
+            BinaryOp::Lt => x < y,
+            BinaryOp::Le => x <= y,
+            BinaryOp::Gt => x > y,
+            BinaryOp::Ge => x >= y,
+            _ => return self.fail(Code::TypeMismatch, "texts can only be joined with `+` or compared", span),
+        };
+        Some(Val::Scalar(self.exprs.boolean(truth), Type::Boolean))
+    }
+
+    pub(in crate::instance) fn sizes_differ<T>(&mut self, a: &Val, b: &Val, span: Span) -> Option<T> {
+        let message = format!("the two sides do not fit: {} and {}", a.describe(), b.describe());
+        let code = if a.dims() == b.dims() { Code::TypeMismatch } else { Code::SizeMismatch };
+        self.fail(code, &message, span)
+    }
+
+    pub(in crate::instance) fn numeric(&mut self, v: &Val, span: Span) -> Option<()> {
+        match v.element_type() {
+            Some(Type::Real | Type::Integer) => Some(()),
+            None if v.elements().is_empty() => Some(()),
+            _ => self.wrong_type("a number", v, span),
+        }
+    }
+
+    pub(in crate::instance) fn elementwise(&mut self, op: BinaryOp, a: &Val, b: &Val, span: Span) -> Option<Val> {
+        self.numeric(a, span)?;
+        self.numeric(b, span)?;
+        if matches!(op, BinaryOp::ElementAdd | BinaryOp::ElementSub) && a.dims() != b.dims() {
+            return self.broadcast(op, a, b, span);
+        }
+        let op = scalar_op(op);
+        let zipped = a.zip(b, &mut |x, y, _| self.exprs.binary(op, x, y));
+        zipped.or_else(|| self.sizes_differ(a, b, span))
+    }
+
+    /// Scalar with array or equal shapes, element by element.
+    pub(in crate::instance) fn broadcast(&mut self, op: BinaryOp, a: &Val, b: &Val, span: Span) -> Option<Val> {
+        self.numeric(a, span)?;
+        self.numeric(b, span)?;
+        let code = scalar_op(op);
+        let real = matches!(code, Binary::Div | Binary::Pow);
+        let result = match (a.scalar(), b.scalar()) {
+            (Some((x, tx)), _) if !b.dims().is_empty() => {
+                b.map(&mut |y, _| self.exprs.binary(code, x, y)).with_type(tx)
+            }
+            (_, Some((y, ty))) if !a.dims().is_empty() => {
+                a.map(&mut |x, _| self.exprs.binary(code, x, y)).with_type(ty)
+            }
+            _ => match a.zip(b, &mut |x, y, _| self.exprs.binary(code, x, y)) {
+                Some(v) => v,
+                None => return self.sizes_differ(a, b, span),
+            },
+        };
+        Some(if real { result.with_type(Type::Real) } else { result })
+    }
+
+    pub(in crate::instance) fn product(&mut self, a: &Val, b: &Val, span: Span) -> Option<Val> {
+        if a.dims().is_empty() || b.dims().is_empty() {
+            return self.broadcast(BinaryOp::ElementMul, a, b, span);
+        }
+        self.numeric(a, span)?;
+        self.numeric(b, span)?;
+        let ty =
+            wider(a.element_type().unwrap_or(Type::Real), b.element_type().unwrap_or(Type::Real)).unwrap_or(Type::Real);
+        let (da, db) = (a.dims().to_vec(), b.dims().to_vec());
+        if da[da.len() - 1] != db[0] || da.len() > 2 || db.len() > 2 {
+            return self.sizes_differ(a, b, span);
+        }
+        let (rows, inner) = if da.len() == 2 { (da[0], da[1]) } else { (1, da[0]) };
+        let columns = if db.len() == 2 { db[1] } else { 1 };
+        let entry = |v: &Val, i: usize| v.elements()[i].scalar().map_or(Exprs::ZERO, |(e, _)| e);
+        let mut elements = Vec::with_capacity(rows * columns);
+        for r in 0..rows {
+            for c in 0..columns {
+                let mut sum = Exprs::ZERO;
+                for k in 0..inner {
+                    let term = self.exprs.mul(entry(a, r * inner + k), entry(b, k * columns + c));
+                    sum = self.exprs.add(sum, term);
+                }
+                elements.push(Val::Scalar(sum, ty));
+            }
+        }
+        let dims: Vec<usize> = match (da.len(), db.len()) {
+            (2, 2) => vec![rows, columns],
+            (2, 1) => vec![rows],
+            (1, 2) => vec![columns],
+            _ => return elements.pop(),
+        };
+        Some(Val::array(dims, elements))
+    }
+
+    pub(in crate::instance) fn matrix_power(&mut self, a: &Val, b: &Val, span: Span) -> Option<Val> {
+        let n = b.as_number(&self.exprs).filter(|n| *n >= 0.0 && n.fract() == 0.0 && *n <= 100.0);
+        let (&[r, c], Some(n)) = (a.dims(), n) else { return self.sizes_differ(a, b, span) };
+        if r != c {
+            return self.sizes_differ(a, b, span);
+        }
+        let mut result = self.identity(r);
+        for _ in 0..n as usize {
+            result = self.product(&result, a, span)?;
+        }
+        Some(result)
+    }
+
+    pub(in crate::instance) fn identity(&mut self, n: usize) -> Val {
+        let elements = (0..n * n).map(|i| if i % (n + 1) == 0 { Exprs::ONE } else { Exprs::ZERO });
+        Val::array(vec![n, n], elements.map(|e| Val::Scalar(e, Type::Integer)).collect())
+    }
+
+    pub(in crate::instance) fn relation(&mut self, op: BinaryOp, a: &Val, b: &Val, span: Span) -> Option<Val> {
+        let (Some((x, tx)), Some((y, ty))) = (a.scalar(), b.scalar()) else {
+            return self.sizes_differ(a, b, span);
+        };
+        if wider(tx, ty).is_none() {
+            return self.sizes_differ(a, b, span);
+        }
+        let rel = match op {
+            BinaryOp::Lt => Rel::Lt,
+            BinaryOp::Le => Rel::Le,
+            BinaryOp::Gt => Rel::Gt,
+            BinaryOp::Ge => Rel::Ge,
+            BinaryOp::Eq => Rel::Eq,
+            _ => Rel::Ne,
+        };
+        let plain = self.eval.mode.no_event
+            || self.eval.mode.procedure
+            || self.variability(x).max(self.variability(y)) <= Variability::Discrete;
+        if !plain && matches!(rel, Rel::Eq | Rel::Ne) {
+            self.report(
+                Diagnostic::new(Code::TypeMismatch, "two Reals cannot be compared with `==` or `<>` in a model")
+                    .at(span, "Reals that change continuously are never exactly equal")
+                    .help("compare with `<` or `>`, or test `abs(a - b) < eps`"),
+            );
+            return None;
+        }
+        let e = if plain { self.exprs.rel(rel, x, y) } else { self.exprs.event_rel(rel, x, y) };
+        Some(Val::Scalar(e, Type::Boolean))
+    }
+}
+
+pub(in crate::instance) fn scalar_op(op: BinaryOp) -> Binary {
+    match op {
+        BinaryOp::Add | BinaryOp::ElementAdd => Binary::Add,
+        BinaryOp::Sub | BinaryOp::ElementSub => Binary::Sub,
+        BinaryOp::Div | BinaryOp::ElementDiv => Binary::Div,
+        BinaryOp::Pow | BinaryOp::ElementPow => Binary::Pow,
+        _ => Binary::Mul,
+    }
+}

@@ -1,0 +1,290 @@
+//! Operator records: operators and constructors that a record class gives its values (MLS 14).
+
+use crate::instance::call::{Callee, Formal};
+use crate::instance::calls::binding::is_input;
+use crate::instance::lookup::{Builtin, Found};
+use crate::instance::template::Template;
+use crate::instance::value::Val;
+use crate::instance::vectorised::Given;
+use crate::instance::{ClassRef, Instance};
+use bramah_expr::types::Type;
+use bramah_syntax::ast::{BinaryOp, Causality, ClassKind, UnaryOp};
+use bramah_syntax::diag::{Code, Diagnostic, Span};
+use bramah_syntax::symbol::Symbol;
+
+/// The name of the operator element behind an operator.
+fn name_of(op: BinaryOp) -> Option<&'static str> {
+    use BinaryOp::{Add, And, Div, ElementAdd, ElementDiv, ElementMul, ElementPow, ElementSub};
+    use BinaryOp::{Eq, Ge, Gt, Le, Lt, Mul, Ne, Or, Pow, Sub};
+    Some(match op {
+        Add | ElementAdd => "'+'",
+        Sub | ElementSub => "'-'",
+        Mul | ElementMul => "'*'",
+        Div | ElementDiv => "'/'",
+        Pow | ElementPow => "'^'",
+        Lt => "'<'",
+        Le => "'<='",
+        Gt => "'>'",
+        Ge => "'>='",
+        Eq => "'=='",
+        Ne => "'<>'",
+        And => "'and'",
+        Or => "'or'",
+    })
+}
+
+impl<'a> Instance<'a, '_> {
+    /// The number of a class of operator records; `None` for other classes.
+    pub(in crate::instance) fn operator_class(&mut self, class: &ClassRef<'a>) -> Option<u32> {
+        let template = self.template(class.class, class.parent);
+        self.operator_class_of(&template)
+    }
+
+    /// The same by what the class holds.
+    pub(in crate::instance) fn operator_class_of(&mut self, template: &Template<'a>) -> Option<u32> {
+        // `record C = Complex(...)` and `connector C = input Complex` are `Complex`, and plain records pay nothing
+        if !matches!(template.kind, ClassKind::Record { operator: true } | ClassKind::Connector { .. }) {
+            return None;
+        }
+        let base = template.bases.last().filter(|b| matches!(b.ast.kind, ClassKind::Record { operator: true }))?;
+        let (own, parent) = (base.class, base.parent);
+        let known = self.operator_records.iter().position(|c| c.class == own);
+        let at = known.unwrap_or_else(|| {
+            self.operator_records.push(ClassRef { class: own, parent, args: [].into() });
+            self.operator_records.len() - 1
+        });
+        u32::try_from(at).ok()
+    }
+
+    /// The class of an operator record, or of the elements of an array of them.
+    fn record_class(value: &Val) -> Option<u32> {
+        match value {
+            Val::Record(record) => record.class,
+            Val::Array { elements, .. } => elements.first().and_then(Self::record_class),
+            _ => None,
+        }
+    }
+
+    /// A binary operator on operator records; `None` where neither side is one.
+    pub(in crate::instance) fn overloaded_binary(
+        &mut self,
+        op: BinaryOp,
+        a: &Val,
+        b: &Val,
+        span: Span,
+    ) -> Option<Option<Val>> {
+        let classes: Vec<u32> = [a, b].into_iter().filter_map(Self::record_class).collect();
+        if classes.is_empty() {
+            return None;
+        }
+        Some(self.apply_binary(op, a, b, &classes, span))
+    }
+
+    fn apply_binary(&mut self, op: BinaryOp, a: &Val, b: &Val, classes: &[u32], span: Span) -> Option<Val> {
+        let name = name_of(op)?;
+        let mut functions = Vec::new();
+        for &class in classes {
+            for f in self.operators(class, name) {
+                if !functions.iter().any(|g: &Callee<'a>| g.name == f.name) {
+                    functions.push(f);
+                }
+            }
+        }
+        let fitting = self.fitting(&functions, &[a.clone(), b.clone()]);
+        if fitting.len() > 1 {
+            return self.ambiguous(name, span);
+        }
+        if let Some(&f) = fitting.first() {
+            return self.call_function(&functions[f], vec![a.clone(), b.clone()], Vec::new(), span);
+        }
+        // one side is made a record of the other's class
+        for &class in classes {
+            for (x, y) in [
+                (self.converted_to(a, class, span), Some(b.clone())),
+                (Some(a.clone()), self.converted_to(b, class, span)),
+            ] {
+                let (Some(x), Some(y)) = (x, y) else { continue };
+                if let [f] = self.fitting(&functions, &[x.clone(), y.clone()])[..] {
+                    return self.call_function(&functions[f], vec![x, y], Vec::new(), span);
+                }
+            }
+        }
+        self.by_elements(op, a, b, span)
+    }
+
+    /// Element by element: arrays of one size, or an array and a single value (MLS 14.5).
+    fn by_elements(&mut self, op: BinaryOp, a: &Val, b: &Val, span: Span) -> Option<Val> {
+        let (da, db) = (a.dims().to_vec(), b.dims().to_vec());
+        let plain = matches!(op, BinaryOp::Add | BinaryOp::Sub | BinaryOp::Eq | BinaryOp::Ne);
+        let fits = !(da.is_empty() && db.is_empty()) && (da == db || !plain && (da.is_empty() || db.is_empty()));
+        let matrices = op == BinaryOp::Mul && !da.is_empty() && !db.is_empty();
+        if !fits || matrices {
+            let message =
+                format!("there is no operator {} for {} and {}", name_of(op).unwrap_or(""), a.describe(), b.describe());
+            return self.fail(Code::TypeMismatch, &message, span);
+        }
+        let dims = if da.is_empty() { db } else { da };
+        let count: usize = dims.iter().product();
+        let at = |v: &Val, i: usize| if v.dims().is_empty() { v.clone() } else { v.elements()[i].clone() };
+        let mut elements = Vec::with_capacity(count);
+        for i in 0..count {
+            elements.push(self.binary(op, at(a, i), at(b, i), span)?);
+        }
+        Some(Val::array(dims, elements))
+    }
+
+    /// A unary operator on an operator record; `None` where it is none.
+    pub(in crate::instance) fn overloaded_unary(
+        &mut self,
+        op: UnaryOp,
+        value: &Val,
+        span: Span,
+    ) -> Option<Option<Val>> {
+        let class = Self::record_class(value)?;
+        let name = match op {
+            UnaryOp::Minus | UnaryOp::ElementMinus => "'-'",
+            UnaryOp::Not => "'not'",
+            UnaryOp::Plus | UnaryOp::ElementPlus => return Some(Some(value.clone())),
+        };
+        if let Val::Array { dims, elements } = value {
+            let each: Option<Vec<Val>> =
+                elements.iter().map(|v| self.overloaded_unary(op, v, span).flatten()).collect();
+            return Some(each.map(|all| Val::array(dims.clone(), all)));
+        }
+        let functions = self.operators(class, name);
+        Some(match self.fitting(&functions, std::slice::from_ref(value))[..] {
+            [f] => self.call_function(&functions[f], vec![value.clone()], Vec::new(), span),
+            _ => self.fail(Code::TypeMismatch, &format!("there is no operator {name} for {}", value.describe()), span),
+        })
+    }
+
+    /// The constructors of an operator record by their arguments; `None` where it has none of its own.
+    pub(in crate::instance) fn overloaded_constructor(
+        &mut self,
+        class: &ClassRef<'a>,
+        given: &Given,
+        span: Span,
+    ) -> Option<Option<Val>> {
+        let number = self.operator_class(class)?;
+        let functions = self.operators(number, "'constructor'");
+        if functions.is_empty() {
+            return None;
+        }
+        for f in &functions {
+            let outputs = self.formals(f, |c, _| c.prefix.causality == Some(Causality::Output));
+            if let [_, second, ..] = outputs.as_slice() {
+                let at = second.component.name.span;
+                let message = format!("the constructor `{}` has more than one output", f.name);
+                return Some(self.fail(Code::BadCall, &message, at));
+            }
+        }
+        let mut fitting = Vec::new();
+        for (k, f) in functions.iter().enumerate() {
+            if self.takes(f, &given.positional, &given.named) {
+                fitting.push(k);
+            }
+        }
+        Some(match fitting[..] {
+            [f] => self.call_function(&functions[f], given.positional.clone(), given.named.clone(), span),
+            [] => return None,
+            _ => self.ambiguous("'constructor'", span),
+        })
+    }
+
+    fn ambiguous(&mut self, name: &str, span: Span) -> Option<Val> {
+        let d = Diagnostic::new(Code::BadCall, format!("more than one function of {name} takes these arguments"));
+        self.report(
+            d.at(span, "not clear which").help("let their inputs differ in type or number").note("Modelica 3.6, 14"),
+        );
+        None
+    }
+
+    /// The functions behind an operator of a record class: the operator itself, or those it holds.
+    fn operators(&mut self, class: u32, name: &str) -> Vec<Callee<'a>> {
+        let record = Found::Class(self.operator_records[class as usize].clone());
+        let Some(found @ Found::Class(_)) = self.member(&record, Symbol::new(name)) else { return Vec::new() };
+        let Found::Class(operator) = &found else { return Vec::new() };
+        let template = self.template(operator.class, operator.parent);
+        if matches!(template.kind, ClassKind::Function { .. }) {
+            return vec![self.callee(operator)];
+        }
+        let names: Vec<Symbol> = template.elements.iter().map(|e| e.name).collect();
+        let mut functions = Vec::new();
+        for name in names {
+            if let Some(Found::Class(f)) = self.member(&found, name) {
+                functions.push(self.callee(&f));
+            }
+        }
+        functions
+    }
+
+    fn callee(&mut self, class: &ClassRef<'a>) -> Callee<'a> {
+        let template = self.template(class.class, class.parent);
+        Callee { scope: self.package(class), template, name: self.library.full_name(class.class) }
+    }
+
+    /// Which functions take exactly these arguments.
+    fn fitting(&mut self, functions: &[Callee<'a>], args: &[Val]) -> Vec<usize> {
+        (0..functions.len()).filter(|&k| self.takes(&functions[k], args, &[])).collect()
+    }
+
+    fn takes(&mut self, function: &Callee<'a>, args: &[Val], named: &[(bramah_syntax::ast::Ident, Val)]) -> bool {
+        let inputs = self.formals(function, is_input);
+        if args.len() > inputs.len() || named.iter().any(|(n, _)| inputs[args.len()..].iter().all(|f| f.name != n.name))
+        {
+            return false;
+        }
+        for (k, f) in inputs.iter().enumerate() {
+            let given = args.get(k).or_else(|| named.iter().find(|(n, _)| n.name == f.name).map(|(_, v)| v));
+            let fits = match given {
+                Some(value) => self.fits_input(f, value),
+                None => self.reached(f.view.scope, f.index).binding.is_some(),
+            };
+            if !fits {
+                return false;
+            }
+        }
+        true
+    }
+
+    fn fits_input(&mut self, f: &Formal<'a>, value: &Val) -> bool {
+        if f.component.subscripts.len() != value.dims().len() {
+            return false;
+        }
+        let element = value.elements().first();
+        match self.lookup_path(f.view, &f.component.class) {
+            Ok(Found::Builtin(b)) => fits_builtin(b, element),
+            Ok(Found::Class(c)) => match self.template(c.class, c.parent).builtin {
+                Some(b) => fits_builtin(b, element),
+                None => {
+                    let wanted = self.operator_class(&c);
+                    wanted.is_some() && wanted == element.and_then(Self::record_class)
+                }
+            },
+            _ => false,
+        }
+    }
+
+    /// A value as a record of a class, by the constructor that takes it alone.
+    fn converted_to(&mut self, value: &Val, class: u32, span: Span) -> Option<Val> {
+        if Self::record_class(value).is_some() || !value.dims().is_empty() {
+            return None;
+        }
+        let functions = self.operators(class, "'constructor'");
+        match self.fitting(&functions, std::slice::from_ref(value))[..] {
+            [f] => self.call_function(&functions[f], vec![value.clone()], Vec::new(), span),
+            _ => None,
+        }
+    }
+}
+
+fn fits_builtin(wanted: Builtin, value: Option<&Val>) -> bool {
+    match (wanted, value) {
+        (Builtin::Real, Some(Val::Scalar(_, Type::Real | Type::Integer))) => true,
+        (Builtin::Integer, Some(Val::Scalar(_, Type::Integer))) => true,
+        (Builtin::Boolean, Some(Val::Scalar(_, Type::Boolean))) => true,
+        (Builtin::String, Some(Val::Text(_))) => true,
+        (Builtin::Enumeration(a), Some(Val::Scalar(_, Type::Enumeration(b)))) => a == *b,
+        _ => false,
+    }
+}

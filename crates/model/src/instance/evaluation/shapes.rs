@@ -1,0 +1,104 @@
+//! Sizes of expressions whose values may change.
+
+use crate::instance::evaluation::references::Descent;
+use crate::instance::lookup::Found;
+use crate::instance::{Instance, View};
+use bramah_syntax::ast::{Expr, ExprKind};
+
+impl<'a> Instance<'a, '_> {
+    /// Sizes of what a reference to components of the model selects: they are known where the values are not. `None` where
+    /// it is anything else.
+    pub(in crate::instance) fn declared_dims(&mut self, e: &'a Expr, view: View) -> Option<Vec<usize>> {
+        let ExprKind::Reference(r) = &e.kind else { return None };
+        if !self.eval.mode.constant || !r.global && self.local(r.parts[0].name.name).is_some() {
+            return None;
+        }
+        let from = if r.global { crate::instance::ROOT } else { view };
+        let Found::Component(scope, index) = self.lookup(from, r.parts[0].name.name)? else { return None };
+        let node = self.component(scope, index)?;
+        let mut at = self.selection(node);
+        for (i, p) in r.parts.iter().enumerate() {
+            if i > 0 {
+                let Descent::Nodes(next) = self.descend(&at, p) else { return None };
+                at = next;
+            }
+            if !p.subscripts.is_empty() {
+                at = self.subscript_selection(&at, p, view, r.span)?.ok()?;
+            }
+        }
+        Some(at.dims)
+    }
+
+    /// Sizes of an expression whose value may change, where its form tells them.
+    pub(in crate::instance) fn shape(&mut self, e: &'a Expr, view: View) -> Option<Vec<usize>> {
+        self.in_mode(|m| m.constant = true, |s| s.shape_inside(e, view))
+    }
+
+    pub(in crate::instance) fn shape_inside(&mut self, e: &'a Expr, view: View) -> Option<Vec<usize>> {
+        use bramah_syntax::ast::BinaryOp as B;
+        match &e.kind {
+            ExprKind::Reference(r) if r.parts.len() == 1 && r.parts[0].name.name == "time" => Some(Vec::new()),
+            ExprKind::Reference(_) => self.declared_dims(e, view),
+            ExprKind::Integer(_) | ExprKind::Real(_) | ExprKind::Boolean(_) => Some(Vec::new()),
+            ExprKind::Unary(_, a) => self.shape_inside(a, view),
+            ExprKind::Binary(op, a, b) => {
+                let (a, b) = (self.shape_inside(a, view)?, self.shape_inside(b, view)?);
+                match (op, a.len(), b.len()) {
+                    (_, 0, 0) | (B::Pow, ..) => Some(a),
+                    (_, 0, _) => Some(b),
+                    (_, _, 0) => Some(a),
+                    (B::Mul, 2, 2) => Some(vec![a[0], b[1]]),
+                    (B::Mul, 2, 1) => Some(vec![a[0]]),
+                    (B::Mul, 1, 2) => Some(vec![b[1]]),
+                    (B::Mul, 1, 1) => Some(Vec::new()),
+                    _ => Some(a),
+                }
+            }
+            ExprKind::Array(items) => {
+                let inner = items.iter().find_map(|e| self.shape_inside(e, view))?;
+                Some(std::iter::once(items.len()).chain(inner).collect())
+            }
+            ExprKind::Matrix(rows) => {
+                let mut all = [0, 0];
+                for row in rows {
+                    let mut width = 0;
+                    let mut height = 1;
+                    for e in row {
+                        let part = self.shape_inside(e, view)?;
+                        height = part.first().copied().unwrap_or(1);
+                        width += part.get(1).copied().unwrap_or(1);
+                    }
+                    all = [all[0] + height, width];
+                }
+                Some(all.to_vec())
+            }
+            ExprKind::If { branches, otherwise } => {
+                for (condition, value) in branches {
+                    let mark = self.diagnostics.len();
+                    let known = self.constant_boolean(condition, view);
+                    self.diagnostics.truncate(mark);
+                    if known != Some(false) {
+                        return self.shape_inside(value, view);
+                    }
+                }
+                self.shape_inside(otherwise, view)
+            }
+            ExprKind::Call { function, args, .. } if function.parts.len() == 1 => {
+                match function.parts[0].name.name.as_str() {
+                    "fill" => {
+                        let inner = self.shape_inside(args.first()?, view)?;
+                        let mark = self.diagnostics.len();
+                        let outer: Option<Vec<usize>> = args[1..].iter().map(|e| self.dimension(e, view)).collect();
+                        self.diagnostics.truncate(mark);
+                        Some(outer?.into_iter().chain(inner).collect())
+                    }
+                    "noEvent" | "pre" | "der" | "abs" | "sqrt" | "sin" | "cos" | "exp" => {
+                        self.shape_inside(args.first()?, view)
+                    }
+                    _ => None,
+                }
+            }
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! The mutable surroundings of an evaluation.
+
+use crate::instance::Instance;
+use crate::instance::value::Val;
+use bramah_expr::ExprId;
+use bramah_expr::types::Type;
+use bramah_syntax::diag::FileId;
+use bramah_syntax::symbol::Symbol;
+use rustc_hash::FxHashMap;
+
+/// The mutable surroundings of an evaluation.
+#[derive(Default)]
+pub struct State {
+    /// Loop variables and the locals of functions, innermost last.
+    pub locals: Vec<(Symbol, Val)>,
+    /// First local of the function being evaluated.
+    pub frame: usize,
+    /// How expressions are evaluated at present.
+    pub mode: Mode,
+    /// Sizes that `end` means, and what counts along the dimension, innermost last.
+    pub ends: Vec<(usize, Type)>,
+    /// Depth of function calls.
+    pub depth: usize,
+    /// Set when a function cannot be written as an expression and must become a procedure.
+    pub not_inline: bool,
+    /// An assertion fails where the run may not come: the function around it must become a procedure.
+    pub may_fail: bool,
+    /// Statements carried out, to end what never ends.
+    pub work: Work,
+    /// `when`s met in an algorithm section of the model.
+    pub whens: Vec<crate::instance::algorithm::AlgorithmWhen>,
+    /// `assert`s and `terminate`s met there since the section, or the branch of a `when`, began.
+    pub calls: Vec<crate::instance::algorithm::AlgorithmCall>,
+    /// Conditions of the `if`s around the present statement of such a section.
+    pub guards: Vec<ExprId>,
+    /// The procedure being translated.
+    pub(in crate::instance) translation: crate::instance::procedure::Translation,
+    /// The variables of the algorithm section being carried out, among the locals.
+    pub section: std::ops::Range<usize>,
+    /// The text of values given from outside.
+    pub override_file: Option<FileId>,
+    /// These values as they were given, by the names of the variables.
+    pub texts: FxHashMap<String, String>,
+}
+
+/// How expressions are evaluated; [`Instance::in_mode`] changes it for a while.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Mode {
+    /// Parameters count by their values.
+    pub constant: bool,
+    /// Relations make no events.
+    pub no_event: bool,
+    /// Inside `pre`: variables of the section mean themselves, not what the section has made of them.
+    pub before: bool,
+    /// A procedure is being translated.
+    pub procedure: bool,
+    /// What a procedure calls is being written out.
+    pub under_procedure: bool,
+    /// Assertions of the function being carried out are kept for the run.
+    pub keep_asserts: bool,
+}
+
+impl Instance<'_, '_> {
+    /// Does something in another mode.
+    pub fn in_mode<T>(&mut self, change: impl FnOnce(&mut Mode), act: impl FnOnce(&mut Self) -> T) -> T {
+        let before = self.eval.mode;
+        change(&mut self.eval.mode);
+        let done = act(self);
+        self.eval.mode = before;
+        done
+    }
+
+    /// Does something in a frame of its own, as the body of a function: the locals around it are out of reach, those made in it
+    /// end with it, and relations make no events.
+    pub(in crate::instance) fn in_frame<T>(&mut self, act: impl FnOnce(&mut Self) -> T) -> T {
+        let (frame, end) = (self.eval.frame, self.eval.locals.len());
+        self.eval.frame = end;
+        let done = self.in_mode(|m| m.no_event = true, act);
+        self.eval.locals.truncate(end);
+        self.eval.frame = frame;
+        done
+    }
+}
+
+/// Statements carried out, against the most that are allowed.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Work {
+    /// The present function is called with known values only.
+    pub known: bool,
+    /// By functions that are written out, and by those that are simply carried out.
+    done: [usize; 2],
+    most: [usize; 2],
+}
+
+impl Work {
+    /// A fresh allowance for what is written out and what is carried out.
+    pub fn allowed(most: [usize; 2]) -> Self {
+        Work { known: false, done: [0; 2], most }
+    }
+
+    /// Counts a statement; false when there have been too many.
+    pub fn step(&mut self) -> bool {
+        let of = usize::from(self.known);
+        self.done[of] += 1;
+        self.done[of] <= self.most[of]
+    }
+}

@@ -1,0 +1,561 @@
+//! Names: from the innermost place outwards, through inherited elements, imports and enclosing classes (MLS 5.3).
+
+use crate::instance::modifiers::{Arg, ArgKind, Reached};
+use crate::instance::template::{Base, DEEPEST, Element, Kind, Source, Template, What};
+use crate::instance::{ClassRef, ElementState, Enumeration, Inherited, Instance, NodeId, ROOT, Scope, ScopeId, View};
+use crate::resolve::ClassId;
+use bramah_syntax::ast::{self, ClassBody, Import};
+use bramah_syntax::diag::{Code, Diagnostic, Span};
+use bramah_syntax::symbol::Symbol;
+use rustc_hash::FxHashMap;
+use std::rc::Rc;
+
+/// The types that need no declaration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the Modelica names")]
+pub enum Builtin {
+    Real,
+    Integer,
+    Boolean,
+    String,
+    /// `ExternalObject`
+    Object,
+    /// Index into `Instance::enumerations`.
+    Enumeration(u32),
+}
+
+/// What a name means.
+#[derive(Clone)]
+pub enum Found<'a> {
+    /// An element that is a component.
+    Component(ScopeId, u32),
+    /// A class.
+    Class(ClassRef<'a>),
+    /// A built-in type.
+    Builtin(Builtin),
+}
+
+/// Enumerations that are always there.
+pub const STATE_SELECT: u32 = 0;
+/// `AssertionLevel`
+pub const ASSERTION_LEVEL: u32 = 1;
+
+/// The predefined enumerations, in the order of the constants above.
+pub fn predefined_enumerations() -> Vec<Enumeration> {
+    let make = |name: &str, literals: &[&str]| Enumeration {
+        name: name.into(),
+        literals: literals.iter().map(|l| Symbol::new(l)).collect(),
+    };
+    vec![
+        make("StateSelect", &["never", "avoid", "default", "prefer", "always"]),
+        make("AssertionLevel", &["warning", "error"]),
+    ]
+}
+
+fn builtin(name: Symbol) -> Option<Builtin> {
+    Some(match name.as_str() {
+        "Real" => Builtin::Real,
+        "Integer" => Builtin::Integer,
+        "Boolean" => Builtin::Boolean,
+        "String" => Builtin::String,
+        "ExternalObject" => Builtin::Object,
+        "StateSelect" => Builtin::Enumeration(STATE_SELECT),
+        "AssertionLevel" => Builtin::Enumeration(ASSERTION_LEVEL),
+        _ => return None,
+    })
+}
+
+impl<'a> Instance<'a, '_> {
+    /// What a simple name means at a place.
+    pub fn lookup(&mut self, view: View, name: Symbol) -> Option<Found<'a>> {
+        self.lookup_nested(view, name).or_else(|| self.lookup_top(name))
+    }
+
+    /// What a name means below the top level.
+    pub(in crate::instance) fn lookup_nested(&mut self, mut view: View, name: Symbol) -> Option<Found<'a>> {
+        while view != ROOT {
+            let template = self.scope(view.scope).template.clone();
+            let base = &template.bases[view.base as usize];
+            if !base.short {
+                if base.names.contains(&name)
+                    && let Some(&i) = template.by_name.get(&name)
+                {
+                    return Some(self.found(view.scope, &template, i));
+                }
+                if let Some(class) = self.library.child(base.class, name) {
+                    return Some(Found::Class(ClassRef { class, parent: view, args: Rc::from([]) }));
+                }
+                if let Some(found) = self.imported(base, name) {
+                    return Some(found);
+                }
+            }
+            view = if base.ast.prefixes.encapsulated { ROOT } else { base.parent };
+        }
+        None
+    }
+
+    fn lookup_top(&mut self, name: Symbol) -> Option<Found<'a>> {
+        if let Some(b) = builtin(name) {
+            return Some(Found::Builtin(b));
+        }
+        self.library.top(name).map(|class| Found::Class(ClassRef { class, parent: ROOT, args: Rc::from([]) }))
+    }
+
+    fn imported(&mut self, base: &Base<'a>, name: Symbol) -> Option<Found<'a>> {
+        for import in &base.imports {
+            let found = match import {
+                Import::Single { alias, path } => {
+                    let known = alias.as_ref().or(path.parts.last()).map(|i| i.name);
+                    if known == Some(name) { self.lookup_full(&path.parts, None) } else { None }
+                }
+                Import::Some(path, names) if names.iter().any(|n| n.name == name) => {
+                    self.lookup_full(&path.parts, Some(name))
+                }
+                Import::Some(..) => None,
+                Import::All(path) => self.lookup_full(&path.parts, Some(name)),
+            };
+            if found.is_some() {
+                return found;
+            }
+        }
+        None
+    }
+
+    fn lookup_full(&mut self, parts: &[ast::Ident], last: Option<Symbol>) -> Option<Found<'a>> {
+        let mut found = self.lookup_top(parts[0].name)?;
+        for part in &parts[1..] {
+            let inside = self.member(&found, part.name)?;
+            self.check_member(&found, &inside, *part);
+            found = inside;
+        }
+        match last {
+            Some(name) => self.member(&found, name),
+            None => Some(found),
+        }
+    }
+
+    /// The meaning of an element: its class, or the component itself.
+    fn found(&mut self, scope: ScopeId, template: &Template<'a>, index: u32) -> Found<'a> {
+        match template.elements[index as usize].kind {
+            Kind::Component(_) => Found::Component(scope, index),
+            Kind::Class(_) => Found::Class(self.class_element(scope, index)),
+        }
+    }
+
+    /// A class element of an instance, redeclarations considered.
+    fn class_element(&mut self, scope: ScopeId, index: u32) -> ClassRef<'a> {
+        if let ElementState::Class(found) = &self.scope(scope).elements[index as usize] {
+            return found.clone();
+        }
+        let reached = self.reached(scope, index);
+        let template = self.scope(scope).template.clone();
+        let element = &template.elements[index as usize];
+        let Kind::Class(declared) = element.kind else { unreachable!("the caller found a class") };
+        let own = View { scope, base: element.base };
+        let (ast, parent, redeclared) = match reached.redeclare {
+            Some((ArgKind::Class(c), view, ..)) => (c, view, true),
+            _ => (declared, own, false),
+        };
+        let textual = template.bases[element.base as usize].class;
+        let class = self.library.enter(ast, Some(textual));
+        let mut args = reached.args;
+        if let Some(m) = constraining(declared, redeclared) {
+            let none: Rc<[_]> = Rc::from([]);
+            let given = m.arguments.iter().filter_map(|a| Arg::new(a, own, &none, false));
+            args.extend(given.map(|a| Arg { default: redeclared, ..a }));
+        }
+        let mut found = ClassRef { class, parent, args: args.into() };
+        self.scope_mut(scope).elements[index as usize] = ElementState::Class(found.clone());
+        self.check_class_chain(declared, own, textual, &reached.redeclarations);
+        if redeclared && !self.fits_declared(declared, own, textual, ast.name.span, &found) {
+            // what follows is said of the declared class, which the rest of the text was written for
+            let class = self.library.enter(declared, Some(textual));
+            found = ClassRef { class, parent: own, args: Rc::from([]) };
+            self.scope_mut(scope).elements[index as usize] = ElementState::Class(found.clone());
+        }
+        found
+    }
+
+    /// Classes that redeclarations put in each other's place keep to the constraints said on the way (MLS 7.3).
+    fn check_class_chain(
+        &mut self,
+        declared: &'a ast::Class,
+        own: View,
+        textual: ClassId,
+        all: &[(ArgKind<'a>, View)],
+    ) {
+        let steps = all.iter().filter_map(|(kind, view)| match kind {
+            ArgKind::Class(c) => Some((*c, *view)),
+            _ => None,
+        });
+        let steps: Vec<(&'a ast::Class, View)> = steps.chain([(declared, own)]).collect();
+        let outermost = self.class_of(steps[0].0, steps[0].1, textual);
+        for &(step, view) in &steps {
+            let Some(constraint) = &step.constraint else { continue };
+            let Ok(promised) = self.lookup_path(view, &constraint.path) else { continue };
+            let itself = self.class_of(step, view, textual);
+            if !self.check_subtype(&promised, &itself, step.name.span, constraint.path.span)
+                || !self.check_subtype(&promised, &outermost, steps[0].0.name.span, constraint.path.span)
+            {
+                return;
+            }
+        }
+    }
+
+    fn class_of(&mut self, ast: &'a ast::Class, parent: View, textual: ClassId) -> Found<'a> {
+        let class = self.library.enter(ast, Some(textual));
+        Found::Class(ClassRef { class, parent, args: Rc::from([]) })
+    }
+
+    /// Whether a class that takes the place of a declared one has what the constraining class promises (MLS 6.4).
+    fn fits_declared(
+        &mut self,
+        declared: &'a ast::Class,
+        own: View,
+        textual: ClassId,
+        at: Span,
+        found: &ClassRef<'a>,
+    ) -> bool {
+        let path = match (&declared.constraint, &declared.body) {
+            (Some(c), _) => Some(&c.path),
+            (None, ClassBody::Short { base, .. }) => Some(base),
+            _ => None,
+        };
+        let class = self.library.enter(declared, Some(textual));
+        if self.constrained.len() >= DEEPEST {
+            self.endless_lookup("constraining", class, &self.constrained.clone());
+            return true;
+        }
+        // the lookup may meet other redeclared classes, whose constraints are looked up first
+        self.constrained.push(class);
+        let (constraint, place) = match path {
+            Some(path) => (self.lookup_path(own, path).ok(), path.span),
+            None => (Some(Found::Class(ClassRef { class, parent: own, args: Rc::from([]) })), declared.name.span),
+        };
+        self.constrained.pop();
+        constraint.is_none_or(|c| self.check_subtype(&c, &Found::Class(found.clone()), at, place))
+    }
+
+    /// What a dotted name may reach: nothing protected, and in a class that is used as a package only what does not depend
+    /// on its components (MLS 4.1, 5.3.2).
+    pub(in crate::instance) fn check_member(&mut self, around: &Found<'a>, inside: &Found<'a>, part: ast::Ident) {
+        let Found::Class(class) = around else { return };
+        if self.gathering.iter().any(|(c, _)| *c == class.class) {
+            return;
+        }
+        let template = self.template(class.class, class.parent);
+        let element = template.by_name.get(&part.name).map(|&i| &template.elements[i as usize]);
+        let name = self.library.full_name(class.class);
+        let (message, label, help) = if element.is_some_and(|e| e.protected) {
+            let message = format!("`{}` of `{name}` is protected", part.name);
+            (
+                message,
+                "cannot be reached from outside",
+                "declare it above `protected`, or use it in a class that extends this one",
+            )
+        } else if let (Found::Class(c), false) = (inside, template.is_package()) {
+            if self.library.class(c.class).prefixes.encapsulated {
+                return;
+            }
+            let message = format!("`{}` stands in `{name}`, which is no package", part.name);
+            (
+                message,
+                "this class may depend on components around it",
+                "declare it `encapsulated`, or move it into a package",
+            )
+        } else {
+            return;
+        };
+        if self.diagnostics.iter().any(|d| d.labels.first().is_some_and(|l| l.span == part.span)) {
+            return;
+        }
+        let d = Diagnostic::new(Code::UnknownName, message).at(part.span, label).class(name);
+        self.report(d.help(help).note("Modelica 3.6, 4.1 and 5.3.2"));
+    }
+
+    /// A member of something found: a class in a package, a constant, an inherited class.
+    pub fn member(&mut self, found: &Found<'a>, name: Symbol) -> Option<Found<'a>> {
+        let Found::Class(class) = found else { return None };
+        let scope = if self.gathering.contains(&(class.class, class.parent)) {
+            // `package P extends P.Icons.Package`: what P inherits is not known yet, what is written in it is.
+            self.bare_scope(class.class, class.parent)
+        } else {
+            self.package(class)
+        };
+        let template = self.scope(scope).template.clone();
+        if let Some(&i) = template.by_name.get(&name) {
+            return Some(self.found(scope, &template, i));
+        }
+        for (base, view) in template.bases.iter().zip(0u32..) {
+            if let Some(child) = self.library.child(base.class, name) {
+                let parent = View { scope, base: view };
+                return Some(Found::Class(ClassRef { class: child, parent, args: Rc::from([]) }));
+            }
+        }
+        None
+    }
+
+    /// What a dotted name means; the error is the number of the part that is not known.
+    ///
+    /// # Errors
+    /// The index of the first part that means nothing.
+    pub fn lookup_path(&mut self, view: View, path: &ast::Path) -> Result<Found<'a>, usize> {
+        let first = path.parts[0].name;
+        let start = if path.global { self.lookup_top(first) } else { self.lookup(view, first) };
+        let mut found = start.ok_or(0usize)?;
+        for (i, part) in path.parts.iter().enumerate().skip(1) {
+            let inside = self.member(&found, part.name).ok_or(i)?;
+            self.check_member(&found, &inside, *part);
+            found = inside;
+        }
+        Ok(found)
+    }
+
+    /// A class by path, or a message.
+    pub fn class_at(&mut self, view: View, path: &'a ast::Path) -> Option<Found<'a>> {
+        match self.lookup_path(view, path) {
+            Ok(Found::Component(..)) => {
+                let name = path.dotted();
+                self.report(
+                    Diagnostic::new(Code::WrongClassKind, format!("`{name}` is a component, not a class"))
+                        .at(path.span, "a class is needed here"),
+                );
+                None
+            }
+            Ok(found) => Some(found),
+            Err(part) => {
+                self.unknown_class_at(view, path, part);
+                None
+            }
+        }
+    }
+
+    /// The base class named in an `extends` clause or short class: looked up beside and around the class, not in what
+    /// it inherits.
+    pub(in crate::instance) fn find_base(
+        &mut self,
+        class: ClassId,
+        parent: View,
+        path: &ast::Path,
+    ) -> Option<Found<'a>> {
+        let own = !path.global && matches!(self.library.class(class).body, ClassBody::Long(_));
+        if own {
+            let bare = self.bare_scope(class, parent);
+            return self.lookup_path(View { scope: bare, base: 0 }, path).ok();
+        }
+        self.lookup_path(parent, path).ok()
+    }
+
+    /// A scope that knows only the classes and imports written in a class itself.
+    fn bare_scope(&mut self, class: ClassId, parent: View) -> ScopeId {
+        if let Some(&scope) = self.bare.get(&(class, parent)) {
+            return scope;
+        }
+        let ast = self.library.class(class);
+        let mut base = Base::of(class, ast, parent);
+        let mut elements = Vec::new();
+        let written = if let ClassBody::Long(body) = &ast.body { body.elements.as_slice() } else { &[] };
+        for e in written {
+            match &e.kind {
+                ast::ElementKind::Import(i) => base.imports.push(i),
+                ast::ElementKind::Class(c) if !c.prefixes.redeclare => {
+                    self.library.enter(c, Some(class));
+                    base.names.insert(c.name.name);
+                    elements.push(Element {
+                        name: c.name.name,
+                        kind: Kind::Class(c),
+                        base: 0,
+                        modified: Vec::new(),
+                        protected: e.protected,
+                        span: e.span,
+                    });
+                }
+                _ => {}
+            }
+        }
+        let by_name: FxHashMap<_, _> = elements.iter().map(|e| e.name).zip(0u32..).collect();
+        let template = Template { bases: vec![base], elements, by_name, ..Template::empty(class, ast.kind) };
+        let name = self.library.full_name(class);
+        let scope = self.new_scope(Rc::new(template), name, Rc::from([]), None, ast.name.span);
+        self.bare.insert((class, parent), scope);
+        scope
+    }
+
+    pub(in crate::instance) fn new_scope(
+        &mut self,
+        template: Rc<Template<'a>>,
+        name: String,
+        args: Rc<[Arg<'a>]>,
+        owner: Option<ScopeId>,
+        span: Span,
+    ) -> ScopeId {
+        let elements = vec![ElementState::Unknown; template.elements.len()];
+        let prefix = Inherited::default();
+        self.scopes.push(Scope {
+            template,
+            name,
+            args,
+            binding: None,
+            owner,
+            elements,
+            prefix,
+            span,
+            component: false,
+        });
+        ScopeId(u32::try_from(self.scopes.len() - 1).expect("fewer than 2^32 instances"))
+    }
+
+    /// The scope of a package, or of a class used as one.
+    pub fn package(&mut self, class: &ClassRef<'a>) -> ScopeId {
+        let key = (class.class, class.parent);
+        if class.args.is_empty() {
+            if let Some(&scope) = self.packages.get(&key) {
+                return scope;
+            }
+        } else if let Some(&(_, scope)) =
+            self.dynamic_packages.iter().find(|(c, _)| (c.class, c.parent) == key && Rc::ptr_eq(&c.args, &class.args))
+        {
+            return scope;
+        }
+        let template = self.template(class.class, class.parent);
+        let name = self.library.full_name(class.class);
+        let span = self.library.class(class.class).name.span;
+        let scope = self.new_scope(template, name, class.args.clone(), None, span);
+        if class.args.is_empty() {
+            self.packages.insert(key, scope);
+        } else {
+            self.dynamic_packages.push((class.clone(), scope));
+        }
+        scope
+    }
+
+    /// The enumeration type of a class.
+    pub(in crate::instance) fn enumeration(&mut self, class: ClassId) -> u32 {
+        if let Some(&i) = self.enumeration_index.get(&class) {
+            return i;
+        }
+        let literals = match &self.library.class(class).body {
+            ClassBody::Enumeration(Some(literals)) => literals.iter().map(|l| l.name.name).collect(),
+            _ => Vec::new(),
+        };
+        let name = self.library.full_name(class);
+        self.enumerations.push(Enumeration { name, literals });
+        let i = u32::try_from(self.enumerations.len() - 1).expect("fewer than 2^32 types");
+        self.enumeration_index.insert(class, i);
+        i
+    }
+
+    /// All modifications that reach an element, and its value.
+    pub fn reached(&mut self, scope: ScopeId, index: u32) -> Reached<'a> {
+        let s = self.scope(scope);
+        let template = s.template.clone();
+        let element = &template.elements[index as usize];
+        let mut reached = Reached::default();
+        let args = s.args.clone();
+        let binding = s.binding.clone();
+        let mut outer: Option<Span> = None;
+        let (defaults, given): (Vec<_>, Vec<_>) =
+            args.iter().filter(|a| a.target() == element.name).partition(|a| a.default);
+        for arg in given {
+            if arg.ends_here() {
+                self.check_final(arg.final_, outer, arg.span, element.name);
+                outer = outer.or(Some(arg.span));
+            }
+            reached.take(arg);
+        }
+        let of_record = binding.filter(|_| matches!(element.kind, Kind::Component(_))).map(|b| {
+            let access =
+                b.access.iter().copied().chain([crate::instance::modifiers::Access::Field(element.name)]).collect();
+            crate::instance::modifiers::Binding { access, ..b }
+        });
+        // constants come with the class, not with a value of it (MLS 12.6)
+        let constant =
+            matches!(element.kind, Kind::Component(c) if c.prefix.variability == Some(ast::Variability::Constant));
+        if !constant && reached.binding.is_none() {
+            reached.binding = of_record.clone();
+        }
+        let none: Rc<[_]> = Rc::from([]);
+        let redeclaration = |s: &&Source<'a>| s.base == 0 && template.bases[0].short;
+        let (own, inherited): (Vec<_>, Vec<_>) = element.modified.iter().partition(redeclaration);
+        let as_arg = |s: &Source<'a>| source_arg(s, View { scope, base: s.base }, &none);
+        let own: Vec<Arg<'a>> = own.into_iter().filter_map(as_arg).collect();
+        let defaults = defaults.into_iter().cloned().collect();
+        // what is modified of a base class where it was found comes before what that class says itself
+        let mut of_bases = template.base_args.iter().filter(|(_, arg)| arg.target() == element.name).peekable();
+        let mut below = Vec::with_capacity(inherited.len());
+        for source in inherited {
+            while let Some((_, arg)) = of_bases.next_if(|(base, _)| *base <= source.base) {
+                below.push(arg.clone());
+            }
+            below.extend(as_arg(source));
+        }
+        below.extend(of_bases.map(|(_, arg)| arg.clone()));
+        for arg in [own, defaults, below].iter().flatten() {
+            self.check_final(arg.final_, outer, arg.span, element.name);
+            reached.take(arg);
+            outer = outer.or(Some(arg.span));
+        }
+        if let Kind::Component(c) = element.kind {
+            self.check_final(c.prefixes.final_, outer, c.name.span, element.name);
+            let redeclared = matches!(reached.redeclare, Some((ArgKind::Component(_), ..)));
+            let constraint = c.constraint.as_ref().and_then(|k| k.modification.as_ref());
+            let view = View { scope, base: element.base };
+            if let Some(m) = constraint {
+                reached.modification(m, view, &none, false, false, element.span);
+            }
+            if let Some(m) = c.modification.as_ref().filter(|_| !(redeclared && c.constraint.is_some())) {
+                reached.modification(m, view, &none, false, c.prefixes.final_, element.span);
+            }
+        }
+        if reached.binding.is_none() && !reached.no_binding {
+            reached.binding = of_record;
+        }
+        reached
+    }
+
+    pub(in crate::instance) fn check_final(&mut self, final_: bool, outer: Option<Span>, span: Span, name: Symbol) {
+        if let (true, Some(outer)) = (final_, outer) {
+            self.report(
+                Diagnostic::new(Code::FinalModified, format!("`{name}` is final and cannot be modified"))
+                    .at(outer, "modified here")
+                    .at(span, "declared `final` here")
+                    .help("remove the modifier, or the `final`"),
+            );
+        }
+    }
+
+    /// The component that an `outer` element means: the nearest `inner` of that name above.
+    pub(in crate::instance) fn inner_of(&mut self, scope: ScopeId, name: Symbol) -> Option<NodeId> {
+        let mut at = self.scope(scope).owner;
+        while let Some(owner) = at {
+            let template = self.scope(owner).template.clone();
+            if let Some(&i) = template.by_name.get(&name)
+                && matches!(template.elements[i as usize].kind, Kind::Component(c) if c.prefixes.inner)
+            {
+                return self.component(owner, i);
+            }
+            at = self.scope(owner).owner;
+        }
+        self.inner_declared.get(&(self.root, name)).copied()
+    }
+}
+
+/// What is modified whatever class stands in the place of a declared one: the modifiers of its `constrainedby`, or, where
+/// it was redeclared and has none, those of its own short declaration (MLS 7.3.2).
+fn constraining(declared: &ast::Class, redeclared: bool) -> Option<&ast::Modification> {
+    match (&declared.constraint, &declared.body) {
+        (Some(c), _) => c.modification.as_ref(),
+        (None, ClassBody::Short { modification, .. }) if redeclared => modification.as_ref(),
+        _ => None,
+    }
+}
+
+/// A modification by a base class as an argument.
+fn source_arg<'a>(source: &Source<'a>, view: View, none: &Rc<[crate::instance::modifiers::Access]>) -> Option<Arg<'a>> {
+    let made = |kind, span| Arg { kind, view, access: none.clone(), each: false, final_: false, default: false, span };
+    match source.what {
+        What::Argument(a) => Arg::new(a, view, none, false),
+        What::Component(c) => Some(made(ArgKind::Component(c), c.name.span)),
+        What::Class(c) => Some(made(ArgKind::Class(c), c.name.span)),
+    }
+}

@@ -1,0 +1,217 @@
+//! The connection graph of overconstrained connectors (MLS 9.4.2): its nodes are the overconstrained components, its edges
+//! `Connections.branch` and `connect`. A connection that would close a loop in it, or join two roots, says by the function
+//! `equalityConstraint` that both sides are equal, for as many equations as components would be too many.
+
+use crate::instance::{Instance, NodeId, ScopeId, View};
+use bramah_syntax::ast::{Expr, Reference};
+use bramah_syntax::diag::{Code, Diagnostic, Span};
+use petgraph::unionfind::UnionFind;
+use rustc_hash::{FxHashMap, FxHashSet};
+use std::collections::VecDeque;
+
+/// A connection of two overconstrained components.
+#[derive(Clone, Copy, Debug)]
+pub struct Link {
+    /// One side.
+    pub a: NodeId,
+    /// The other.
+    pub b: NodeId,
+    /// Its place.
+    pub span: Span,
+    /// The instance in which it stands.
+    pub scope: ScopeId,
+}
+
+/// Roots that a model offers.
+#[derive(Clone, Copy, Debug)]
+struct Offer {
+    node: usize,
+    /// Smaller is preferred.
+    priority: f64,
+}
+
+/// The graph as the equations of a model state it.
+#[derive(Default)]
+pub(super) struct Forest {
+    nodes: Vec<NodeId>,
+    number: FxHashMap<NodeId, usize>,
+    branches: Vec<(usize, usize)>,
+    roots: Vec<(usize, Span)>,
+    offers: Vec<Offer>,
+    /// Components joined by `connect`.
+    pub links: Vec<Link>,
+}
+
+/// What came of it.
+pub(super) struct Spanned {
+    /// For each link whether it is part of the spanning tree.
+    pub kept: Vec<bool>,
+    /// The chosen roots.
+    pub roots: FxHashSet<NodeId>,
+    /// First sides of branches that lie nearer to the root.
+    pub rooted: FxHashSet<NodeId>,
+}
+
+/// Whether a call is a statement about the connection graph.
+pub fn is_graph_statement(function: &Reference) -> bool {
+    let [package, what] = function.parts.as_slice() else { return false };
+    package.name.name == "Connections" && matches!(what.name.name.as_str(), "branch" | "root" | "potentialRoot")
+}
+
+impl Forest {
+    fn number(&mut self, node: NodeId) -> usize {
+        let next = self.nodes.len();
+        let number = *self.number.entry(node).or_insert(next);
+        if number == next {
+            self.nodes.push(node);
+        }
+        number
+    }
+
+    /// Takes `Connections.branch`, `root` or `potentialRoot`.
+    pub(super) fn add<'a>(
+        &mut self,
+        instance: &mut Instance<'a, '_>,
+        function: &Reference,
+        args: &'a [Expr],
+        view: View,
+        span: Span,
+    ) {
+        let what = function.parts[1].name.name.as_str();
+        let named = match (what, args) {
+            ("branch", [a, b]) => vec![a, b],
+            ("root", [a]) | ("potentialRoot", [a] | [a, _]) => vec![a],
+            _ => {
+                let d = Diagnostic::new(Code::BadCall, format!("`Connections.{what}` with {} arguments", args.len()));
+                instance.diagnostics.push(d.at(span, "").note("Modelica 3.6, 9.4"));
+                return;
+            }
+        };
+        let nodes: Option<Vec<NodeId>> = named.into_iter().map(|e| instance.overconstrained_node(e, view)).collect();
+        let Some(nodes) = nodes else { return };
+        let numbers: Vec<usize> = nodes.into_iter().map(|n| self.number(n)).collect();
+        match (what, numbers.as_slice()) {
+            ("branch", &[a, b]) => self.branches.push((a, b)),
+            ("root", &[a]) => self.roots.push((a, span)),
+            (_, &[node]) => {
+                let priority = match args.get(1) {
+                    None => Some(0.0),
+                    Some(e) => instance.constant(e, view).and_then(|v| v.as_number(&instance.exprs)),
+                };
+                self.offers.extend(priority.map(|priority| Offer { node, priority }));
+            }
+            _ => {}
+        }
+    }
+
+    /// Chooses the spanning trees and their roots.
+    pub(super) fn span(mut self, instance: &mut Instance<'_, '_>) -> (Vec<Link>, Spanned) {
+        let links = std::mem::take(&mut self.links);
+        let ends: Vec<(usize, usize)> = links.iter().map(|l| (self.number(l.a), self.number(l.b))).collect();
+        let mut trees = Trees::new(self.nodes.len());
+        for &(a, b) in &self.branches {
+            trees.join(a, b);
+        }
+        for &(node, span) in &self.roots {
+            let tree = trees.of(node);
+            if let Some(first) = trees.root[tree].replace(node).filter(|&f| f != node) {
+                let [a, b] = [first, node].map(|n| instance.node_name(self.nodes[n]));
+                let message = format!("`{a}` and `{b}` are roots, and branches join them");
+                let d = Diagnostic::new(Code::BadConnect, message).at(span, "a second root");
+                instance.diagnostics.push(d.note("Modelica 3.6, 9.4").help("leave one of the two"));
+            }
+        }
+        let kept: Vec<bool> = ends.iter().map(|&(a, b)| trees.link(a, b)).collect();
+        self.offers.sort_by(|a, b| a.priority.total_cmp(&b.priority));
+        for offer in &self.offers {
+            let tree = trees.of(offer.node);
+            trees.root[tree].get_or_insert(offer.node);
+        }
+        let kept_ends = ends.iter().zip(&kept).filter(|(_, k)| **k).map(|(e, _)| *e);
+        let edges: Vec<(usize, usize)> = self.branches.iter().copied().chain(kept_ends).collect();
+        for node in 0..self.nodes.len() {
+            let tree = trees.of(node);
+            if trees.root[tree].is_none() {
+                self.no_root(instance, node, &links, &ends);
+                trees.root[tree] = Some(node);
+            }
+        }
+        let roots: Vec<usize> = (0..self.nodes.len()).filter(|&n| trees.is_root(n)).collect();
+        let depth = depths(self.nodes.len(), &edges, &roots);
+        let nearer = self.branches.iter().filter(|(a, b)| depth[*a] < depth[*b]);
+        let rooted = nearer.map(|(a, _)| self.nodes[*a]).collect();
+        let roots = roots.into_iter().map(|n| self.nodes[n]).collect();
+        (links, Spanned { kept, roots, rooted })
+    }
+
+    fn no_root(&self, instance: &mut Instance<'_, '_>, node: usize, links: &[Link], ends: &[(usize, usize)]) {
+        let name = instance.node_name(self.nodes[node]);
+        let message = format!("nothing that `{name}` is connected to can be a root");
+        let mut d = Diagnostic::new(Code::BadConnect, message).note("Modelica 3.6, 9.4");
+        if let Some(at) = ends.iter().position(|&(a, b)| a == node || b == node) {
+            d = d.at(links[at].span, "joined here");
+        }
+        instance.diagnostics.push(d.help(
+            "connect a component that fixes the reference, such as a ground or a world, or state `Connections.root`",
+        ));
+    }
+}
+
+/// Disjoint trees with their roots.
+struct Trees {
+    sets: UnionFind<usize>,
+    /// The root of each tree, at the node that stands for it.
+    root: Vec<Option<usize>>,
+}
+
+impl Trees {
+    fn new(count: usize) -> Self {
+        Trees { sets: UnionFind::new(count), root: vec![None; count] }
+    }
+
+    fn of(&self, node: usize) -> usize {
+        self.sets.find(node)
+    }
+
+    fn is_root(&self, node: usize) -> bool {
+        self.root[self.of(node)] == Some(node)
+    }
+
+    fn join(&mut self, a: usize, b: usize) {
+        let root = self.root[self.of(a)].or(self.root[self.of(b)]);
+        self.sets.union(a, b);
+        let tree = self.of(a);
+        self.root[tree] = root;
+    }
+
+    /// Joins two trees unless they are one, or both have a root.
+    fn link(&mut self, a: usize, b: usize) -> bool {
+        let (x, y) = (self.of(a), self.of(b));
+        let apart = x != y && !(self.root[x].is_some() && self.root[y].is_some());
+        if apart {
+            self.join(x, y);
+        }
+        apart
+    }
+}
+
+/// The distance of every node from its root.
+fn depths(count: usize, edges: &[(usize, usize)], roots: &[usize]) -> Vec<usize> {
+    let mut beside: Vec<Vec<usize>> = vec![Vec::new(); count];
+    for &(a, b) in edges {
+        beside[a].push(b);
+        beside[b].push(a);
+    }
+    let mut depth = vec![usize::MAX; count];
+    let mut next: VecDeque<usize> = roots.iter().copied().collect();
+    roots.iter().for_each(|&r| depth[r] = 0);
+    while let Some(at) = next.pop_front() {
+        for &n in &beside[at] {
+            if depth[n] == usize::MAX {
+                depth[n] = depth[at] + 1;
+                next.push_back(n);
+            }
+        }
+    }
+    depth
+}

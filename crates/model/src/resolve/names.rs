@@ -1,0 +1,262 @@
+//! What a name means by the text alone, with inheritance and imports: for pages, descriptions and editors.
+//!
+//! Redeclared classes count as what they are declared as; what an instance makes of them is the business of `instance`.
+
+use super::{ClassId, Library, nested_classes};
+use bramah_syntax::ast::{
+    ArgumentKind, Class, ClassBody, ClassKind, Component, ElementKind, EnumLiteral, Expr, Ident, Import, LongBody,
+    Modification, Path,
+};
+use bramah_syntax::symbol::Symbol;
+use std::rc::Rc;
+
+/// What a name stands for.
+#[derive(Clone, Copy, Debug)]
+pub enum Target<'a> {
+    /// A class.
+    Class(ClassId),
+    /// A component.
+    Component(Member<'a>),
+    /// A literal of an enumeration.
+    Literal(ClassId, &'a EnumLiteral),
+    /// The variable of a `for` loop.
+    Iterator(Ident),
+}
+
+/// A declared component with the class that declares it.
+#[derive(Clone, Copy, Debug)]
+pub struct Member<'a> {
+    /// Where it is declared: the class itself or a base.
+    pub owner: ClassId,
+    /// Its declaration.
+    pub component: &'a Component,
+    /// Not meant for users.
+    pub protected: bool,
+}
+
+/// The long body of a class, where it has one.
+pub fn body(class: &Class) -> Option<&LongBody> {
+    match &class.body {
+        ClassBody::Long(body) => Some(body),
+        _ => None,
+    }
+}
+
+/// Direct bases of a class.
+pub fn bases(library: &mut Library<'_>, id: ClassId) -> Vec<ClassId> {
+    known_bases(library, id).to_vec()
+}
+
+/// Direct bases of a class. While they are looked for it has none, so that classes that need each other come to an end.
+fn known_bases(library: &mut Library<'_>, id: ClassId) -> Rc<[ClassId]> {
+    if let Some(known) = &library.entries[id.0 as usize].bases {
+        return known.clone();
+    }
+    library.entries[id.0 as usize].bases = Some(Rc::from([]));
+    let class = library.class(id);
+    let paths: Vec<&Path> = match &class.body {
+        ClassBody::Short { base, .. } => vec![base],
+        ClassBody::Long(body) => body.elements.iter().filter_map(|e| base(&e.kind)).collect(),
+        _ => Vec::new(),
+    };
+    let found: Rc<[ClassId]> = paths.into_iter().filter_map(|p| resolve_outside(library, id, p)).collect();
+    library.entries[id.0 as usize].bases = Some(found.clone());
+    found
+}
+
+/// A class and all it inherits, nearest first.
+pub fn lineage(library: &mut Library<'_>, id: ClassId) -> Vec<ClassId> {
+    let mut found = vec![id];
+    let mut next = 0;
+    while next < found.len() {
+        for &base in &*known_bases(library, found[next]) {
+            if !found.contains(&base) {
+                found.push(base);
+            }
+        }
+        next += 1;
+    }
+    found
+}
+
+/// The components of a class, its own first, then inherited ones.
+pub fn members<'a>(library: &mut Library<'a>, id: ClassId) -> Vec<Member<'a>> {
+    let mut found = Vec::new();
+    for owner in lineage(library, id) {
+        let Some(body) = body(library.class(owner)) else { continue };
+        found.extend(body.elements.iter().filter_map(|e| match &e.kind {
+            ElementKind::Component(component) => Some(Member { owner, component, protected: e.protected }),
+            _ => None,
+        }));
+    }
+    found
+}
+
+/// Classes in a class, its own first, then inherited ones; of a package also those in its folder.
+pub fn classes(library: &mut Library<'_>, id: ClassId) -> Vec<ClassId> {
+    let mut found = Vec::new();
+    for owner in lineage(library, id) {
+        let mut names: Vec<Symbol> = nested_classes(library.class(owner)).map(|c| c.name.name).collect();
+        names.extend(library.folder_members(owner));
+        found.extend(names.into_iter().filter_map(|name| library.child(owner, name)));
+    }
+    found.dedup();
+    found
+}
+
+/// The class that a path means inside a class.
+pub fn resolve(library: &mut Library<'_>, from: ClassId, path: &Path) -> Option<ClassId> {
+    named(library, Some(from), &words(path), path.global)
+}
+
+/// The class of a component; `None` for the built-in types.
+pub fn type_of(library: &mut Library<'_>, member: Member<'_>) -> Option<ClassId> {
+    resolve(library, member.owner, &member.component.class)
+}
+
+/// What an attribute such as `unit` is given, by the component itself or by its type.
+pub fn attribute<'a>(library: &mut Library<'a>, member: Member<'a>, name: &str) -> Option<&'a Expr> {
+    if let Some(value) = given(member.component.modification.as_ref(), name) {
+        return Some(value);
+    }
+    let class = type_of(library, member)?;
+    lineage(library, class).into_iter().find_map(|class| match &library.class(class).body {
+        ClassBody::Short { modification, .. } => given(modification.as_ref(), name),
+        _ => None,
+    })
+}
+
+fn given<'a>(modification: Option<&'a Modification>, name: &str) -> Option<&'a Expr> {
+    modification?.arguments.iter().find_map(|argument| match &argument.kind {
+        ArgumentKind::Modify { path, modification: Some(m), .. }
+            if path.parts.len() == 1 && path.parts[0].name == name =>
+        {
+            m.value.as_ref()
+        }
+        _ => None,
+    })
+}
+
+/// What a word means inside a class: its elements, what it inherits and imports, then the classes around it.
+pub fn lookup<'a>(library: &mut Library<'a>, from: ClassId, name: Symbol) -> Option<Target<'a>> {
+    let mut scope = Some(from);
+    while let Some(id) = scope {
+        if let Some(found) = element(library, id, name) {
+            return Some(found);
+        }
+        if let Some(found) = imported(library, id, name) {
+            return Some(Target::Class(found));
+        }
+        scope = library.parent(id);
+    }
+    library.top(name).map(Target::Class)
+}
+
+/// What a word means as an element of a class, its own or an inherited one.
+pub fn element<'a>(library: &mut Library<'a>, class: ClassId, name: Symbol) -> Option<Target<'a>> {
+    for owner in lineage(library, class) {
+        let ast = library.class(owner);
+        if let ClassBody::Enumeration(Some(literals)) = &ast.body
+            && let Some(literal) = literals.iter().find(|l| l.name.name == name)
+        {
+            return Some(Target::Literal(owner, literal));
+        }
+        let component = body(ast).into_iter().flat_map(|b| &b.elements).find_map(|e| match &e.kind {
+            ElementKind::Component(component) if component.name.name == name => {
+                Some(Member { owner, component, protected: e.protected })
+            }
+            _ => None,
+        });
+        if let Some(member) = component {
+            return Some(Target::Component(member));
+        }
+        if let Some(child) = library.child(owner, name) {
+            return Some(Target::Class(child));
+        }
+    }
+    None
+}
+
+/// The class in which the elements of something are looked up: a class itself, or that of a component.
+pub fn inside(library: &mut Library<'_>, target: Target<'_>) -> Option<ClassId> {
+    match target {
+        Target::Class(id) => Some(id),
+        Target::Component(member) => type_of(library, member),
+        Target::Literal(..) | Target::Iterator(_) => None,
+    }
+}
+
+fn words(path: &Path) -> Vec<Symbol> {
+    path.parts.iter().map(|p| p.name).collect()
+}
+
+fn base(kind: &ElementKind) -> Option<&Path> {
+    match kind {
+        ElementKind::Extends(x) => Some(&x.base),
+        _ => None,
+    }
+}
+
+/// As [`resolve`] for the bases of a class, which are looked up without what is inherited.
+fn resolve_outside(library: &mut Library<'_>, class: ClassId, path: &Path) -> Option<ClassId> {
+    let parts = words(path);
+    if !path.global {
+        let own = library.child(class, parts[0]).filter(|f| *f != class);
+        if let Some(found) = own.or_else(|| imported(library, class, parts[0])) {
+            return descend(library, found, &parts[1..]);
+        }
+    }
+    let parent = library.parent(class);
+    named(library, parent, &parts, path.global)
+}
+
+/// The class that dotted words mean inside a class; from the top without one.
+pub fn named(library: &mut Library<'_>, from: Option<ClassId>, parts: &[Symbol], global: bool) -> Option<ClassId> {
+    let (first, rest) = parts.split_first()?;
+    let mut scope = from.filter(|_| !global);
+    while let Some(id) = scope {
+        if let Some(found) = member(library, id, *first).or_else(|| imported(library, id, *first)) {
+            return descend(library, found, rest);
+        }
+        scope = library.parent(id);
+    }
+    let top = library.top(*first)?;
+    descend(library, top, rest)
+}
+
+/// A class in a class, its own or an inherited one.
+fn member(library: &mut Library<'_>, id: ClassId, name: Symbol) -> Option<ClassId> {
+    lineage(library, id).into_iter().find_map(|class| library.child(class, name))
+}
+
+fn imported(library: &mut Library<'_>, id: ClassId, name: Symbol) -> Option<ClassId> {
+    let body = body(library.class(id))?;
+    for element in &body.elements {
+        let ElementKind::Import(import) = &element.kind else { continue };
+        let (path, last) = match import {
+            Import::Single { alias, path } => {
+                let last = path.parts.last().expect("a path has parts").name;
+                (path, (alias.map_or(last, |a| a.name) == name).then_some(None))
+            }
+            Import::All(path) => (path, Some(Some(name))),
+            Import::Some(path, names) => (path, names.iter().any(|n| n.name == name).then_some(Some(name))),
+        };
+        let Some(last) = last else { continue };
+        let parts: Vec<Symbol> = words(path).into_iter().chain(last).collect();
+        let found = named(library, None, &parts, true);
+        if found.is_some() {
+            return found;
+        }
+    }
+    None
+}
+
+/// The class that words mean from a class inwards; what a class imports is not seen from outside.
+fn descend(library: &mut Library<'_>, id: ClassId, parts: &[Symbol]) -> Option<ClassId> {
+    parts.iter().try_fold(id, |id, part| member(library, id, *part))
+}
+
+/// Whether a class is a connector, or a short name for one.
+pub fn is_connector(library: &mut Library<'_>, id: ClassId) -> bool {
+    lineage(library, id).into_iter().any(|c| matches!(library.class(c).kind, ClassKind::Connector { .. }))
+}

@@ -1,0 +1,72 @@
+//! Classes that ship with bramah, packed into the binary.
+
+use bramah_syntax::world::World;
+use include_dir::{Dir, DirEntry, File, include_dir};
+use rustc_hash::FxHashMap;
+use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
+
+static COMPONENTS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/components");
+static MODELS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/models");
+
+/// The world of shipped files, under the paths `components` and `models`.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Shipped;
+
+impl Shipped {
+    /// Folders whose entries are top-level packages.
+    pub fn roots() -> [PathBuf; 3] {
+        ["components".into(), "models".into(), "models/stiff".into()]
+    }
+}
+
+/// What is packed, by its path: the packed folders themselves compare names one by one, part by part.
+struct Packed {
+    files: FxHashMap<&'static str, &'static File<'static>>,
+    folders: FxHashMap<&'static str, &'static Dir<'static>>,
+}
+
+static PACKED: LazyLock<[Packed; 2]> = LazyLock::new(|| [Packed::new(&COMPONENTS), Packed::new(&MODELS)]);
+
+impl Packed {
+    fn new(dir: &'static Dir<'static>) -> Packed {
+        let mut all = Packed { files: FxHashMap::default(), folders: FxHashMap::default() };
+        all.add(dir);
+        all
+    }
+
+    fn add(&mut self, dir: &'static Dir<'static>) {
+        self.folders.extend(dir.path().to_str().map(|path| (path, dir)));
+        self.files.extend(dir.files().filter_map(|file| Some((file.path().to_str()?, file))));
+        dir.dirs().for_each(|inner| self.add(inner));
+    }
+}
+
+fn folder(path: &Path) -> Option<(&'static Packed, &str)> {
+    let [components, models] = &*PACKED;
+    if let Ok(rest) = path.strip_prefix("components") {
+        return Some((components, rest.to_str()?));
+    }
+    path.strip_prefix("models").ok().and_then(|rest| Some((models, rest.to_str()?)))
+}
+
+impl World for Shipped {
+    fn read(&self, path: &Path) -> Result<String, String> {
+        let missing = || format!("no file `{}` ships with bramah", path.display());
+        let (packed, rest) = folder(path).ok_or_else(missing)?;
+        let text = packed.files.get(rest).and_then(|f| f.contents_utf8()).ok_or_else(missing)?;
+        Ok(text.to_string())
+    }
+
+    fn list(&self, path: &Path) -> Option<Vec<(String, bool)>> {
+        let (packed, rest) = folder(path)?;
+        let dir = packed.folders.get(rest)?;
+        let mut entries: Vec<(String, bool)> = dir
+            .entries()
+            .iter()
+            .filter_map(|e| Some((e.path().file_name()?.to_str()?.to_string(), matches!(e, DirEntry::Dir(_)))))
+            .collect();
+        entries.sort();
+        Some(entries)
+    }
+}

@@ -1,0 +1,496 @@
+//! Alias elimination: variables that equal another one or its negative, and variables that are the derivative of
+//! another one.
+//!
+//! Union-find with signs; `w = der(phi)` links `phi` to `w`, and if `phi` equals `psi`, their derivatives are equal
+//! too. The links keep index reduction from inventing `der(phi)` beside `w`.
+
+use super::draft::{Draft, Role, Signed};
+use super::{ActionKind, Alias, messages, parameters};
+use crate::flat::{Equation, Origin, OriginKind, StateSelect, Type};
+use bramah_expr::{Binary, ExprId, Exprs, Node, Unary, VarId};
+use bramah_syntax::diag::Diagnostic;
+
+/// Removes alias equations and rewrites everything in terms of the variables that stay. Contradicting start values go
+/// to `diagnostics`.
+pub(super) fn eliminate(
+    draft: &mut Draft,
+    known: &mut parameters::Known,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> Vec<Alias> {
+    let mut classes = Classes::new(draft);
+    let mut links = Vec::new();
+    let mut found = Vec::new();
+    let mut kept = vec![true; draft.equations.len()];
+    for (i, equation) in draft.equations.iter().enumerate() {
+        match simple_form(&draft.exprs, equation) {
+            Some(Simple::Equal(a, b)) if may_join(draft, a.variable, b) => {
+                kept[i] = !classes.join(draft, a.variable, b)
+            }
+            Some(Simple::Equal(a, b)) if is_found(draft, a.variable) => found.push((a, b)),
+            Some(Simple::Equal(a, b)) if is_found(draft, b.variable) => found.push((b, a)),
+            Some(Simple::Derivative(w, of)) => links.push((i, w, of)),
+            _ => {}
+        }
+    }
+    link_derivatives(draft, &mut classes, &links, &mut kept);
+    retain(draft, &kept);
+    let differentiated = links.iter().map(|(.., of)| of.variable);
+    let targets = classes.settle(draft, differentiated);
+    let aliases = aliases(&targets);
+    for alias in &aliases {
+        merge(draft, known, *alias, diagnostics);
+        draft.roles[alias.variable.index()] = Role::Alias;
+    }
+    for (parameter, variable) in found {
+        let target = targets[variable.variable.index()];
+        let negated = parameter.negated != (variable.negated != target.negated);
+        share_guess(draft, parameter.variable, Signed { variable: target.variable, negated });
+    }
+    rewrite(draft, &targets);
+    // A ring of aliases leaves one that says nothing: it determines no unknown.
+    for equation in draft.equations.iter_mut().filter(|e| e.lhs == e.rhs) {
+        (equation.lhs, equation.rhs) = (Exprs::ZERO, Exprs::ZERO);
+    }
+    aliases
+}
+
+/// An equation of one leaf or two.
+pub(super) enum Simple {
+    /// The variable is 0.
+    Zero(VarId),
+    /// The first equals the second.
+    Equal(Signed, Signed),
+    /// The first is the derivative of the second.
+    Derivative(Signed, Signed),
+}
+
+/// What an equation says where it says no more than that.
+pub(super) fn simple_form(pool: &Exprs, equation: &Equation) -> Option<Simple> {
+    let mut terms = Terms::default();
+    terms.collect(pool, equation.lhs, false, 0)?;
+    terms.collect(pool, equation.rhs, true, 0)?;
+    let ((a, first), (b, second)) = match terms.found.as_slice() {
+        [first, second] => (first, second),
+        [(only, _)] => {
+            return if let Node::Var(v) = pool.node(*only) { Some(Simple::Zero(v)) } else { None };
+        }
+        _ => return None,
+    };
+    // `first*a + second*b = 0`
+    let negated = first == second;
+    match (pool.node(*a), pool.node(*b)) {
+        (Node::Var(a), Node::Var(b)) if a != b => {
+            Some(Simple::Equal(Signed { variable: a, negated: false }, Signed { variable: b, negated }))
+        }
+        (Node::Var(w), Node::Der(x)) | (Node::Der(x), Node::Var(w)) => {
+            Some(Simple::Derivative(Signed { variable: w, negated: false }, Signed { variable: x, negated }))
+        }
+        _ => None,
+    }
+}
+
+/// Up to two leaves with signs; `true` is minus.
+#[derive(Default)]
+struct Terms {
+    found: Vec<(ExprId, bool)>,
+}
+
+impl Terms {
+    fn collect(&mut self, pool: &Exprs, e: ExprId, negated: bool, depth: u32) -> Option<()> {
+        if e == Exprs::ZERO {
+            return Some(());
+        }
+        match pool.node(e) {
+            _ if depth > 4 => None,
+            Node::Var(_) | Node::Der(_) if self.found.len() < 2 => {
+                self.found.push((e, negated));
+                Some(())
+            }
+            Node::Unary(Unary::Neg, a) => self.collect(pool, a, !negated, depth + 1),
+            Node::Binary(op @ (Binary::Add | Binary::Sub), a, b) => {
+                self.collect(pool, a, negated, depth + 1)?;
+                self.collect(pool, b, negated != (op == Binary::Sub), depth + 1)
+            }
+            _ => None,
+        }
+    }
+}
+
+/// Both continuous, or both discrete of one type and equal.
+fn may_join(draft: &Draft, a: VarId, b: Signed) -> bool {
+    let continuous = |v: VarId| {
+        let real = draft.variables[v.index()].ty == Type::Real;
+        draft.role(v) == Role::Continuous || draft.role(v) == Role::Input && real
+    };
+    if continuous(a) && continuous(b.variable) {
+        return true;
+    }
+    let discrete = |v: VarId| {
+        let given = draft.variables[v.index()].ty != Type::Real && draft.role(v) == Role::Input;
+        given || matches!(draft.role(v), Role::Discrete | Role::Sample)
+    };
+    let same = draft.variables[a.index()].ty == draft.variables[b.variable.index()].ty;
+    discrete(a) && discrete(b.variable) && same && !b.negated
+}
+
+/// A parameter that is found at the start.
+fn is_found(draft: &Draft, v: VarId) -> bool {
+    draft.role(v) == Role::FreeParameter && draft.variables[v.index()].ty == Type::Real
+}
+
+/// A variable that equals a parameter found at the start begins its search at the parameter's guess where it has none of
+/// its own, and the other way round.
+fn share_guess(draft: &mut Draft, parameter: VarId, equal: Signed) {
+    if draft.role(equal.variable) != Role::Continuous {
+        return;
+    }
+    let (p, v) = (&draft.variables[parameter.index()], &draft.variables[equal.variable.index()]);
+    let (from, to) = match (p.start, v.start) {
+        (Some(start), None) if !v.fixed => (start, equal.variable),
+        (None, Some(start)) => (start, parameter),
+        _ => return,
+    };
+    draft.variables[to.index()].start = Some(signed(&mut draft.exprs, from, equal.negated));
+}
+
+/// `w = der(x)` links `x` to `w` unless that closes a circle. If `x` has a derivative already, `w` equals it.
+fn link_derivatives(draft: &mut Draft, classes: &mut Classes, links: &[(usize, Signed, Signed)], kept: &mut [bool]) {
+    let unknown = |v: VarId| draft.role(v) == Role::Continuous;
+    let candidates: Vec<_> =
+        links.iter().filter(|(_, w, of)| unknown(w.variable) && unknown(of.variable)).copied().collect();
+    for (i, w, of) in candidates {
+        let (w, of) = (classes.find(w.variable), classes.find_signed(of));
+        // w.variable = +-(w.negated, of.negated) der(of.variable)
+        let derivative = Signed { variable: w.variable, negated: w.negated != of.negated };
+        kept[i] = !classes.link(draft, of.variable, derivative);
+    }
+}
+
+fn retain(draft: &mut Draft, kept: &[bool]) {
+    let mut keep = kept.iter();
+    draft.equations.retain(|_| *keep.next().expect("one flag an equation"));
+    let mut keep = kept.iter();
+    draft.kinds.retain(|_| *keep.next().expect("one flag an equation"));
+}
+
+/// Union-find over variables with signs.
+struct Classes {
+    parent: Vec<Signed>,
+    size: Vec<u32>,
+    /// By root: holds an input or a sample, which nothing may determine.
+    given: Vec<bool>,
+    /// By root: its derivative.
+    derivative: Vec<Option<Signed>>,
+    /// By root: the variable of which it is the derivative.
+    integral: Vec<Option<VarId>>,
+}
+
+impl Classes {
+    fn new(draft: &Draft) -> Self {
+        let count = draft.variables.len();
+        Classes {
+            parent: (0..count as u32).map(|i| Signed { variable: VarId(i), negated: false }).collect(),
+            size: vec![1; count],
+            given: draft.roles.iter().map(|role| matches!(role, Role::Input | Role::Sample)).collect(),
+            derivative: vec![None; count],
+            integral: vec![None; count],
+        }
+    }
+
+    fn find(&mut self, v: VarId) -> Signed {
+        let mut root = Signed { variable: v, negated: false };
+        while self.parent[root.variable.index()].variable != root.variable {
+            let next = self.parent[root.variable.index()];
+            root = Signed { variable: next.variable, negated: root.negated != next.negated };
+        }
+        // Point everything on the way at the root.
+        let mut at = Signed { variable: v, negated: root.negated };
+        while self.parent[at.variable.index()].variable != root.variable && at.variable != root.variable {
+            let next = self.parent[at.variable.index()];
+            self.parent[at.variable.index()] = Signed { variable: root.variable, negated: at.negated };
+            at = Signed { variable: next.variable, negated: at.negated != next.negated };
+        }
+        root
+    }
+
+    fn find_signed(&mut self, v: Signed) -> Signed {
+        let root = self.find(v.variable);
+        Signed { variable: root.variable, negated: root.negated != v.negated }
+    }
+
+    /// Makes `a` equal `b`; false when that is not possible or not new.
+    fn join(&mut self, draft: &Draft, a: VarId, b: Signed) -> bool {
+        let (a, b) = (self.find(a), self.find_signed(b));
+        if a.variable == b.variable || !self.gifts_fit(a.variable, b.variable) || !self.chains_fit(a, b) {
+            return false;
+        }
+        let negated = a.negated != b.negated;
+        let (small, large) = if self.size[a.variable.index()] < self.size[b.variable.index()] {
+            (a.variable, b.variable)
+        } else {
+            (b.variable, a.variable)
+        };
+        self.parent[small.index()] = Signed { variable: large, negated };
+        self.size[large.index()] += self.size[small.index()];
+        self.given[large.index()] |= self.given[small.index()];
+        self.carry_links(draft, small, Signed { variable: large, negated });
+        true
+    }
+
+    /// Two given variables stay apart. So do a given one and a link of a chain: the chain would lose the equation that
+    /// determines it.
+    fn gifts_fit(&self, a: VarId, b: VarId) -> bool {
+        let linked = |v: VarId| self.derivative[v.index()].is_some() || self.integral[v.index()].is_some();
+        match (self.given[a.index()], self.given[b.index()]) {
+            (true, true) => false,
+            (true, false) => !linked(b),
+            (false, true) => !linked(a),
+            (false, false) => true,
+        }
+    }
+
+    /// Whether the derivatives of both, as far as they are linked, can be made equal too.
+    fn chains_fit(&mut self, a: Signed, b: Signed) -> bool {
+        let (mut a, mut b) = (a, b);
+        while a.variable != b.variable {
+            if self.would_close_circle(a.variable, b.variable) {
+                return false;
+            }
+            let (Some(da), Some(db)) = (self.derivative[a.variable.index()], self.derivative[b.variable.index()])
+            else {
+                return true;
+            };
+            let (da, db) = (self.find_signed(da), self.find_signed(db));
+            a = Signed { variable: da.variable, negated: da.negated != a.negated };
+            b = Signed { variable: db.variable, negated: db.negated != b.negated };
+        }
+        a.negated == b.negated
+    }
+
+    /// After `small` joined `large`: its derivative is that of `large` as well.
+    fn carry_links(&mut self, draft: &Draft, small: VarId, large: Signed) {
+        if let Some(of) = self.integral[small.index()].take() {
+            // Sides of the link keep their meaning: readers go through `find`.
+            self.integral[large.variable.index()].get_or_insert(of);
+        }
+        if let Some(d) = self.derivative[small.index()].take() {
+            let turned = Signed { variable: d.variable, negated: d.negated != large.negated };
+            match self.derivative[large.variable.index()] {
+                Some(own) => {
+                    let same = Signed { variable: own.variable, negated: own.negated != turned.negated };
+                    self.join(draft, turned.variable, same);
+                }
+                None => self.derivative[large.variable.index()] = Some(turned),
+            }
+        }
+    }
+
+    /// Makes `d` the derivative of the root `of`; false when that would close a circle.
+    fn link(&mut self, draft: &Draft, of: VarId, d: Signed) -> bool {
+        if let Some(own) = self.derivative[of.index()] {
+            let same = Signed { variable: own.variable, negated: own.negated != d.negated };
+            return self.join(draft, d.variable, same);
+        }
+        if self.given[of.index()] || self.given[d.variable.index()] || self.reaches(d.variable, of) {
+            return false;
+        }
+        // A variable is the derivative of one other at most, so that chains stay chains.
+        if self.integral[d.variable.index()].is_some() {
+            return false;
+        }
+        self.derivative[of.index()] = Some(d);
+        self.integral[d.variable.index()] = Some(of);
+        true
+    }
+
+    /// Whether `to` is `from` or one of its derivatives.
+    fn reaches(&mut self, from: VarId, to: VarId) -> bool {
+        let to = self.find(to).variable;
+        let mut at = self.find(from).variable;
+        loop {
+            if at == to {
+                return true;
+            }
+            match self.derivative[at.index()] {
+                Some(next) => at = self.find(next.variable).variable,
+                None => return false,
+            }
+        }
+    }
+
+    /// Joining two variables of one chain of derivatives would make it a circle, and joining two derivatives of
+    /// different variables a fork.
+    fn would_close_circle(&mut self, a: VarId, b: VarId) -> bool {
+        let linked = |s: &Self, v: VarId| s.derivative[v.index()].is_some() || s.integral[v.index()].is_some();
+        if !linked(self, a) && !linked(self, b) {
+            return false;
+        }
+        if self.reaches(a, b) || self.reaches(b, a) {
+            return true;
+        }
+        match (self.integral[a.index()], self.integral[b.index()]) {
+            (Some(x), Some(y)) => self.find(x).variable != self.find(y).variable,
+            _ => false,
+        }
+    }
+
+    /// Chooses the variable that stays in each class, and records the links between those. Variables whose derivative has
+    /// a name are `differentiated` though the equation that says so may be gone.
+    fn settle(&mut self, draft: &mut Draft, differentiated: impl Iterator<Item = VarId>) -> Vec<Signed> {
+        let count = draft.variables.len();
+        let ranks = ranks(draft, differentiated);
+        let mut best: Vec<Option<VarId>> = vec![None; count];
+        for v in (0..count as u32).map(VarId) {
+            let slot = self.find(v).variable.index();
+            if best[slot].is_none_or(|b| ranks[v.index()] > ranks[b.index()]) {
+                best[slot] = Some(v);
+            }
+        }
+        self.store_links(draft, &best);
+        let target = |v: VarId| {
+            let root = self.find(v);
+            let variable = best[root.variable.index()].expect("every class has a best member");
+            Signed { variable, negated: root.negated != self.find(variable).negated }
+        };
+        (0..count as u32).map(VarId).map(target).collect()
+    }
+
+    /// Rewrites the links in terms of the variables that stay.
+    fn store_links(&mut self, draft: &mut Draft, best: &[Option<VarId>]) {
+        for root in 0..self.derivative.len() {
+            let Some(d) = self.derivative[root] else { continue };
+            let of = best[root].expect("a root has a class");
+            let d_root = self.find(d.variable);
+            let w = best[d_root.variable.index()].expect("a root has a class");
+            let negated = self.find(of).negated ^ d.negated ^ d_root.negated ^ self.find(w).negated;
+            draft.derivative[of.index()] = Some(Signed { variable: w, negated });
+        }
+    }
+}
+
+fn aliases(targets: &[Signed]) -> Vec<Alias> {
+    let pairs = targets.iter().enumerate().filter(|(i, t)| t.variable.index() != *i);
+    pairs.map(|(i, t)| Alias { variable: VarId(i as u32), target: t.variable, negated: t.negated }).collect()
+}
+
+/// What makes a variable the better representative; larger wins.
+type Rank = (bool, bool, StateSelect, bool, bool, bool, bool, std::cmp::Reverse<usize>, std::cmp::Reverse<usize>);
+
+fn ranks(draft: &mut Draft, named: impl Iterator<Item = VarId>) -> Vec<Rank> {
+    let mut differentiated = vec![false; draft.variables.len()];
+    named.for_each(|v| differentiated[v.index()] = true);
+    for (i, _) in draft.live_nodes().iter().enumerate().filter(|(_, live)| **live) {
+        if let Node::Der(v) = draft.exprs.node(ExprId(i as u32)) {
+            differentiated[v.index()] = true;
+        }
+    }
+    let rank = |(i, v): (usize, &crate::flat::Variable)| {
+        (
+            matches!(draft.roles[i], Role::Input | Role::Sample),
+            differentiated[i],
+            v.state_select,
+            v.fixed,
+            v.start.is_some(),
+            !v.hidden,
+            !v.flow,
+            std::cmp::Reverse(v.name.len()),
+            std::cmp::Reverse(i),
+        )
+    };
+    draft.variables.iter().enumerate().map(rank).collect()
+}
+
+/// Merges the attributes of an alias into its target.
+fn merge(draft: &mut Draft, known: &mut parameters::Known, alias: Alias, diagnostics: &mut Vec<Diagnostic>) {
+    let from = draft.variables[alias.variable.index()].clone();
+    let start = from.start.map(|e| if alias.negated { draft.exprs.neg(e) } else { e });
+    draft.when_assigned[alias.target.index()] |= draft.when_assigned[alias.variable.index()];
+    let target = &draft.variables[alias.target.index()];
+    if from.start_is_said() && target.start_is_said() {
+        compare_starts(draft, known, alias, start, diagnostics);
+    }
+    let target = &mut draft.variables[alias.target.index()];
+    if from.fixed && !target.fixed {
+        target.start = start;
+        target.fixed = true;
+    } else if !target.fixed && start.is_some() && (target.start.is_none() || from.confidence < target.confidence) {
+        target.start = start;
+        target.confidence = from.confidence;
+    }
+    if target.nominal.is_none() {
+        target.nominal = from.nominal;
+    }
+    target.state_select = merged_select(target.state_select, from.state_select);
+}
+
+fn merged_select(a: StateSelect, b: StateSelect) -> StateSelect {
+    match (a, b) {
+        (StateSelect::Default, other) | (other, StateSelect::Default) => other,
+        _ if a.max(b) > StateSelect::Default => a.max(b),
+        _ => a.min(b),
+    }
+}
+
+/// Two fixed starts of one quantity must be equal: now, by value, and in every run, by a check.
+fn compare_starts(
+    draft: &mut Draft,
+    known: &mut parameters::Known,
+    alias: Alias,
+    start: Option<ExprId>,
+    diagnostics: &mut Vec<Diagnostic>,
+) {
+    let ours = draft.variables[alias.target.index()].start.unwrap_or(Exprs::ZERO);
+    let theirs = start.unwrap_or(Exprs::ZERO);
+    let difference = draft.exprs.sub(ours, theirs);
+    if difference == Exprs::ZERO {
+        return;
+    }
+    let size = known.value(&draft.exprs, ours).unwrap_or(f64::NAN);
+    let gap = known.value(&draft.exprs, difference).unwrap_or(f64::NAN);
+    if gap.abs() > 1e-9 * size.abs().max(1e-12) {
+        diagnostics.push(messages::contradicting_aliases(draft, known, alias));
+    } else {
+        let origin = Origin { kind: OriginKind::Start, ..draft.variables[alias.variable.index()].origin };
+        draft.initial_checks.push(Equation { lhs: ours, rhs: theirs, origin });
+    }
+}
+
+/// Replaces aliases and linked derivatives everywhere.
+fn rewrite(draft: &mut Draft, targets: &[Signed]) {
+    let derivative = draft.derivative.clone();
+    let roles = draft.roles.clone();
+    let map = draft.rewritten(|pool, node| match node {
+        Node::Var(v) => Some(targets[v.index()].expression(pool)),
+        Node::Der(v) => {
+            let target = targets[v.index()];
+            if !matches!(roles[target.variable.index()], Role::Continuous | Role::Input) {
+                return Some(Exprs::ZERO);
+            }
+            let (e, turned) = match derivative[target.variable.index()] {
+                Some(w) => (pool.var(w.variable), w.negated),
+                None => (pool.der(target.variable), false),
+            };
+            Some(signed(pool, e, target.negated != turned))
+        }
+        Node::Pre(v) => {
+            let e = pool.pre(targets[v.index()].variable);
+            Some(signed(pool, e, targets[v.index()].negated))
+        }
+        _ => None,
+    });
+    draft.map_expressions(&map);
+    for action in &mut draft.actions {
+        if let ActionKind::Reinit(v, value) = &mut action.kind {
+            let target = targets[v.index()];
+            *v = target.variable;
+            *value = signed(&mut draft.exprs, *value, target.negated);
+        }
+    }
+    for crossing in &mut draft.crossings {
+        crossing.mode = targets[crossing.mode.index()].variable;
+    }
+}
+
+fn signed(pool: &mut Exprs, e: ExprId, negated: bool) -> ExprId {
+    if negated { pool.neg(e) } else { e }
+}

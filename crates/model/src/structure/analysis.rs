@@ -1,0 +1,354 @@
+//! The steps of the analysis in their order.
+
+use super::draft::{Draft, Role, RowKind};
+use super::incidence::{NONE, Scanner};
+use super::matching::{Matching, maximum};
+use super::pantelides::Reduction;
+use super::parameters::Known;
+use super::solve_block::BlockSolver;
+use super::sorting::{Columns, System, SystemRow};
+use super::{
+    ActionKind, Alias, Assign, Block, Conserved, Dae, Selection, StateChoice, Unknown, alias, assertions, cancelling,
+    closed_groups, conserved, constants, delays, dependence, discrete, dummy_derivatives, duplicates, events, held,
+    initial, messages, parameters, regularity, start_derivatives, zeros,
+};
+use crate::flat::{Equation, FlatModel, Origin, OriginKind, StateSelect};
+use bramah_expr::{Node, VarId};
+use bramah_syntax::diag::{Checked, Diagnostic};
+
+/// Sorts a flat model into a [`Dae`].
+///
+/// Errors: circles of parameters (E214), their ranges (E215) and what is asserted of them (E503), singular structure
+/// (E301, E302, E303), constraints that cannot be differentiated (E304), start values that contradict each other (E401).
+/// A note lists start values that were chosen.
+pub fn analyze(flat: &FlatModel, choice: &StateChoice) -> Checked<Dae> {
+    let mut diagnostics = Vec::new();
+    match settled(flat, choice, &mut diagnostics) {
+        Ok(dae) if !diagnostics.iter().any(Diagnostic::is_error) => Checked::new(dae, diagnostics),
+        Ok(_) => Checked::failed(diagnostics),
+        Err(error) => {
+            diagnostics.push(error);
+            Checked::failed(diagnostics)
+        }
+    }
+}
+
+/// With the structure that parameters of value 0 leave.
+fn settled(flat: &FlatModel, choice: &StateChoice, diagnostics: &mut Vec<Diagnostic>) -> Result<Dae, Diagnostic> {
+    let (mut last, mut decisive) = run(flat, choice, &[], diagnostics)?;
+    let mut known = 0;
+    while decisive.len() > known && !flat.varied {
+        known = decisive.len();
+        let mut said = Vec::new();
+        // where the model is singular with them, its equations as written tell more
+        let Ok((dae, further)) = run(flat, choice, &decisive, &mut said) else { break };
+        if said.iter().any(Diagnostic::is_error) {
+            break;
+        }
+        (last, *diagnostics) = (dae, said);
+        decisive.extend(further);
+        decisive.sort_unstable();
+        decisive.dedup();
+    }
+    Ok(last)
+}
+
+/// Without the products that are 0 by the parameters in `decisive`; with those that turn out to decide about the structure.
+fn run(
+    flat: &FlatModel,
+    choice: &StateChoice,
+    decisive: &[VarId],
+    diagnostics: &mut Vec<Diagnostic>,
+) -> Result<(Dae, Vec<VarId>), Diagnostic> {
+    let mut draft = Draft::new(flat);
+    let order = parameters::order(&mut draft)?;
+    let values = parameters::values(&draft, &order);
+    diagnostics.extend(parameters::check(&draft, &order, &values));
+    make_discrete_equations(&mut draft);
+    prefer_reinitialized(&mut draft);
+    let mut known = Known::new(&draft, values.clone());
+    if !diagnostics.iter().any(Diagnostic::is_error) {
+        diagnostics.extend(assertions::check(&draft, &mut known));
+    }
+    zeros::take_out(&mut draft, &mut known, decisive);
+    let aliases = alias::eliminate(&mut draft, &mut known, diagnostics);
+    cancelling::replace(&mut draft, &mut known);
+    discrete::classify(&mut draft);
+    discrete::absorb_initial_pres(&mut draft);
+    refuse_input_derivatives(&draft)?;
+    regularity::check(&draft).map_err(|found| explain_singular(flat, &draft, &aliases, &found))?;
+    if let Some(flows) = closed_groups::find(&draft, &aliases) {
+        return Err(messages::closed_group(&draft, &aliases, &flows));
+    }
+
+    constants::read(&mut draft);
+    let mut reduction = dependence::expose(&mut draft, &mut known, !flat.varied)?;
+    reduction.reduce(&mut draft)?;
+    diagnostics.extend(held::find(&draft, &reduction, &aliases));
+    let chosen = dummy_derivatives::select(&mut draft, &reduction, &values, choice);
+    let states = settle_states(&mut draft, &mut reduction, &chosen.dummies);
+    diagnostics.extend(reinit_of_no_state(&draft, &states.states));
+    replace_linked_derivatives(&mut draft);
+    let running = running_system(&draft, &reduction, &states)?;
+
+    let mut blocks = Blocks::sort_running(&mut draft, &mut known, &running, &states.states);
+    // before the conditions of the start stand among the equations
+    let mut conserved = conserved::find(&mut draft, &mut known, &states.states);
+    let with_derivatives = start_derivatives::add(&mut draft, &running, &states.states)?;
+    let at_start = with_derivatives.as_ref().unwrap_or(&running);
+    let model = initial::Model { running: at_start, states: &states.states, demoted: &states.demoted };
+    let start = initial::assemble(&mut draft, &mut known, &model);
+    diagnostics.extend(start.diagnostics);
+    let further = zeros::decisive(&mut draft, &mut known, [&running, &start.system]);
+    blocks.sort_initial(&mut draft, &mut known, &start.system);
+    let stated = conserved.iter_mut().flat_map(|c| [&mut c.quantity, &mut c.rate]);
+    duplicates::share(&mut draft.exprs, &mut blocks.continuous, stated);
+    let States { states, demoted, .. } = states;
+    let rest = Rest { order, aliases, states, demoted, selections: chosen.selections, conserved };
+    let mut dae = assemble(flat, draft, blocks, rest);
+    dae.chosen_starts = start.chosen;
+    dae.initial_checks.extend(start.checks);
+    Ok((dae, further))
+}
+
+fn make_discrete_equations(draft: &mut Draft) {
+    delays::extract(draft);
+    events::extract(draft);
+    discrete::translate_whens(draft);
+}
+
+/// Explains with all equations and unknowns as the user wrote them, before aliases were eliminated, if they show the
+/// fault too.
+fn explain_singular(
+    flat: &FlatModel,
+    reduced: &Draft,
+    aliases: &[Alias],
+    found: &regularity::Singularity,
+) -> Diagnostic {
+    let mut whole = Draft::new(flat);
+    make_discrete_equations(&mut whole);
+    discrete::classify(&mut whole);
+    match regularity::check(&whole) {
+        Err(found) => messages::singular(&whole, &[], &found),
+        Ok(()) => messages::singular(reduced, aliases, found),
+    }
+}
+
+/// What `reinit` sets must be a state if that is possible.
+fn prefer_reinitialized(draft: &mut Draft) {
+    for action in &draft.actions {
+        if let ActionKind::Reinit(v, _) = action.kind {
+            let select = &mut draft.variables[v.index()].state_select;
+            *select = (*select).max(StateSelect::Prefer);
+        }
+    }
+}
+
+fn refuse_input_derivatives(draft: &Draft) -> Result<(), Diagnostic> {
+    let mut walk = bramah_expr::visit::Walk::default();
+    for equation in draft.equations.iter().chain(&draft.initial_equations) {
+        let mut found = None;
+        walk.each(&draft.exprs, &[equation.lhs, equation.rhs], |_, node| {
+            if let Node::Der(v) = node
+                && draft.role(v) == Role::Input
+            {
+                found = found.or(Some(v));
+            }
+            true
+        });
+        if let Some(v) = found {
+            return Err(messages::not_differentiable(draft, equation, v));
+        }
+    }
+    Ok(())
+}
+
+fn reinit_of_no_state(draft: &Draft, states: &[VarId]) -> Vec<Diagnostic> {
+    let reinits = draft.actions.iter().filter_map(|action| match action.kind {
+        ActionKind::Reinit(v, _) if states.binary_search(&v).is_err() => {
+            Some(messages::reinit_of_no_state(draft, v, action.origin))
+        }
+        _ => None,
+    });
+    reinits.collect()
+}
+
+/// The outcome of state selection.
+struct States {
+    /// Ascending.
+    states: Vec<VarId>,
+    /// Differentiated, but not states; ascending.
+    demoted: Vec<VarId>,
+    /// By column: known when the continuous system is solved.
+    is_state: Vec<bool>,
+}
+
+/// Every variable with a derivative that is no dummy is a state. Dummies become variables.
+fn settle_states(draft: &mut Draft, reduction: &mut Reduction, dummies: &[u32]) -> States {
+    let mut is_dummy = vec![false; reduction.columns.len()];
+    for &c in dummies {
+        is_dummy[c as usize] = true;
+        reduction.materialize(draft, c);
+    }
+    let mut found = States { states: Vec::new(), demoted: Vec::new(), is_state: vec![false; reduction.columns.len()] };
+    for c in 0..reduction.columns.len() {
+        let (derivative, variable) = (reduction.columns[c].derivative, reduction.variable(c as u32));
+        let (Some(v), true) = (variable, derivative != NONE) else { continue };
+        if is_dummy[derivative as usize] {
+            found.demoted.push(v);
+        } else {
+            found.is_state[c] = true;
+            found.states.push(v);
+        }
+    }
+    found.states.sort_unstable();
+    found.demoted.sort_unstable();
+    found
+}
+
+/// After this `Der` stands only for derivatives of states that are no variables themselves.
+fn replace_linked_derivatives(draft: &mut Draft) {
+    let links = draft.derivative.clone();
+    if links.iter().all(Option::is_none) {
+        return;
+    }
+    let map = draft.rewritten(|pool, node| match node {
+        Node::Der(v) => links[v.index()].map(|w| w.expression(pool)),
+        _ => None,
+    });
+    draft.map_expressions(&map);
+}
+
+/// All equations between events, matched; discrete ones behind the continuous ones.
+fn running_system(draft: &Draft, reduction: &Reduction, states: &States) -> Result<System, Diagnostic> {
+    let mut system = System::default();
+    let solved = reduction.columns.iter().zip(&states.is_state).filter(|(_, is_state)| !**is_state);
+    system.columns.extend(solved.map(|(column, _)| column.unknown));
+    let continuous_columns = system.columns.len() as u32;
+    system.columns.extend(draft.with_role(Role::Discrete).into_iter().map(Unknown::Var));
+    let columns = Columns::new(&system.columns, draft.variables.len());
+    let column = |node: Node| columns.of_node(node);
+    let mut scanner = Scanner::default();
+    for continuous in [true, false] {
+        for (i, (&equation, &kind)) in draft.equations.iter().zip(&draft.kinds).enumerate() {
+            if (kind == RowKind::Continuous) != continuous {
+                continue;
+            }
+            let sides = [equation.lhs, equation.rhs];
+            if continuous {
+                scanner.push(&draft.exprs, sides, column, |c| c < continuous_columns, &mut system.incidence);
+            } else {
+                let lone = discrete::lone_unknowns(draft, &equation, kind);
+                let lone: Vec<u32> = lone.iter().filter_map(|&v| columns.of(Unknown::Var(v))).collect();
+                scanner.push_discrete(&draft.exprs, sides, &lone, column, &mut system.incidence);
+            }
+            system.rows.push(SystemRow { equation, index: i as u32, discrete: !continuous });
+        }
+    }
+    system.matching = maximum(&system.incidence, system.columns.len());
+    check_matched(draft, &system)?;
+    Ok(system)
+}
+
+/// The regularity check has seen to it that the counts fit; what is left are constraints that depend on each other.
+fn check_matched(draft: &Draft, system: &System) -> Result<(), Diagnostic> {
+    let Matching { column_of, row_of } = &system.matching;
+    if column_of.iter().chain(row_of).all(|&p| p != NONE) {
+        return Ok(());
+    }
+    let parts = super::dulmage_mendelsohn::decompose(&system.incidence, &system.matching);
+    let equations: Vec<Equation> = parts.over.rows.iter().map(|&r| system.rows[r as usize].equation).collect();
+    let unknowns: Vec<Unknown> = parts.under.columns.iter().map(|&c| system.columns[c as usize]).collect();
+    Err(messages::dependent_constraints(draft, &equations, &unknowns))
+}
+
+/// The three sorted systems.
+#[derive(Default)]
+struct Blocks {
+    continuous: Vec<Block>,
+    event: Vec<Block>,
+    initial: Vec<Block>,
+    /// `der(x) := w` of states whose derivative is a variable.
+    derivatives: Vec<Block>,
+}
+
+impl Blocks {
+    fn sort_running(draft: &mut Draft, known: &mut Known, system: &System, states: &[VarId]) -> Blocks {
+        let mut made = Blocks { derivatives: linked_derivatives(draft, states), ..Blocks::default() };
+        let mut solver = BlockSolver::new(draft, known);
+        let (components, blocks) = system.continuous_blocks(&mut solver);
+        made.event = system.with_discrete(&mut solver, &components, &blocks);
+        made.continuous = blocks;
+        made.event.extend_from_slice(&made.derivatives);
+        made.continuous.extend_from_slice(&made.derivatives);
+        made
+    }
+
+    fn sort_initial(&mut self, draft: &mut Draft, known: &mut Known, system: &System) {
+        let mut solver = BlockSolver::new(draft, known);
+        let (components, blocks) = system.continuous_blocks(&mut solver);
+        self.initial = system.with_discrete(&mut solver, &components, &blocks);
+        self.initial.extend_from_slice(&self.derivatives);
+    }
+}
+
+fn linked_derivatives(draft: &mut Draft, states: &[VarId]) -> Vec<Block> {
+    let mut blocks = Vec::new();
+    for &x in states {
+        let Some(w) = draft.derivative[x.index()] else { continue };
+        let lhs = draft.exprs.der(x);
+        let rhs = w.expression(&mut draft.exprs);
+        let origin = Origin { kind: OriginKind::Made, ..draft.variables[w.variable.index()].origin };
+        draft.add_equation(Equation { lhs, rhs, origin }, RowKind::Definition);
+        let equation = draft.equations.len() as u32 - 1;
+        blocks.push(Block::Assign(Assign { unknown: Unknown::Der(x), value: rhs, equation }));
+    }
+    blocks
+}
+
+/// What the steps found beside blocks.
+struct Rest {
+    order: Vec<VarId>,
+    aliases: Vec<Alias>,
+    states: Vec<VarId>,
+    demoted: Vec<VarId>,
+    selections: Vec<Selection>,
+    conserved: Vec<Conserved>,
+}
+
+fn assemble(flat: &FlatModel, mut draft: Draft, blocks: Blocks, rest: Rest) -> Dae {
+    let mut initial_checks = Vec::new();
+    for equation in std::mem::take(&mut draft.initial_checks) {
+        let residual = draft.exprs.sub(equation.lhs, equation.rhs);
+        draft.add_equation(equation, RowKind::Definition);
+        initial_checks.push((residual, draft.equations.len() as u32 - 1));
+    }
+    Dae {
+        class: flat.class.clone(),
+        instances: flat.instances.clone(),
+        enumerations: flat.enumerations.clone(),
+        experiment: flat.experiment,
+        parameters: rest.order,
+        free_parameters: draft.with_role(Role::FreeParameter),
+        inputs: (0..flat.variables.len() as u32).map(VarId).filter(|v| flat.variables[v.index()].input).collect(),
+        aliases: rest.aliases,
+        states: rest.states,
+        differentiated: rest.demoted,
+        discrete: draft.with_role(Role::Discrete),
+        continuous: blocks.continuous,
+        event: blocks.event,
+        initial: blocks.initial,
+        selections: rest.selections,
+        conserved: rest.conserved,
+        chosen_starts: Vec::new(),
+        initial_checks,
+        crossings: draft.crossings,
+        samples: draft.samples,
+        delays: draft.delays,
+        actions: draft.actions,
+        asserts: draft.asserts,
+        exprs: draft.exprs,
+        variables: draft.variables,
+        equations: draft.equations,
+    }
+}

@@ -1,0 +1,43 @@
+//! Assertions about parameters alone: reported before the model is run, for no run can make them hold.
+
+use super::draft::Draft;
+use super::parameters::Known;
+use crate::flat::{Assert, Message, MessagePart, Type};
+use bramah_expr::Exprs;
+use bramah_syntax::diag::{Code, Diagnostic};
+
+/// Assertions that the parameters as they stand in the model contradict (E503). Warnings are left to the run.
+pub(super) fn check(draft: &Draft, known: &mut Known) -> Vec<Diagnostic> {
+    let broken = |a: &&Assert| !a.warning && known.value(&draft.exprs, a.condition) == Some(0.0);
+    let broken: Vec<&Assert> = draft.asserts.iter().filter(broken).collect();
+    broken.into_iter().map(|assert| complaint(draft, known, assert)).collect()
+}
+
+fn complaint(draft: &Draft, known: &mut Known, assert: &Assert) -> Diagnostic {
+    let text = words(&draft.exprs, known, &assert.message);
+    let mut made = Diagnostic::new(Code::AssertionFailed, text);
+    let holder = &draft.instances[assert.origin.instance as usize];
+    if assert.origin.instance != 0 {
+        made = made.at(holder.span, "in this component").instance(holder.name.clone()).class(holder.class.clone());
+    }
+    made = made.at(assert.origin.span, "does not hold").help("change the parameters that it speaks of");
+    let used = draft.exprs.dependencies(&[assert.condition]).vars;
+    let values = used.iter().filter_map(|u| {
+        let value = known.value_of(*u)?;
+        Some(format!("`{}` is {value}", draft.variables[u.index()].name))
+    });
+    let values: Vec<String> = values.collect();
+    if values.is_empty() { made } else { made.note(values.join(", ")) }
+}
+
+/// The message with the values that are known.
+fn words(pool: &Exprs, known: &mut Known, message: &Message) -> String {
+    let piece = |part: &MessagePart| match part {
+        MessagePart::Text(words) => words.clone(),
+        MessagePart::Value(e, Type::Boolean) => {
+            known.value(pool, *e).map(|v| (v != 0.0).to_string()).unwrap_or_default()
+        }
+        MessagePart::Value(e, _) => known.value(pool, *e).map_or_else(|| "?".into(), |v| v.to_string()),
+    };
+    message.parts.iter().map(piece).collect()
+}

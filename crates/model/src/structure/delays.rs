@@ -1,0 +1,61 @@
+//! `delay` becomes an input that the run itself records.
+
+use super::Delay;
+use super::draft::{Draft, Role, carried};
+use crate::flat::{Origin, Type, Variability};
+use bramah_expr::visit::Substitution;
+use bramah_expr::{ExprId, Node};
+
+/// Replaces every `delay` by an input.
+pub(super) fn extract(draft: &mut Draft) {
+    let live = draft.live_nodes();
+    let any = |i: usize| matches!(draft.exprs.node(ExprId(i as u32)), Node::Delay(..));
+    if !(0..live.len()).any(|i| live[i] && any(i)) {
+        return;
+    }
+    let mut map: Vec<ExprId> = Vec::with_capacity(live.len());
+    for (i, live) in live.into_iter().enumerate() {
+        let e = ExprId(i as u32);
+        let image = match draft.exprs.node(e) {
+            _ if !live => e,
+            Node::Delay(source, time) => input(draft, e, map[source.index()], map[time.index()]),
+            _ => carried(&mut draft.exprs, e, &map),
+        };
+        map.push(image);
+    }
+    draft.map_expressions(&map);
+}
+
+fn input(draft: &mut Draft, e: ExprId, source: ExprId, time: ExprId) -> ExprId {
+    let origin = origin(draft, e);
+    let variable = draft.make_variable(draft.text(e), Type::Real, Role::Input, origin);
+    draft.variables[variable.index()].variability = Variability::Continuous;
+    draft.delays.push(Delay { variable, source, time, origin });
+    draft.exprs.var(variable)
+}
+
+/// The first equation, condition or assertion that holds an expression.
+fn origin(draft: &Draft, e: ExprId) -> Origin {
+    let equations = draft.equations.iter().chain(&draft.initial_equations).map(|q| (vec![q.lhs, q.rhs], q.origin));
+    let conditions = draft.whens.iter().flat_map(|w| w.branches.iter().map(|b| (b.conditions.clone(), w.origin)));
+    let asserts = draft.asserts.iter().map(|a| (vec![a.condition], a.origin));
+    let mut holders = equations.chain(conditions).chain(asserts);
+    let found = holders.find(|(sides, _)| sides.iter().any(|&side| draft.exprs.contains(side, e)));
+    found.map(|f| f.1).or(draft.whens.first().map(|w| w.origin)).unwrap_or(draft.variables[0].origin)
+}
+
+/// At the start nothing has been recorded, and a delayed value is the value itself: in the image of every expression the
+/// sources stand in the place of their inputs.
+pub(super) fn undelayed(draft: &mut Draft, map: &mut [ExprId]) {
+    if draft.delays.is_empty() {
+        return;
+    }
+    let mut replacements: Vec<(ExprId, ExprId)> = Vec::with_capacity(draft.delays.len());
+    for delay in draft.delays.clone() {
+        let source = map.get(delay.source.index()).copied().unwrap_or(delay.source);
+        let source = Substitution::new(replacements.iter().copied()).apply(&mut draft.exprs, source);
+        replacements.push((draft.exprs.var(delay.variable), source));
+    }
+    let mut substitution = Substitution::new(replacements);
+    map.iter_mut().for_each(|e| *e = substitution.apply(&mut draft.exprs, *e));
+}

@@ -1,0 +1,169 @@
+//! A combination of equations as an equation.
+
+use super::super::draft::{Draft, Role};
+use super::super::pantelides::Reduction;
+use super::super::parameters::{self, Known};
+use super::Jacobian;
+use super::elimination::Combination;
+use super::linear::{Factor, Linear};
+use super::offsets::Place;
+use super::symbolic::{self, Sum};
+use crate::flat::Equation;
+use bramah_expr::{ExprId, Exprs};
+use bramah_syntax::diag::Diagnostic;
+
+/// The sum of some equations, each differentiated so often that their derivatives of highest order cancel.
+pub(super) struct Combined {
+    /// The rows of the Jacobian that take part.
+    pub rows: Vec<usize>,
+    /// The one whose place the sum takes.
+    pub replaced: usize,
+    /// Unknowns and their derivatives with their factors.
+    terms: Vec<(Place, Factor)>,
+    /// All other terms, how often they are differentiated, and their factors.
+    rest: Vec<((ExprId, u32), Factor)>,
+}
+
+impl Combined {
+    /// `None` where the rows depend on each other by values only: of what changes, or of parameters that may not be fixed.
+    pub fn new(
+        draft: &mut Draft,
+        known: &mut Known,
+        (jacobian, reduction): (&Jacobian, &Reduction),
+        found: &Combination,
+        fixable: bool,
+    ) -> Option<Self> {
+        let rows: Vec<usize> = found.iter().map(|term| term.0).collect();
+        let mut linear: Vec<Linear> = rows.iter().map(|&row| jacobian.linear(draft, known, reduction, row)).collect();
+        let factors = factors(draft, known, jacobian, found, &mut linear, fixable)?;
+        let offsets = || rows.iter().map(|&row| jacobian.offsets[row]);
+        let least = offsets().min()?;
+        let mut may_be = |i: &usize| {
+            let [factor]: &[Factor] = &factors[*i] else { return false };
+            jacobian.offsets[rows[*i]] == least && factor.expressions().all(|e| known.is_nonzero(&draft.exprs, e))
+        };
+        let is_number = |i: &usize| factors[*i].iter().all(Factor::is_number);
+        let place = (0..rows.len()).rev().find(|i| is_number(i) && may_be(i));
+        let place = place.or_else(|| (0..rows.len()).rev().find(may_be))?;
+        let mut made = Combined { replaced: rows[place], terms: Vec::new(), rest: Vec::new(), rows: rows.clone() };
+        for ((offset, linear), factors) in offsets().zip(&linear).zip(&factors) {
+            let times = offset - least;
+            // its derivative would have more terms
+            let varying = |e: ExprId| known.value(&draft.exprs, e).is_none();
+            if times > 0 && linear.terms.iter().flat_map(|t| t.1.expressions()).any(varying) {
+                return None;
+            }
+            for factor in factors {
+                for ((chain, order), of_term) in &linear.terms {
+                    add_to(&mut made.terms, (*chain, order + times), of_term.clone().times(factor, 1));
+                }
+                for (e, of_rest) in &linear.rest {
+                    add_to(&mut made.rest, (*e, times), of_rest.clone().times(factor, 1));
+                }
+            }
+        }
+        made.is_lower(draft, known, (jacobian, reduction), least).then_some(made)
+    }
+
+    /// Whether no derivative of highest order is left, not in factors either.
+    fn is_lower(
+        &self,
+        draft: &Draft,
+        known: &mut Known,
+        (jacobian, reduction): (&Jacobian, &Reduction),
+        offset: u32,
+    ) -> bool {
+        let mut varying: Vec<ExprId> = Vec::new();
+        for factor in self.terms.iter().map(|t| &t.1).chain(self.rest.iter().map(|t| &t.1)) {
+            varying.extend(factor.expressions().filter(|&e| known.value(&draft.exprs, e).is_none()));
+        }
+        let rest = self.rest.iter().map(|&((e, times), _)| (e, offset + times));
+        let mut parts = rest.chain(varying.iter().map(|&e| (e, offset)));
+        self.terms.iter().all(|(place, _)| !jacobian.is_highest(*place, offset))
+            && parts.all(|(e, offset)| !jacobian.holds_highest(draft, reduction, e, offset))
+    }
+
+    /// What is left where that holds no unknown: 0 where the equations say the same, else what would have to be 0.
+    pub fn contradiction(&self, draft: &mut Draft) -> Option<ExprId> {
+        let mut sum = Exprs::ZERO;
+        for ((e, times), factor) in &self.rest {
+            let found = draft.exprs.dependencies(&[*e]);
+            let unknown = found.vars.iter().chain(&found.ders).any(|v| draft.role(*v) == Role::Continuous);
+            if unknown || *times > 0 {
+                return None;
+            }
+            let factor = factor.expression(&mut draft.exprs);
+            let term = draft.exprs.mul(factor, *e);
+            sum = draft.exprs.add(sum, term);
+        }
+        self.terms.is_empty().then_some(sum)
+    }
+
+    /// Puts the sum in the place of an equation.
+    pub fn write(&self, draft: &mut Draft, reduction: &mut Reduction, at: usize) -> Result<(), Diagnostic> {
+        let equation = draft.equations[at];
+        let mut sum = Exprs::ZERO;
+        let mut add = |draft: &mut Draft, factor: &Factor, e: ExprId| {
+            let factor = factor.expression(&mut draft.exprs);
+            let term = draft.exprs.mul(factor, e);
+            sum = draft.exprs.add(sum, term);
+        };
+        for ((chain, order), factor) in &self.terms {
+            let leaf = reduction.derivative_of(draft, *chain, *order);
+            add(draft, factor, leaf);
+        }
+        for ((e, times), factor) in &self.rest {
+            let mut e = *e;
+            for _ in 0..*times {
+                e = reduction.differentiate(draft, &equation, e)?;
+            }
+            add(draft, factor, e);
+        }
+        draft.equations[at] = Equation { lhs: sum, rhs: Exprs::ZERO, ..equation };
+        Ok(())
+    }
+}
+
+/// Adds a term to the like one, if there is one; what cancels goes.
+fn add_to<T: PartialEq>(terms: &mut Vec<(T, Factor)>, of: T, factor: Factor) {
+    let Some(at) = terms.iter().position(|t| t.0 == of && t.1.is_like(&factor)) else {
+        return terms.push((of, factor));
+    };
+    match symbolic::sum(&terms[at].1, &factor) {
+        Some(sum) => terms[at].1 = sum,
+        None => drop(terms.swap_remove(at)),
+    }
+}
+
+/// The factors by which rows add up to 0 whatever their expressions are worth. Where they do so only with the parameters as
+/// they are, these are fixed if they may be.
+fn factors(
+    draft: &mut Draft,
+    known: &mut Known,
+    jacobian: &Jacobian,
+    found: &Combination,
+    linear: &mut [Linear],
+    fixable: bool,
+) -> Option<Vec<Sum>> {
+    let rows: Vec<Vec<(u32, &Factor)>> =
+        found.iter().zip(&*linear).map(|(&(row, _), linear)| jacobian.entries(row, linear)).collect();
+    let expressions: Vec<ExprId> = rows.iter().flatten().flat_map(|(_, factor)| factor.expressions()).collect();
+    let numbers = || found.iter().map(|&(_, factor)| vec![Factor::number(factor)]).collect();
+    if expressions.is_empty() {
+        return Some(numbers());
+    }
+    if let Some(factors) = symbolic::factors(&rows) {
+        return Some(factors);
+    }
+    if !fixable || expressions.iter().any(|&e| known.value(&draft.exprs, e).is_none()) {
+        return None;
+    }
+    let parameters = draft.exprs.dependencies(&expressions).vars;
+    parameters::fix(draft, &parameters);
+    for factor in linear.iter_mut().flat_map(|l| &mut l.terms).map(|term| &mut term.1) {
+        if factor.expressions().all(|e| known.value(&draft.exprs, e).is_some()) {
+            *factor = Factor::number(factor.value(draft, known));
+        }
+    }
+    Some(numbers())
+}

@@ -1,0 +1,247 @@
+//! Dependence between equations that their structure does not show.
+//!
+//! `v1 = a - b`, `v2 = b - c` and `v3 = c - a` can be matched with `a`, `b` and `c`, yet their sum says `v1 + v2 + v3 = 0`: of
+//! three capacitors in a ring only two are states. Index reduction by structure differentiates a constraint only where it is
+//! written as one. So it is written here: where equations have a linear combination in which all derivatives of highest order
+//! cancel, the combination takes the place of that one of them which is differentiated least. Factors may be constants,
+//! parameters, and single expressions that change: where mass passes a node, `rho(p) q_a + m_a = 0`, `rho(p) q_b + m_b = 0` and
+//! `q_a + q_b = 0` say `m_a + m_b = 0`.
+//!
+//! With the offsets `c` of the equations and `d` of the variables, the entries of the system Jacobian are the derivatives
+//! of `f_i` by `x_j` differentiated `d_j - c_i` times. Where `u J = 0` for the rows of a set, `f_l` with the smallest offset
+//! becomes the sum of `u_i` times `f_i` differentiated `c_i - c_l` times, which makes the sum of `d` minus that of `c`
+//! smaller, so that this ends (the linear combination method of G. Tan, N. Nedialkov and J. Pryce, Conversion
+//! methods for improving structural analysis of differential-algebraic equation systems, BIT 57, 2017).
+
+mod combination;
+mod elimination;
+mod linear;
+mod offsets;
+mod symbolic;
+
+use super::draft::Draft;
+use super::messages;
+use super::pantelides::Reduction;
+use super::parameters::Known;
+use crate::flat::Equation;
+use bramah_expr::visit::Walk;
+use bramah_expr::{ExprId, Node, VarId};
+use bramah_syntax::diag::Diagnostic;
+use combination::Combined;
+use elimination::Combination;
+use linear::{Factor, Linear};
+use offsets::{Offsets, Place};
+
+/// The columns and rows of the continuous equations, after every hidden constraint has been written as one.
+///
+/// `fixable` says whether parameters may be fixed with the structure where equations depend on each other by their values only.
+/// Errors: equations that say the same (E301, E302) or contradict each other (E303), constraints that cannot be
+/// differentiated (E304).
+pub(super) fn expose(draft: &mut Draft, known: &mut Known, fixable: bool) -> Result<Reduction, Diagnostic> {
+    let mut degrees = i64::MAX;
+    loop {
+        let mut reduction = Reduction::new(draft);
+        let places = offsets::places(&reduction);
+        // what is no system is refused when it is reduced
+        let offsets = Offsets::new(&reduction, &places).filter(|found| found.degrees() < degrees);
+        let Some(offsets) = offsets else { return Ok(reduction) };
+        degrees = offsets.degrees();
+        let jacobian = Jacobian::new(draft, known, &reduction, (places, offsets));
+        let mut changed: Vec<usize> = Vec::new();
+        for found in jacobian.vanishing() {
+            if found.iter().any(|(row, _)| changed.contains(row)) {
+                continue;
+            }
+            let Some(combined) = Combined::new(draft, known, (&jacobian, &reduction), &found, fixable) else {
+                continue;
+            };
+            if let Some(left) = combined.contradiction(draft) {
+                return Err(jacobian.explain(draft, known, &reduction, &combined.rows, left));
+            }
+            combined.write(draft, &mut reduction, jacobian.equations[combined.replaced])?;
+            changed.push(combined.replaced);
+        }
+        if changed.is_empty() {
+            return Ok(reduction);
+        }
+    }
+}
+
+/// Equations, by their place, that follow from others before them with the parameters as they are. `column` says which
+/// leaves are unknowns; equations that are not linear in them take no part.
+pub(super) fn following(
+    draft: &Draft,
+    known: &mut Known,
+    equations: &[Equation],
+    column: impl Fn(Node) -> Option<u32>,
+) -> Vec<usize> {
+    let mut walk = Walk::default();
+    let (mut places, mut rows, mut columns) = (Vec::new(), Vec::new(), 0);
+    for (i, equation) in equations.iter().enumerate() {
+        let linear = Linear::new(draft, known, [equation.lhs, equation.rhs], |leaf| Some((column(leaf)?, 0)));
+        let factors = linear.terms.iter().flat_map(|(_, factor)| factor.expressions());
+        let others: Vec<ExprId> = linear.rest.iter().map(|term| term.0).chain(factors).collect();
+        let mut is_linear = true;
+        walk.each(&draft.exprs, &others, |_, node| {
+            is_linear &= column(node).is_none();
+            is_linear
+        });
+        let entries: Vec<(u32, &Factor)> = linear.terms.iter().map(|((c, _), factor)| (*c, factor)).collect();
+        if let Some(row) = row(draft, known, &entries).filter(|_| is_linear) {
+            columns = row.iter().fold(columns, |most, entry| most.max(entry.0 as usize + 1));
+            places.push(i);
+            rows.push(row);
+        }
+    }
+    elimination::following(&rows, columns).into_iter().map(|row| places[row]).collect()
+}
+
+/// The system Jacobian of the equations that are linear in the derivatives of highest order.
+struct Jacobian {
+    /// By column of the reduction.
+    places: Vec<Place>,
+    /// By chain: the order of its highest derivative.
+    highest: Vec<u32>,
+    /// Index into the draft's equations, by row.
+    equations: Vec<usize>,
+    /// How often the equation is differentiated, by row.
+    offsets: Vec<u32>,
+    /// Factors by chain, by row.
+    rows: Vec<elimination::Row>,
+    /// By chain: whether an equation holds its highest derivative other than linearly.
+    beyond: Vec<bool>,
+}
+
+impl Jacobian {
+    fn new(
+        draft: &Draft,
+        known: &mut Known,
+        reduction: &Reduction,
+        (places, Offsets { rows: offsets, chains: highest }): (Vec<Place>, Offsets),
+    ) -> Self {
+        let beyond = vec![false; places.len()];
+        let (equations, rows) = (Vec::new(), Vec::new());
+        let mut made = Jacobian { places, highest, equations, offsets: Vec::new(), rows, beyond };
+        let mut walk = Walk::default();
+        for (&equation, offset) in reduction.equations.iter().zip(offsets) {
+            let linear = made.linear_form(draft, known, reduction, equation as usize);
+            let mut within = |parts: Vec<ExprId>| {
+                let mut chains = Vec::new();
+                walk.each(&draft.exprs, &parts, |_, node| {
+                    let place = made.place(draft, reduction, node);
+                    chains.extend(place.filter(|&place| made.is_highest(place, offset)).map(|place| place.0));
+                    true
+                });
+                chains
+            };
+            let entries = made.entries_at(offset, &linear);
+            let in_factors = within(entries.iter().flat_map(|(_, factor)| factor.expressions()).collect());
+            let in_rest = within(linear.rest.iter().map(|term| term.0).collect());
+            let row = row(draft, known, &entries).filter(|_| in_rest.is_empty());
+            let chains = entries.iter().map(|entry| entry.0).filter(|_| row.is_none());
+            let beyond: Vec<u32> = chains.chain(in_rest.iter().chain(&in_factors).copied()).collect();
+            beyond.into_iter().for_each(|chain| made.beyond[chain as usize] = true);
+            if let Some(row) = row {
+                made.equations.push(equation as usize);
+                made.offsets.push(offset);
+                made.rows.push(row);
+            }
+        }
+        made
+    }
+
+    fn place(&self, draft: &Draft, reduction: &Reduction, leaf: Node) -> Option<Place> {
+        reduction.column(draft, leaf).map(|c| self.places[c as usize])
+    }
+
+    /// Whether a derivative of an equation holds this one as a highest derivative.
+    fn is_highest(&self, (chain, order): Place, offset: u32) -> bool {
+        order + offset == self.highest[chain as usize]
+    }
+
+    fn linear(&self, draft: &Draft, known: &mut Known, reduction: &Reduction, row: usize) -> Linear {
+        self.linear_form(draft, known, reduction, self.equations[row])
+    }
+
+    fn linear_form(&self, draft: &Draft, known: &mut Known, reduction: &Reduction, equation: usize) -> Linear {
+        let sides = [draft.equations[equation].lhs, draft.equations[equation].rhs];
+        Linear::new(draft, known, sides, |leaf| self.place(draft, reduction, leaf))
+    }
+
+    /// The terms of a row that hold highest derivatives, by chain.
+    fn entries<'l>(&self, row: usize, linear: &'l Linear) -> Vec<(u32, &'l Factor)> {
+        self.entries_at(self.offsets[row], linear)
+    }
+
+    fn entries_at<'l>(&self, offset: u32, linear: &'l Linear) -> Vec<(u32, &'l Factor)> {
+        let highest = linear.terms.iter().filter(|(place, _)| self.is_highest(*place, offset));
+        highest.map(|((chain, _), factor)| (*chain, factor)).collect()
+    }
+
+    /// Whether an expression in an equation with this offset holds a highest derivative.
+    fn holds_highest(&self, draft: &Draft, reduction: &Reduction, e: ExprId, offset: u32) -> bool {
+        let mut found = false;
+        Walk::default().each(&draft.exprs, &[e], |_, node| {
+            found |= self.place(draft, reduction, node).is_some_and(|place| self.is_highest(place, offset));
+            !found
+        });
+        found
+    }
+
+    fn vanishing(&self) -> Vec<Combination> {
+        elimination::vanishing(&self.rows, self.places.len())
+    }
+
+    /// What is wrong where equations add up to nothing, or to what holds no unknown.
+    fn explain(
+        &self,
+        draft: &Draft,
+        known: &mut Known,
+        reduction: &Reduction,
+        rows: &[usize],
+        left: ExprId,
+    ) -> Diagnostic {
+        let equations: Vec<Equation> = rows.iter().map(|&row| draft.equations[self.equations[row]]).collect();
+        if let [only] = equations.as_slice() {
+            return messages::cancelling(draft, only);
+        }
+        if known.value(&draft.exprs, left) != Some(0.0) {
+            return messages::contradiction(draft, &equations, left);
+        }
+        let free = self.free_combination();
+        let free: Vec<(VarId, f64)> =
+            free.iter().filter_map(|&(chain, part)| Some((reduction.variable(chain)?, part))).collect();
+        messages::repeated(draft, &equations, &free)
+    }
+
+    /// Unknowns that can change together, by these parts, while every equation holds.
+    fn free_combination(&self) -> Vec<(u32, f64)> {
+        let mut columns: Vec<elimination::Row> = vec![Vec::new(); self.places.len()];
+        for (r, row) in self.rows.iter().enumerate() {
+            row.iter().for_each(|&(chain, value)| columns[chain as usize].push((r as u32, value)));
+        }
+        let linear = |&c: &usize| !self.beyond[c] && !columns[c].is_empty();
+        let chains: Vec<usize> = (0..columns.len()).filter(linear).collect();
+        let columns: Vec<elimination::Row> = chains.iter().map(|&c| columns[c].clone()).collect();
+        let found = elimination::vanishing(&columns, self.rows.len()).into_iter().next().unwrap_or_default();
+        found.into_iter().map(|(i, part)| (chains[i] as u32, part)).collect()
+    }
+}
+
+/// The sums of the factors of each chain; `None` where one of them is 0 by the value of a parameter.
+fn row(draft: &Draft, known: &mut Known, entries: &[(u32, &Factor)]) -> Option<elimination::Row> {
+    let mut row = elimination::Row::new();
+    for (chain, factor) in entries {
+        let value = factor.value(draft, known);
+        if value == 0.0 || !value.is_finite() {
+            return None;
+        }
+        match row.iter_mut().find(|entry| entry.0 == *chain) {
+            Some(entry) => entry.1 += value,
+            None => row.push((*chain, value)),
+        }
+    }
+    row.retain(|entry| entry.1 != 0.0);
+    row.sort_unstable_by_key(|entry| entry.0);
+    Some(row)
+}

@@ -1,0 +1,184 @@
+//! By which factors rows add up to 0 whatever the expressions in them are worth: elimination with sums of products in place
+//! of numbers, without a division by what has more than one term (E. H. Bareiss, Sylvester's identity and multistep
+//! integer-preserving Gaussian elimination, Math. Comp. 22, 1968, has the idea).
+
+use super::elimination::CANCELLED;
+use super::linear::Factor;
+
+/// More rows than this are too many for elimination by hand.
+const MOST_ROWS: usize = 100;
+/// Sums of more terms than this are too long for an equation.
+const MOST_TERMS: usize = 50;
+
+/// A sum of unlike factors; 0 without any.
+pub(super) type Sum = Vec<Factor>;
+
+/// The factor of each of these rows (chains with factors), of which all but one are independent; `None` where they depend
+/// on each other by the values of expressions only, or where it would take too much.
+pub(super) fn factors(rows: &[Vec<(u32, &Factor)>]) -> Option<Vec<Sum>> {
+    if rows.len() > MOST_ROWS {
+        return None;
+    }
+    let mut elimination = Elimination::new(rows);
+    while let Some((row, column)) = elimination.next_pivot() {
+        elimination.eliminate(row, column)?;
+    }
+    let parts = elimination.open.pop()?.parts;
+    let complete = elimination.open.is_empty() && parts.iter().all(|part| !part.is_empty());
+    complete.then(|| with_most_numbers(parts))
+}
+
+struct Elimination {
+    /// Rows that have not been a pivot.
+    open: Vec<Row>,
+    width: usize,
+}
+
+struct Row {
+    /// By column.
+    entries: Vec<Sum>,
+    /// By row as given: what this one consists of.
+    parts: Vec<Sum>,
+}
+
+impl Elimination {
+    fn new(rows: &[Vec<(u32, &Factor)>]) -> Self {
+        let mut chains: Vec<u32> = rows.iter().flatten().map(|entry| entry.0).collect();
+        chains.sort_unstable();
+        chains.dedup();
+        let row = |(r, given): (usize, &Vec<(u32, &Factor)>)| {
+            let mut row = Row { entries: vec![Sum::new(); chains.len()], parts: vec![Sum::new(); rows.len()] };
+            row.parts[r].push(Factor::ONE);
+            for (column, chain) in chains.iter().enumerate() {
+                let of_chain = given.iter().filter(|entry| entry.0 == *chain);
+                of_chain.for_each(|(_, factor)| add(&mut row.entries[column], (*factor).clone()));
+            }
+            row
+        };
+        Elimination { open: rows.iter().enumerate().map(row).collect(), width: chains.len() }
+    }
+
+    /// A number before a product before a sum; among these the one that fills the fewest entries.
+    fn next_pivot(&self) -> Option<(usize, usize)> {
+        let users = |column: usize| self.open.iter().filter(|row| !row.entries[column].is_empty()).count();
+        let others: Vec<usize> = (0..self.width).map(|column| users(column).saturating_sub(1)).collect();
+        let cost = |row: &Row, column: usize| {
+            let entry = &row.entries[column];
+            let length = row.entries.iter().filter(|entry| !entry.is_empty()).count() - 1;
+            (entry.len(), !entry.iter().all(Factor::is_number), length * others[column])
+        };
+        let open = self.open.iter().enumerate();
+        let candidates = open.flat_map(|(r, row)| {
+            let filled = (0..self.width).filter(|&column| !row.entries[column].is_empty());
+            filled.map(move |column| (cost(row, column), r, column))
+        });
+        candidates.min().map(|(_, row, column)| (row, column))
+    }
+
+    /// Takes the column out of the other rows; `None` where sums become too long.
+    fn eliminate(&mut self, row: usize, column: usize) -> Option<()> {
+        let pivot = self.open.remove(row);
+        for row in &mut self.open {
+            let entry = std::mem::take(&mut row.entries[column]);
+            if entry.is_empty() {
+                continue;
+            }
+            // a single term divides; what is longer multiplies the row instead
+            let (by, times) = match pivot.entries[column].as_slice() {
+                [single] => (product(&entry, &[Factor::ONE.times(single, -1)]), None),
+                several => (entry, Some(several.to_vec())),
+            };
+            let by: Sum = by.into_iter().map(Factor::negative).collect();
+            let others =
+                pivot.entries.iter().enumerate().map(|(c, part)| if c == column { &[] } else { part.as_slice() });
+            let pairs = row.entries.iter_mut().zip(others);
+            let parts = row.parts.iter_mut().zip(pivot.parts.iter().map(Vec::as_slice));
+            for (to, part) in pairs.chain(parts) {
+                if let Some(times) = &times {
+                    *to = product(to, times);
+                }
+                product(part, &by).into_iter().for_each(|factor| add(to, factor));
+                if to.len() > MOST_TERMS {
+                    return None;
+                }
+            }
+        }
+        Some(())
+    }
+}
+
+fn product(a: &[Factor], b: &[Factor]) -> Sum {
+    let mut made = Sum::new();
+    for left in a {
+        b.iter().for_each(|right| add(&mut made, left.clone().times(right, 1)));
+    }
+    made
+}
+
+/// Adds to the like term, if there is one; what cancels goes.
+fn add(to: &mut Sum, factor: Factor) {
+    let Some(at) = to.iter().position(|term| term.is_like(&factor)) else { return to.push(factor) };
+    match sum(&to[at], &factor) {
+        Some(sum) => to[at] = sum,
+        None => drop(to.swap_remove(at)),
+    }
+}
+
+/// The sum of two like factors; `None` where they cancel.
+pub(super) fn sum(a: &Factor, b: &Factor) -> Option<Factor> {
+    let number = a.number + b.number;
+    let cancels = number.abs() <= CANCELLED * (a.number.abs() + b.number.abs());
+    (!cancels).then(|| a.clone().with_number(number))
+}
+
+/// A multiple of these factors in which as many as possible are numbers.
+fn with_most_numbers(sums: Vec<Sum>) -> Vec<Sum> {
+    let single = || sums.iter().filter_map(|sum| if let [factor] = sum.as_slice() { Some(factor) } else { None });
+    let like = |f: &Factor| single().filter(|other| other.is_like(f)).count();
+    let Some(common) = single().max_by_key(|f| like(f)).cloned() else { return sums };
+    let divided = |sum: Sum| sum.into_iter().map(|f| f.times(&common, -1)).collect();
+    sums.into_iter().map(divided).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bramah_expr::ExprId;
+
+    /// Laurent polynomials of a few symbols, by the symbols' exponents.
+    fn symbol(id: u32, exponent: i32) -> Factor {
+        Factor::ONE.times(&Factor::of(ExprId(id)), exponent)
+    }
+
+    #[test]
+    fn conductances_at_a_node_add_up_to_a_sum() {
+        // currents i, j, k through a, b, c from a node x: x = a*i, x = b*j, x = -c*k, i + j = k, and i + j = what flows in
+        let (a, b, c) = (symbol(1, 1), symbol(2, 1), symbol(3, 1));
+        let (minus, one) = (Factor::ONE.negative(), Factor::ONE);
+        let rows = [
+            vec![(0, &one), (1, &a)],
+            vec![(0, &one), (2, &b)],
+            vec![(0, &minus), (3, &c)],
+            vec![(1, &one), (2, &one), (3, &minus)],
+            vec![(1, &one), (2, &one)],
+        ];
+        let found = factors(&rows).expect("they depend on each other");
+        for chain in 0..4 {
+            let mut left = Sum::new();
+            for (row, factor) in rows.iter().zip(&found) {
+                for (_, entry) in row.iter().filter(|entry| entry.0 == chain) {
+                    product(factor, std::slice::from_ref(*entry)).into_iter().for_each(|term| add(&mut left, term));
+                }
+            }
+            assert!(left.is_empty(), "{chain}: {left:?}");
+        }
+        assert!(found.iter().any(|sum| sum.len() > 1), "{found:?}");
+    }
+
+    #[test]
+    fn rows_that_depend_by_value_only_are_left() {
+        let (a, b) = (symbol(1, 1), symbol(2, 1));
+        assert!(factors(&[vec![(0, &a)], vec![(0, &b)]]).is_some());
+        assert!(factors(&[vec![(0, &a), (1, &b)], vec![(0, &b), (1, &a)]]).is_none());
+    }
+}

@@ -1,0 +1,99 @@
+//! What is computed twice: where several components join, each computes the density of the oil there. In the sorted
+//! system the later assignment takes the value of the earlier one, and so do its users, which makes more of them equal.
+//!
+//! Only after sorting: merged before, the shared variable would be a worse place to cut loops.
+
+use super::{Assign, Block, Unknown};
+use bramah_expr::{ExprId, Exprs, Node, VarId};
+use rustc_hash::FxHashMap;
+
+/// Lets equal assignments share their value, in the order of the blocks, and expressions that are read behind all of them.
+pub(super) fn share<'e>(exprs: &mut Exprs, blocks: &mut [Block], behind: impl Iterator<Item = &'e mut ExprId>) {
+    let mut shared = Shared { exprs, first: FxHashMap::default(), images: FxHashMap::default() };
+    for block in blocks {
+        match block {
+            Block::Assign(assign) => shared.assign(assign),
+            Block::Loop(l) => {
+                l.inner.iter_mut().for_each(|assign| shared.assign(assign));
+                for (residual, _) in &mut l.residuals {
+                    *residual = shared.image(*residual);
+                }
+            }
+            Block::Mixed(_) => {}
+        }
+    }
+    behind.for_each(|e| *e = shared.read(*e));
+}
+
+struct Shared<'a> {
+    exprs: &'a mut Exprs,
+    /// The variable that has a value already.
+    first: FxHashMap<ExprId, VarId>,
+    /// Expressions in terms of these variables; empty until two assignments are equal. A variable is replaced from its
+    /// assignment on, and no expression before holds it.
+    images: FxHashMap<ExprId, ExprId>,
+}
+
+impl Shared<'_> {
+    fn assign(&mut self, assign: &mut Assign) {
+        assign.value = self.image(assign.value);
+        let Unknown::Var(v) = assign.unknown else { return };
+        if !matches!(self.exprs.node(assign.value), Node::Unary(..) | Node::Binary(..) | Node::If(..) | Node::Call(..))
+        {
+            return;
+        }
+        match self.first.get(&assign.value) {
+            None => {
+                self.first.insert(assign.value, v);
+            }
+            Some(&same) => {
+                assign.value = self.exprs.var(same);
+                let replaced = self.exprs.var(v);
+                self.images.insert(replaced, assign.value);
+            }
+        }
+    }
+
+    /// With variables in the place of all parts that an assignment has computed.
+    fn read(&mut self, e: ExprId) -> ExprId {
+        let e = self.image(e);
+        let mut images: FxHashMap<ExprId, ExprId> = FxHashMap::default();
+        for part in self.exprs.reachable(&[e], |_| true) {
+            let image = match self.first.get(&part) {
+                Some(&v) if part != e => self.exprs.var(v),
+                _ => {
+                    let operands = self.exprs.operands(part);
+                    let operands: Vec<(ExprId, ExprId)> = operands.as_slice().iter().map(|a| (*a, images[a])).collect();
+                    image_of(self.exprs, part, &operands)
+                }
+            };
+            images.insert(part, image);
+        }
+        images[&e]
+    }
+
+    fn image(&mut self, e: ExprId) -> ExprId {
+        if self.images.is_empty() {
+            return e;
+        }
+        for part in self.exprs.reachable(&[e], |part| !self.images.contains_key(&part)) {
+            let image = match self.exprs.operands(part).as_slice() {
+                [] => part,
+                operands => {
+                    let images: Vec<(ExprId, ExprId)> = operands.iter().map(|a| (*a, self.images[a])).collect();
+                    image_of(self.exprs, part, &images)
+                }
+            };
+            self.images.insert(part, image);
+        }
+        self.images[&e]
+    }
+}
+
+fn image_of(exprs: &mut Exprs, e: ExprId, operands: &[(ExprId, ExprId)]) -> ExprId {
+    if operands.iter().all(|(a, b)| a == b) {
+        return e;
+    }
+    let change = |a: ExprId| operands.iter().find(|(from, _)| *from == a).map_or(a, |(_, to)| *to);
+    exprs.with_operands(e, change)
+}

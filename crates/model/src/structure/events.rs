@@ -1,0 +1,232 @@
+//! Relations, `floor` and `sample` become discrete mode variables with something to watch.
+
+use super::draft::{Draft, Role, RowKind, carried};
+use super::{Crossing, CrossingKind, Sample};
+use crate::flat::{Equation, Origin, OriginKind, Type};
+use bramah_expr::{Binary, ExprId, Exprs, Node, Rel, Unary, VarId};
+use rustc_hash::FxHashMap;
+
+/// How an expression varies, by how much has to be watched.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Varies {
+    /// Never, or at events only.
+    AtEvents,
+    /// With time alone, and at events.
+    WithTime,
+    /// With anything.
+    Continuously,
+}
+
+/// Replaces event-making nodes everywhere. In asserts, `when` bodies and initial equations a relation becomes the mode
+/// of the same relation elsewhere if there is one, and else is evaluated as it stands.
+pub(super) fn extract(draft: &mut Draft) {
+    let origins = eventful_origins(draft);
+    let mut extraction = Extraction { map: Vec::with_capacity(origins.len()), ..Extraction::default() };
+    let live = draft.live_nodes();
+    for (i, origin) in origins.iter().enumerate() {
+        if !live[i] {
+            extraction.map.push(ExprId(i as u32));
+            extraction.varies.push(Varies::AtEvents);
+            extraction.rooted.push(false);
+            continue;
+        }
+        let image = extraction.image(draft, ExprId(i as u32), *origin);
+        extraction.map.push(image);
+        let varies = extraction.variation(draft, ExprId(i as u32));
+        extraction.varies.push(varies);
+        let operands = draft.exprs.operands(ExprId(i as u32));
+        let within = operands.as_slice().iter().any(|a| extraction.rooted[a.index()]);
+        extraction.rooted.push(within || root(&draft.exprs, ExprId(i as u32)).is_some());
+    }
+    draft.map_expressions(&extraction.map);
+}
+
+/// For every node where an event may come from: the origin of the first equation or condition that holds it.
+fn eventful_origins(draft: &Draft) -> Vec<Option<Origin>> {
+    let mut origins = vec![None; draft.exprs.len()];
+    let mut mark = |roots: &[ExprId], origin: Origin| {
+        let mut stack = roots.to_vec();
+        while let Some(e) = stack.pop() {
+            let seen: &mut Option<Origin> = &mut origins[e.index()];
+            if seen.is_none() {
+                *seen = Some(origin);
+                stack.extend_from_slice(draft.exprs.operands(e).as_slice());
+            }
+        }
+    };
+    for equation in &draft.equations {
+        mark(&[equation.lhs, equation.rhs], equation.origin);
+    }
+    for when in &draft.whens {
+        for branch in &when.branches {
+            mark(&branch.conditions, when.origin);
+        }
+    }
+    origins
+}
+
+#[derive(Default)]
+struct Extraction {
+    map: Vec<ExprId>,
+    varies: Vec<Varies>,
+    /// Whether an expression holds a root.
+    rooted: Vec<bool>,
+    /// Modes with the relations they are of.
+    watched: FxHashMap<ExprId, ExprId>,
+}
+
+impl Extraction {
+    fn image(&mut self, draft: &mut Draft, e: ExprId, origin: Option<Origin>) -> ExprId {
+        match draft.exprs.node(e) {
+            Node::EventRel(rel, a, b) => self.relation(draft, (rel, a, b), origin),
+            Node::EventFloor(a) => self.floor(draft, a, origin),
+            Node::Sample(start, interval) => match origin {
+                Some(origin) => self.sampling(draft, start, interval, origin),
+                None => Exprs::ZERO,
+            },
+            Node::If(c, a, b) if self.rooted[a.index()] || self.rooted[b.index()] => {
+                let [c, a, b] = [c, a, b].map(|e| self.map[e.index()]);
+                let modes = draft.exprs.reachable(&[c], |_| true).into_iter();
+                let modes: Vec<(ExprId, ExprId)> = modes.filter_map(|e| Some((e, *self.watched.get(&e)?))).collect();
+                let holds = draft.exprs.substitute(c, &modes);
+                if holds == c {
+                    return draft.exprs.if_(c, a, b);
+                }
+                let fails = draft.exprs.not(holds);
+                let (a, b) = (beyond(&mut draft.exprs, a, holds), beyond(&mut draft.exprs, b, fails));
+                draft.exprs.if_(c, a, b)
+            }
+            _ => carried(&mut draft.exprs, e, &self.map),
+        }
+    }
+
+    fn relation(&mut self, draft: &mut Draft, (rel, a, b): (Rel, ExprId, ExprId), origin: Option<Origin>) -> ExprId {
+        let (left, right) = (self.map[a.index()], self.map[b.index()]);
+        let varies = self.varies[a.index()].max(self.varies[b.index()]);
+        let (Some(origin), true) = (origin, varies > Varies::AtEvents) else {
+            return draft.exprs.rel(rel, left, right);
+        };
+        let timed = if varies == Varies::WithTime { time_event(draft, rel, left, right) } else { None };
+        let (kind, value) = match timed {
+            Some((rel, at)) => {
+                let time = draft.exprs.time();
+                (CrossingKind::Time(rel, at), draft.exprs.rel(rel, time, at))
+            }
+            None => (CrossingKind::Relation(rel, left, right), draft.exprs.rel(rel, left, right)),
+        };
+        match draft.exprs.node(value) {
+            Node::Num(_) => value,
+            _ => {
+                let mode = watched(draft, kind, value, Type::Boolean, origin);
+                self.watched.insert(mode, value);
+                mode
+            }
+        }
+    }
+
+    fn floor(&self, draft: &mut Draft, a: ExprId, origin: Option<Origin>) -> ExprId {
+        let argument = self.map[a.index()];
+        let value = draft.exprs.floor(argument);
+        match origin {
+            Some(origin) if self.varies[a.index()] > Varies::AtEvents => {
+                watched(draft, CrossingKind::Floor(argument), value, Type::Integer, origin)
+            }
+            _ => value,
+        }
+    }
+
+    fn sampling(&self, draft: &mut Draft, start: ExprId, interval: ExprId, origin: Origin) -> ExprId {
+        let (start, interval) = (self.map[start.index()], self.map[interval.index()]);
+        let origin = Origin { kind: OriginKind::Relation, ..origin };
+        let text = draft.exprs.sample(start, interval);
+        let name = draft.text(text);
+        let mode = draft.make_variable(name, Type::Boolean, Role::Sample, origin);
+        draft.samples.push(Sample { mode, start, interval, origin });
+        draft.exprs.var(mode)
+    }
+
+    fn variation(&self, draft: &Draft, e: ExprId) -> Varies {
+        match draft.exprs.node(e) {
+            Node::Time => Varies::WithTime,
+            Node::Der(_) => Varies::Continuously,
+            Node::Var(v) => variable_variation(draft, v),
+            Node::EventRel(..) | Node::EventFloor(_) | Node::Sample(..) => Varies::AtEvents,
+            _ => {
+                let operands = draft.exprs.operands(e);
+                operands.as_slice().iter().map(|a| self.varies[a.index()]).max().unwrap_or(Varies::AtEvents)
+            }
+        }
+    }
+}
+
+fn variable_variation(draft: &Draft, v: VarId) -> Varies {
+    match draft.role(v) {
+        Role::Continuous => Varies::Continuously,
+        Role::Input if draft.variables[v.index()].ty == Type::Real => Varies::Continuously,
+        _ => Varies::AtEvents,
+    }
+}
+
+/// `left rel right` as `time rel at`, if it is affine in time with a numeric factor.
+fn time_event(draft: &mut Draft, rel: Rel, left: ExprId, right: ExprId) -> Option<(Rel, ExprId)> {
+    let pool = &mut draft.exprs;
+    let time = pool.time();
+    if left == time && !pool.contains(right, time) {
+        return Some((rel, right));
+    }
+    let (at, coefficient) = pool.solve_for(left, right, time)?;
+    let factor = pool.as_num(coefficient)?;
+    Some((if factor > 0.0 { rel } else { mirrored(rel) }, at))
+}
+
+/// The relation with its sides exchanged.
+fn mirrored(rel: Rel) -> Rel {
+    match rel {
+        Rel::Lt => Rel::Gt,
+        Rel::Le => Rel::Ge,
+        Rel::Gt => Rel::Lt,
+        Rel::Ge => Rel::Le,
+        same => same,
+    }
+}
+
+/// The argument of a root that changes.
+fn root(pool: &Exprs, e: ExprId) -> Option<ExprId> {
+    let argument = match pool.node(e) {
+        Node::Unary(Unary::Sqrt, u) => u,
+        Node::Binary(Binary::Pow, u, n) if pool.as_num(n).is_some_and(|n| n > 0.0 && n.fract() != 0.0) => u,
+        _ => return None,
+    };
+    pool.as_num(argument).is_none().then_some(argument)
+}
+
+/// A branch of an `if` as it goes on where its condition does not hold any more, until the event is found a little later: a
+/// root whose argument the condition keeps from falling below 0, as in `if dp > 0 then sqrt(dp) else 0`, goes on below 0 with
+/// the other sign, so that the solver finds the crossing.
+fn beyond(pool: &mut Exprs, branch: ExprId, holds: ExprId) -> ExprId {
+    let mut replaced = Vec::new();
+    for e in pool.reachable(&[branch], |_| true) {
+        let Some(argument) = root(pool, e) else { continue };
+        let opposite = pool.neg(argument);
+        let below = match pool.node(e) {
+            Node::Binary(_, _, n) => pool.pow(opposite, n),
+            _ => pool.sqrt(opposite),
+        };
+        let below = pool.neg(below);
+        let negative = pool.rel(Rel::Lt, argument, Exprs::ZERO);
+        let other = pool.if_(negative, below, e);
+        replaced.push((e, pool.if_(holds, e, other)));
+    }
+    if replaced.is_empty() { branch } else { pool.substitute(branch, &replaced) }
+}
+
+/// A mode variable with its equation and its crossing.
+fn watched(draft: &mut Draft, kind: CrossingKind, value: ExprId, ty: Type, origin: Origin) -> ExprId {
+    let origin = Origin { kind: OriginKind::Relation, ..origin };
+    let name = draft.text(value);
+    let mode = draft.make_variable(name, ty, Role::Discrete, origin);
+    draft.crossings.push(Crossing { mode, kind, origin });
+    let lhs = draft.exprs.var(mode);
+    draft.add_equation(Equation { lhs, rhs: value, origin }, RowKind::Definition);
+    lhs
+}

@@ -1,0 +1,281 @@
+//! From the flat model to a DAE in block lower triangular form: aliases removed, matched, index reduced, torn.
+//!
+//! [`Dae`] holds three sorted systems over one set of variables: `continuous` (the right-hand side between events),
+//! `event` (the same with all discrete equations, solved at events) and `initial` (solved once at the start).
+
+mod alias;
+mod analysis;
+mod assertions;
+mod blt;
+mod cancelling;
+mod closed_groups;
+mod conserved;
+mod constants;
+mod delays;
+mod dependence;
+mod discrete;
+mod draft;
+mod dulmage_mendelsohn;
+mod dummy_derivatives;
+mod duplicates;
+mod events;
+mod held;
+mod incidence;
+mod initial;
+mod matching;
+mod messages;
+mod pantelides;
+pub mod parameters;
+pub mod places;
+mod print;
+mod regularity;
+mod solve_block;
+mod sorting;
+mod start_derivatives;
+pub mod starts;
+mod tearing;
+mod zeros;
+
+pub use analysis::analyze;
+
+use crate::flat;
+use bramah_expr::{ExprId, Exprs, Rel, VarId};
+
+/// The model as the numerical stages see it.
+#[derive(Clone, Debug, Default)]
+pub struct Dae {
+    /// The class, by its full name.
+    pub class: String,
+    /// All expressions. No `EventRel`, `EventFloor` or `Sample` is reachable from the blocks.
+    pub exprs: Exprs,
+    /// The flat variables in their order, then those made here (modes, conditions, dummy derivatives); made ones are
+    /// `hidden` and carry a name that a message may show, such as `der(cyl.x)` or the text of the relation.
+    pub variables: Vec<flat::Variable>,
+    /// Component instances, as in the flat model.
+    pub instances: Vec<flat::InstanceInfo>,
+    /// Enumeration types, as in the flat model.
+    pub enumerations: Vec<(String, Vec<String>)>,
+    /// The experiment annotation.
+    pub experiment: flat::Experiment,
+    /// All equations that blocks refer to, for messages.
+    pub equations: Vec<flat::Equation>,
+    /// Parameters and constants with a binding, sorted so that each binding refers to earlier ones only.
+    pub parameters: Vec<VarId>,
+    /// Parameters with `fixed = false`: unknowns of the initial system, then constant.
+    pub free_parameters: Vec<VarId>,
+    /// Top-level inputs, in declaration order.
+    pub inputs: Vec<VarId>,
+    /// Variables that equal another one, or its negative; the target is never an alias itself.
+    pub aliases: Vec<Alias>,
+    /// The states, in declaration order: their values are integrated.
+    pub states: Vec<VarId>,
+    /// Variables whose derivatives the equations need but that are no states: they must be continuous.
+    pub differentiated: Vec<VarId>,
+    /// Discrete unknowns (user's, modes and conditions), each assigned in exactly one `event` block.
+    pub discrete: Vec<VarId>,
+    /// All continuous unknowns given time, parameters, inputs, states and discrete values.
+    pub continuous: Vec<Block>,
+    /// The same with all discrete unknowns, at an event, given `pre` values. Contains `when` equations as
+    /// `v = if fires then value else pre(v)`.
+    pub event: Vec<Block>,
+    /// Everything (states, derivatives, algebraic, discrete, free parameters) at the start.
+    pub initial: Vec<Block>,
+    /// Relations whose change is an event.
+    pub crossings: Vec<Crossing>,
+    /// `sample` expressions: the mode variable is true exactly at its event.
+    pub samples: Vec<Sample>,
+    /// `delay` expressions.
+    pub delays: Vec<Delay>,
+    /// `reinit`, `terminate` and `assert` inside `when`, in order.
+    pub actions: Vec<Action>,
+    /// `assert`s outside `when`.
+    pub asserts: Vec<flat::Assert>,
+    /// Groups among which the states were chosen; the solver asks for another choice when a group's pivots degenerate.
+    pub selections: Vec<Selection>,
+    /// What may be integrated in place of states.
+    pub conserved: Vec<Conserved>,
+    /// Expressions that must vanish at the start, each with its equation: fixed starts of variables that constraints
+    /// tie to others, which hold only if they are consistent. Checked after the initial system is solved.
+    pub initial_checks: Vec<(ExprId, u32)>,
+    /// Start values the compiler chose to make the initial system determined, for notes.
+    pub chosen_starts: Vec<VarId>,
+}
+
+impl Dae {
+    /// Whether results show a variable: what is public, and states whoever they belong to, but not what is annotated
+    /// `HideResult`.
+    pub fn is_shown(&self, v: VarId) -> bool {
+        let variable = &self.variables[v.index()];
+        !variable.hidden || !variable.unwanted && self.states.binary_search(&v).is_ok()
+    }
+}
+
+/// `variable = target` or `variable = -target`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Alias {
+    /// The variable that is not computed.
+    pub variable: VarId,
+    /// What it equals.
+    pub target: VarId,
+    /// With the sign turned.
+    pub negated: bool,
+}
+
+/// What a block solves for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Unknown {
+    /// A variable.
+    Var(VarId),
+    /// The derivative of a state.
+    Der(VarId),
+}
+
+/// A step of a sorted system.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Block {
+    /// One explicit assignment.
+    Assign(Assign),
+    /// An algebraic loop, torn.
+    Loop(Loop),
+    /// A loop through discrete equations; only in `event` and `initial`.
+    Mixed(Mixed),
+}
+
+/// `unknown := value`
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Assign {
+    /// What is computed.
+    pub unknown: Unknown,
+    /// From what.
+    pub value: ExprId,
+    /// The equation it was solved from: index into `Dae::equations`.
+    pub equation: u32,
+}
+
+/// An algebraic loop: given the tearing variables, `inner` follows explicitly, and `residuals` must vanish.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Loop {
+    /// Iteration unknowns, as many as residuals.
+    pub tearing: Vec<Unknown>,
+    /// Explicit assignments, in order.
+    pub inner: Vec<Assign>,
+    /// Expressions that must be zero, each with its equation.
+    pub residuals: Vec<(ExprId, u32)>,
+    /// True when the residuals are affine in the tearing variables (through `inner`).
+    pub linear: bool,
+}
+
+/// A loop through discrete equations: iterate `continuous`, then `discrete`, until the discrete values stay.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mixed {
+    /// The continuous part with discrete values frozen, sorted: `Assign` and `Loop` only.
+    pub continuous: Vec<Block>,
+    /// The discrete equations in an order that follows their dependencies as far as possible.
+    pub discrete: Vec<Assign>,
+}
+
+/// A relation, or a `floor`, with its discrete stand-in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crossing {
+    /// The discrete variable that stands for it in all equations.
+    pub mode: VarId,
+    /// What is watched.
+    pub kind: CrossingKind,
+    /// The place of the relation and the instance it stands in.
+    pub origin: flat::Origin,
+}
+
+/// What is watched.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum CrossingKind {
+    /// `left rel right` with at least one continuous side.
+    Relation(Rel, ExprId, ExprId),
+    /// `time rel at`: `at` depends on parameters and discrete values only, so the event's time is known exactly.
+    Time(Rel, ExprId),
+    /// `floor(argument)`.
+    Floor(ExprId),
+}
+
+/// A `sample(start, interval)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// True exactly at the sampling events.
+    pub mode: VarId,
+    /// First time.
+    pub start: ExprId,
+    /// Interval, positive.
+    pub interval: ExprId,
+    /// Where it stands.
+    pub origin: flat::Origin,
+}
+
+/// A `delay(source, time)`: to the equations an input, whose trajectory the run itself records.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Delay {
+    /// The input that stands for it in all equations. At the start it is the source itself.
+    pub variable: VarId,
+    /// What is delayed; of other delays only earlier ones.
+    pub source: ExprId,
+    /// By how much, in seconds; over parameters.
+    pub time: ExprId,
+    /// Where it stands.
+    pub origin: flat::Origin,
+}
+
+/// Something that happens once when a `when` fires. `fires` is an expression over discrete values and `pre`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Action {
+    /// True at the event iteration in which it happens.
+    pub fires: ExprId,
+    /// What happens.
+    pub kind: ActionKind,
+    /// Where it stands.
+    pub origin: flat::Origin,
+}
+
+/// What happens.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ActionKind {
+    /// A state gets a new value.
+    Reinit(VarId, ExprId),
+    /// The run ends as asked.
+    Terminate(flat::Message),
+    /// A condition is checked.
+    Assert(flat::Assert),
+}
+
+/// A quantity that may be integrated in place of a state, which then follows from it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Conserved {
+    /// The state, one of `Dae::states`.
+    pub state: VarId,
+    /// Stands for the quantity as an unknown of the solver; no block computes it.
+    pub variable: VarId,
+    /// The quantity by the states.
+    pub quantity: ExprId,
+    /// Its rate.
+    pub rate: ExprId,
+    /// `variable = quantity`: index into `Dae::equations`.
+    pub equation: u32,
+}
+
+/// A group of constraints with more differentiated candidates than degrees of freedom.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Selection {
+    /// Candidates; the derivatives of `candidates.len() - rows.len()` of them are integrated, the rest are dummies.
+    pub candidates: Vec<VarId>,
+    /// Those chosen as dummies now, as many as rows.
+    pub dummies: Vec<VarId>,
+    /// The derivative of each constraint by each candidate, by rows.
+    pub rows: Vec<Vec<ExprId>>,
+}
+
+/// States that should be preferred beyond `stateSelect`, from an earlier run's pivots; empty at first.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StateChoice {
+    /// Candidates to take as states.
+    pub preferred: Vec<VarId>,
+}
+
+#[cfg(test)]
+mod tests;

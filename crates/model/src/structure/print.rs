@@ -1,0 +1,92 @@
+//! The sorted systems as text, for `check --emit` and for tests.
+
+use super::{Assign, Block, Dae, Loop, Unknown};
+use bramah_expr::{ExprId, VarId};
+use std::fmt::Write;
+
+impl Dae {
+    /// The name of a variable.
+    pub fn name(&self, v: VarId) -> &str {
+        &self.variables[v.index()].name
+    }
+
+    /// An unknown as the user would write it.
+    pub fn unknown_name(&self, unknown: Unknown) -> String {
+        match unknown {
+            Unknown::Var(v) => self.name(v).to_owned(),
+            Unknown::Der(v) => format!("der({})", self.name(v)),
+        }
+    }
+
+    /// An expression with the variables' names.
+    pub fn text(&self, e: ExprId) -> String {
+        self.exprs.print(e, &|v| self.name(v).to_owned())
+    }
+
+    /// One of the sorted systems, a line for each assignment; loops are indented.
+    pub fn blocks_text(&self, blocks: &[Block]) -> String {
+        let mut out = String::new();
+        self.write_blocks(blocks, 0, &mut out);
+        out
+    }
+
+    /// States, aliases and the continuous system: the block lower triangular form.
+    pub fn blt_text(&self) -> String {
+        let mut out = String::new();
+        let names: Vec<&str> = self.states.iter().map(|&v| self.name(v)).collect();
+        line(&mut out, 0, &format!("states: {}", names.join(", ")));
+        for alias in &self.aliases {
+            let sign = if alias.negated { "-" } else { "" };
+            line(&mut out, 0, &format!("{} = {sign}{}", self.name(alias.variable), self.name(alias.target)));
+        }
+        line(&mut out, 0, "continuous:");
+        self.write_blocks(&self.continuous, 1, &mut out);
+        out
+    }
+
+    /// Everything: [`Dae::blt_text`], the event and the initial system.
+    pub fn dae_text(&self) -> String {
+        let mut out = self.blt_text();
+        line(&mut out, 0, "event:");
+        self.write_blocks(&self.event, 1, &mut out);
+        line(&mut out, 0, "initial:");
+        self.write_blocks(&self.initial, 1, &mut out);
+        out
+    }
+
+    fn write_blocks(&self, blocks: &[Block], depth: usize, out: &mut String) {
+        for block in blocks {
+            match block {
+                Block::Assign(assign) => self.write_assign(assign, depth, out),
+                Block::Loop(found) => self.write_loop(found, depth, out),
+                Block::Mixed(mixed) => {
+                    line(out, depth, "mixed");
+                    self.write_blocks(&mixed.continuous, depth + 1, out);
+                    for assign in &mixed.discrete {
+                        self.write_assign(assign, depth + 1, out);
+                    }
+                }
+            }
+        }
+    }
+
+    fn write_assign(&self, assign: &Assign, depth: usize, out: &mut String) {
+        line(out, depth, &format!("{} := {}", self.unknown_name(assign.unknown), self.text(assign.value)));
+    }
+
+    fn write_loop(&self, found: &Loop, depth: usize, out: &mut String) {
+        let names: Vec<String> = found.tearing.iter().map(|&u| self.unknown_name(u)).collect();
+        let kind = if found.linear { "linear" } else { "nonlinear" };
+        line(out, depth, &format!("{kind} loop for {}", names.join(", ")));
+        for assign in &found.inner {
+            self.write_assign(assign, depth + 1, out);
+        }
+        for &(residual, _) in &found.residuals {
+            line(out, depth + 1, &format!("0 = {}", self.text(residual)));
+        }
+    }
+}
+
+fn line(out: &mut String, depth: usize, text: &str) {
+    writeln!(out, "{:1$}{text}", "", 2 * depth).expect("writing to a string works");
+}

@@ -1,0 +1,94 @@
+//! Whether the equations can determine the unknowns at all, before anything is differentiated.
+//!
+//! A variable and its derivatives count as one unknown here: if that system has no perfect matching, no amount of
+//! differentiation helps, and the over- and under-determined parts say why.
+
+use super::discrete::lone_unknowns;
+use super::draft::{Draft, Role, RowKind};
+use super::dulmage_mendelsohn::{Decomposition, decompose};
+use super::incidence::{Incidence, NONE, Scanner};
+use super::matching::{Matching, maximum};
+use bramah_expr::{Node, VarId};
+
+/// The whole system with one column for each chain of derivatives.
+pub(super) struct Overview {
+    /// The lowest variable of each column's chain.
+    pub columns: Vec<VarId>,
+    /// By variable.
+    of_var: Vec<u32>,
+    pub incidence: Incidence,
+    pub matching: Matching,
+}
+
+/// What is wrong with a system that is not regular.
+pub(super) struct Singularity {
+    pub overview: Overview,
+    pub parts: Decomposition,
+}
+
+/// Checks the system of all continuous and discrete equations.
+pub(super) fn check(draft: &Draft) -> Result<(), Box<Singularity>> {
+    let overview = Overview::new(draft);
+    let complete = |partners: &[u32]| partners.iter().all(|&p| p != NONE);
+    if complete(&overview.matching.column_of) && complete(&overview.matching.row_of) {
+        return Ok(());
+    }
+    let parts = decompose(&overview.incidence, &overview.matching);
+    Err(Box::new(Singularity { overview, parts }))
+}
+
+impl Overview {
+    fn new(draft: &Draft) -> Self {
+        let mut made = Overview {
+            columns: Vec::new(),
+            of_var: vec![NONE; draft.variables.len()],
+            incidence: Incidence::default(),
+            matching: Matching::default(),
+        };
+        made.number_columns(draft);
+        made.scan(draft);
+        made.matching = maximum(&made.incidence, made.columns.len());
+        made
+    }
+
+    fn number_columns(&mut self, draft: &Draft) {
+        let mut integral = vec![NONE; draft.variables.len()];
+        for (i, link) in draft.derivative.iter().enumerate() {
+            if let Some(w) = link {
+                integral[w.variable.index()] = i as u32;
+            }
+        }
+        for i in 0..draft.variables.len() {
+            let unknown = matches!(draft.roles[i], Role::Continuous | Role::Discrete);
+            if !unknown || integral[i] != NONE {
+                continue;
+            }
+            let column = self.columns.len() as u32;
+            self.columns.push(VarId(i as u32));
+            let mut next = Some(VarId(i as u32));
+            while let Some(v) = next {
+                self.of_var[v.index()] = column;
+                next = draft.derivative[v.index()].map(|w| w.variable);
+            }
+        }
+    }
+
+    fn scan(&mut self, draft: &Draft) {
+        let mut scanner = Scanner::default();
+        let of_var = &self.of_var;
+        let column = |node: Node| match node {
+            Node::Var(v) | Node::Der(v) => Some(of_var[v.index()]).filter(|&c| c != NONE),
+            _ => None,
+        };
+        let continuous = |c: u32| draft.role(self.columns[c as usize]) == Role::Continuous;
+        for (equation, &kind) in draft.equations.iter().zip(&draft.kinds) {
+            let sides = [equation.lhs, equation.rhs];
+            if kind == RowKind::Continuous {
+                scanner.push(&draft.exprs, sides, column, continuous, &mut self.incidence);
+                continue;
+            }
+            let lone: Vec<u32> = lone_unknowns(draft, equation, kind).iter().map(|v| of_var[v.index()]).collect();
+            scanner.push_discrete(&draft.exprs, sides, &lone, column, &mut self.incidence);
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! Derivatives that only initial equations ask for, as `der(y) = 0` of a `y` that is no state: unknowns of the start, each
+//! determined by the derivative of the equation that determines its variable. The running system does without them.
+
+use super::draft::{Draft, Role, RowKind};
+use super::incidence::{NONE, Scanner};
+use super::sorting::{Columns, System, SystemRow};
+use super::{Unknown, messages};
+use crate::flat::{Equation, Origin, OriginKind, Type};
+use bramah_expr::differentiate::{Leaf, TimeDerivative};
+use bramah_expr::{ExprId, Exprs, VarId};
+use bramah_syntax::diag::Diagnostic;
+use rustc_hash::FxHashMap;
+
+/// The running system with these derivatives; nothing where there are none. Initial equations refer to them afterwards.
+///
+/// # Errors
+/// What cannot be differentiated (E304).
+pub(super) fn add(draft: &mut Draft, running: &System, states: &[VarId]) -> Result<Option<System>, Diagnostic> {
+    let asked = asked_for(draft, states);
+    if asked.is_empty() {
+        return Ok(None);
+    }
+    let mut derivatives = Derivatives::new(running, draft.variables.len());
+    for &v in &asked {
+        derivatives.of(draft, Unknown::Var(v));
+    }
+    while let Some(unknown) = derivatives.open.pop() {
+        derivatives.determine(draft, unknown)?;
+    }
+    let mut replaced: Vec<(ExprId, ExprId)> = Vec::new();
+    for v in asked {
+        if let Some(&d) = derivatives.made.get(&Unknown::Var(v)) {
+            replaced.push((draft.exprs.der(v), draft.exprs.var(d)));
+        }
+    }
+    for equation in &mut draft.initial_equations {
+        equation.lhs = draft.exprs.substitute(equation.lhs, &replaced);
+        equation.rhs = draft.exprs.substitute(equation.rhs, &replaced);
+    }
+    Ok(Some(derivatives.extended(draft)))
+}
+
+/// Unknowns that are no states and whose derivatives stand in initial equations.
+fn asked_for(draft: &Draft, states: &[VarId]) -> Vec<VarId> {
+    let sides = draft.initial_equations.iter().flat_map(|e| [e.lhs, e.rhs]).collect::<Vec<_>>();
+    let asked = draft.exprs.dependencies(&sides).ders;
+    asked.into_iter().filter(|v| draft.role(*v) == Role::Continuous && states.binary_search(v).is_err()).collect()
+}
+
+struct Derivatives<'a> {
+    running: &'a System,
+    columns: Columns,
+    /// The derivatives of unknowns, as variables.
+    made: FxHashMap<Unknown, VarId>,
+    /// Unknowns whose derivatives are not determined yet.
+    open: Vec<Unknown>,
+    time_derivative: TimeDerivative,
+    /// The rows, with the variables that they determine.
+    rows: Vec<(SystemRow, VarId)>,
+}
+
+impl<'a> Derivatives<'a> {
+    fn new(running: &'a System, variables: usize) -> Self {
+        Derivatives {
+            running,
+            columns: Columns::new(&running.columns, variables),
+            made: FxHashMap::default(),
+            open: Vec::new(),
+            time_derivative: TimeDerivative::default(),
+            rows: Vec::new(),
+        }
+    }
+
+    /// The derivative of an unknown of the running system.
+    fn of(&mut self, draft: &mut Draft, unknown: Unknown) {
+        if self.columns.of(unknown).is_none() || self.made.contains_key(&unknown) {
+            return;
+        }
+        let (v, name) = match unknown {
+            Unknown::Var(v) => (v, format!("der({})", draft.variables[v.index()].name)),
+            Unknown::Der(v) => (v, format!("der(der({}))", draft.variables[v.index()].name)),
+        };
+        let origin = Origin { kind: OriginKind::Differentiated, ..draft.variables[v.index()].origin };
+        let made = draft.make_variable(name, Type::Real, Role::Continuous, origin);
+        self.made.insert(unknown, made);
+        self.open.push(unknown);
+    }
+
+    /// Differentiates the equation that determines an unknown.
+    fn determine(&mut self, draft: &mut Draft, unknown: Unknown) -> Result<(), Diagnostic> {
+        let column = self.columns.of(unknown).expect("only unknowns of the running system are asked for");
+        let row = self.running.matching.row_of[column as usize];
+        let equation = self.running.rows[row as usize].equation;
+        let used = draft.exprs.dependencies(&[equation.lhs, equation.rhs]);
+        for v in used.vars {
+            if draft.role(v) == Role::Input {
+                return Err(messages::not_differentiable(draft, &equation, v));
+            }
+            self.of(draft, Unknown::Var(v));
+        }
+        for v in used.ders {
+            self.of(draft, Unknown::Der(v));
+        }
+        let (lhs, rhs) = (self.differentiated(draft, equation.lhs), self.differentiated(draft, equation.rhs));
+        let origin = Origin { kind: OriginKind::Differentiated, ..equation.origin };
+        let equation = Equation { lhs, rhs, origin };
+        draft.add_equation(equation, RowKind::Continuous);
+        let index = draft.equations.len() as u32 - 1;
+        self.rows.push((SystemRow { equation, index, discrete: false }, self.made[&unknown]));
+        Ok(())
+    }
+
+    fn differentiated(&mut self, draft: &mut Draft, e: ExprId) -> ExprId {
+        let (made, columns, links) = (&self.made, &self.columns, &draft.derivative);
+        let mut leaf = |pool: &mut Exprs, leaf: Leaf| {
+            let unknown = match leaf {
+                Leaf::Var(v) => Unknown::Var(v),
+                Leaf::Der(v) => Unknown::Der(v),
+            };
+            Some(match (made.get(&unknown), leaf) {
+                (Some(d), _) => pool.var(*d),
+                (None, Leaf::Var(v)) if columns.of(Unknown::Der(v)).is_some() => pool.der(v),
+                (None, Leaf::Var(v)) => links[v.index()].map_or(Exprs::ZERO, |w| w.expression(pool)),
+                (None, Leaf::Der(_)) => Exprs::ZERO,
+            })
+        };
+        self.time_derivative.derive(&mut draft.exprs, e, &mut leaf).expect("every leaf has an answer")
+    }
+
+    /// The running system with the rows made.
+    fn extended(self, draft: &Draft) -> System {
+        let mut system = self.running.clone();
+        system.columns.extend(self.rows.iter().map(|(_, v)| Unknown::Var(*v)));
+        system.matching.row_of.resize(system.columns.len(), NONE);
+        let columns = Columns::new(&system.columns, draft.variables.len());
+        let discrete = |c: u32| match system.columns[c as usize] {
+            Unknown::Var(v) => draft.role(v) == Role::Discrete,
+            Unknown::Der(_) => false,
+        };
+        let mut scanner = Scanner::default();
+        for (row, _) in &self.rows {
+            let sides = [row.equation.lhs, row.equation.rhs];
+            scanner.push(&draft.exprs, sides, |node| columns.of_node(node), |c| !discrete(c), &mut system.incidence);
+        }
+        for (column, (row, _)) in (self.running.columns.len() as u32..).zip(self.rows) {
+            system.rows.push(row);
+            system.matching.column_of.push(NONE);
+            system.matching.join(system.rows.len() as u32 - 1, column);
+        }
+        system
+    }
+}

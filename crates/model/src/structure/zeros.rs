@@ -1,0 +1,242 @@
+//! Products that the value of a parameter takes out of the equations, where the structure depends on it.
+//!
+//! `L*der(i) = v` with `L = 0` leaves no state, `R*i = v1 - v2` with `R = 0` ties two voltages together. As long as the
+//! equations can be matched without such products, the parameter may have another value in the next run; where they
+//! cannot, it is fixed with the structure, and so is whatever it is computed from.
+
+use super::draft::{Draft, Role};
+use super::dulmage_mendelsohn::decompose;
+use super::incidence::{Incidence, Scanner};
+use super::matching::maximum;
+use super::parameters::{self, Known};
+use super::sorting::{Columns, System, SystemRow};
+use bramah_expr::{Binary, ExprId, Exprs, Node, Unary, VarId};
+use rustc_hash::{FxHashMap, FxHashSet};
+
+/// Takes out all products whose factors are 0 by the values of these parameters.
+pub(super) fn take_out(draft: &mut Draft, known: &mut Known, decisive: &[VarId]) {
+    if decisive.is_empty() {
+        return;
+    }
+    let zeros = Zeros::find(draft, known);
+    let mut by_these = |factor: ExprId| zeros.parameters(draft, known, factor).iter().all(|v| decisive.contains(v));
+    let taken: Vec<ExprId> = zeros.products.iter().filter(|(_, f)| by_these(*f)).map(|(e, _)| *e).collect();
+    let map = without_products(draft, &taken);
+    draft.map_expressions(&map);
+    parameters::fix(draft, decisive);
+}
+
+/// The parameters with value 0 without whose products one of the systems cannot be matched.
+pub(super) fn decisive(draft: &mut Draft, known: &mut Known, systems: [&System; 2]) -> Vec<VarId> {
+    let zeros = Zeros::find(draft, known);
+    if zeros.products.is_empty() {
+        return Vec::new();
+    }
+    let products: Vec<ExprId> = zeros.products.iter().map(|p| p.0).collect();
+    let map = without_products(draft, &products);
+    let mut found = Vec::new();
+    for system in systems {
+        let incidence = without(draft, system, &map);
+        let matching = maximum(&incidence, system.columns.len());
+        for row in decompose(&incidence, &matching).over.rows {
+            let equation = &system.rows[row as usize].equation;
+            for e in draft.exprs.reachable(&[equation.lhs, equation.rhs], |_| true) {
+                if let Some(factor) = zeros.factor(e) {
+                    found.extend(zeros.parameters(draft, known, factor));
+                }
+            }
+        }
+    }
+    found.sort_unstable();
+    found.dedup();
+    found
+}
+
+/// The image of every expression with 0 in the place of these products.
+fn without_products(draft: &mut Draft, products: &[ExprId]) -> Vec<ExprId> {
+    let taken: FxHashSet<Node> = products.iter().map(|e| draft.exprs.node(*e)).collect();
+    draft.rewritten(|_, node| taken.contains(&node).then_some(Exprs::ZERO))
+}
+
+/// What is 0 by the values of parameters, and the products that such factors take out.
+struct Zeros {
+    /// By expression.
+    zero: Vec<bool>,
+    /// By variable: the expression that it equals and that is 0.
+    definition: Vec<Option<ExprId>>,
+    /// Products with the factor that is 0, by their place in the pool.
+    products: Vec<(ExprId, ExprId)>,
+}
+
+impl Zeros {
+    fn find(draft: &Draft, known: &mut Known) -> Self {
+        let (count, pool) = (draft.variables.len(), &draft.exprs);
+        let mut found = Zeros { zero: vec![false; pool.len()], definition: vec![None; count], products: Vec::new() };
+        let mut open: Vec<ExprId> = Vec::new();
+        for e in (0..pool.len() as u32).map(ExprId) {
+            found.zero[e.index()] = found.is_zero(draft, known, e);
+            open.extend(found.zero[e.index()].then_some(e));
+        }
+        found.spread(draft, known, open);
+        for e in (0..draft.exprs.len() as u32).map(ExprId) {
+            let Node::Binary(Binary::Mul, a, b) = draft.exprs.node(e) else { continue };
+            for (factor, other) in [(a, b), (b, a)] {
+                let taken = found.zero[factor.index()] && draft.exprs.as_num(factor).is_none();
+                if taken && !found.zero[other.index()] && known.value(&draft.exprs, other).is_none() {
+                    found.products.push((e, factor));
+                }
+            }
+        }
+        found
+    }
+
+    /// From what is 0 to the variables that equal it, and on to what is made of them.
+    fn spread(&mut self, draft: &Draft, known: &mut Known, mut open: Vec<ExprId>) {
+        let mut defined: FxHashMap<ExprId, Vec<VarId>> = FxHashMap::default();
+        for equation in &draft.equations {
+            if let Some(v) = defined_by(draft, equation.lhs) {
+                defined.entry(equation.rhs).or_default().push(v);
+            }
+        }
+        if !defined.keys().any(|value| self.zero[value.index()]) {
+            return;
+        }
+        let users = Users::new(draft);
+        while let Some(e) = open.pop() {
+            for v in defined.remove(&e).unwrap_or_default() {
+                self.definition[v.index()].get_or_insert(e);
+                if let Some(leaf) = users.leaf[v.index()]
+                    && !std::mem::replace(&mut self.zero[leaf.index()], true)
+                {
+                    open.push(leaf);
+                }
+            }
+            for user in users.of(e) {
+                if !self.zero[user.index()] && self.is_zero(draft, known, user) {
+                    self.zero[user.index()] = true;
+                    open.push(user);
+                }
+            }
+        }
+    }
+
+    fn is_zero(&self, draft: &Draft, known: &mut Known, e: ExprId) -> bool {
+        if let Some(value) = known.value(&draft.exprs, e) {
+            return value == 0.0;
+        }
+        let zero = |a: ExprId| self.zero[a.index()];
+        match draft.exprs.node(e) {
+            Node::Var(v) => self.definition[v.index()].is_some(),
+            Node::Unary(op, a) => KEEP_ZERO.contains(&op) && zero(a),
+            Node::Binary(Binary::Mul, a, b) => zero(a) || zero(b),
+            Node::Binary(Binary::Div, a, _) => zero(a),
+            Node::Binary(Binary::Add | Binary::Sub | Binary::Min | Binary::Max, a, b) => zero(a) && zero(b),
+            Node::If(condition, a, b) => match known.value(&draft.exprs, condition) {
+                Some(value) => zero(if value == 0.0 { b } else { a }),
+                None => zero(a) && zero(b),
+            },
+            _ => false,
+        }
+    }
+
+    /// The parameters that make an expression 0.
+    fn parameters(&self, draft: &Draft, known: &mut Known, e: ExprId) -> Vec<VarId> {
+        let (mut open, mut seen, mut found) = (vec![e], FxHashSet::default(), Vec::new());
+        while let Some(e) = open.pop() {
+            if !seen.insert(e) {
+                continue;
+            }
+            match draft.exprs.node(e) {
+                Node::Var(v) if draft.role(v) == Role::Parameter => found.push(v),
+                Node::Var(v) => open.extend(self.definition[v.index()]),
+                Node::Binary(Binary::Mul, a, _) if self.zero[a.index()] => open.push(a),
+                Node::Binary(Binary::Mul, _, b) if self.zero[b.index()] => open.push(b),
+                Node::Binary(Binary::Div, a, _) if self.zero[a.index()] => open.push(a),
+                Node::If(condition, a, b) => match known.value(&draft.exprs, condition) {
+                    Some(value) => open.extend([condition, if value == 0.0 { b } else { a }]),
+                    None => open.extend([a, b]),
+                },
+                _ => open.extend_from_slice(draft.exprs.operands(e).as_slice()),
+            }
+        }
+        found
+    }
+
+    fn factor(&self, product: ExprId) -> Option<ExprId> {
+        self.products.binary_search_by_key(&product, |p| p.0).ok().map(|i| self.products[i].1)
+    }
+}
+
+/// The expressions that each expression stands in.
+struct Users {
+    starts: Vec<u32>,
+    users: Vec<ExprId>,
+    /// The node of each variable, if there is one.
+    leaf: Vec<Option<ExprId>>,
+}
+
+impl Users {
+    fn new(draft: &Draft) -> Self {
+        let pool = &draft.exprs;
+        let all = || (0..pool.len() as u32).map(ExprId);
+        let mut starts = vec![0_u32; pool.len() + 1];
+        let mut leaf = vec![None; draft.variables.len()];
+        for e in all() {
+            pool.operands(e).as_slice().iter().for_each(|a| starts[a.index() + 1] += 1);
+            if let Node::Var(v) = pool.node(e)
+                && let Some(place) = leaf.get_mut(v.index())
+            {
+                *place = Some(e);
+            }
+        }
+        (0..pool.len()).for_each(|i| starts[i + 1] += starts[i]);
+        let mut next = starts.clone();
+        let mut users = vec![Exprs::ZERO; starts[pool.len()] as usize];
+        for e in all() {
+            for a in pool.operands(e).as_slice() {
+                users[next[a.index()] as usize] = e;
+                next[a.index()] += 1;
+            }
+        }
+        Users { starts, users, leaf }
+    }
+
+    fn of(&self, e: ExprId) -> impl Iterator<Item = ExprId> {
+        self.users[self.starts[e.index()] as usize..self.starts[e.index() + 1] as usize].iter().copied()
+    }
+}
+
+/// Functions that are 0 at 0.
+const KEEP_ZERO: [Unary; 9] =
+    [Unary::Neg, Unary::Abs, Unary::Sign, Unary::Sqrt, Unary::Sin, Unary::Tan, Unary::Atan, Unary::Sinh, Unary::Tanh];
+
+/// The continuous variable that an equation with this left side defines.
+fn defined_by(draft: &Draft, lhs: ExprId) -> Option<VarId> {
+    match draft.exprs.node(lhs) {
+        Node::Var(v) if draft.role(v) == Role::Continuous => Some(v),
+        _ => None,
+    }
+}
+
+/// The incidence of a system after its expressions have been replaced; an equation may still be solved for what it could
+/// be solved for before, if that still occurs.
+fn without(draft: &Draft, system: &System, map: &[ExprId]) -> Incidence {
+    let image = |e: ExprId| map.get(e.index()).copied().unwrap_or(e);
+    let columns = Columns::new(&system.columns, draft.variables.len());
+    let (mut left, mut made) = (Incidence::default(), Incidence::default());
+    let mut scanner = Scanner::default();
+    for (row, SystemRow { equation, discrete, .. }) in system.rows.iter().enumerate() {
+        let row = row as u32;
+        let before = system.incidence.solvable(row);
+        let sides = [image(equation.lhs), image(equation.rhs)];
+        if *discrete || sides == [equation.lhs, equation.rhs] {
+            made.push(before, &[]);
+            continue;
+        }
+        scanner.push(&draft.exprs, sides, |node| columns.of_node(node), |_| true, &mut left);
+        let still = left.solvable(left.rows() as u32 - 1);
+        let kept: Vec<u32> = before.iter().filter(|c| still.contains(c)).copied().collect();
+        made.push(&kept, &[]);
+    }
+    made
+}

@@ -1,0 +1,240 @@
+//! What is known about the unit of an expression, and how operators combine it.
+//!
+//! The aim is to be quiet when unsure. A number in a model may hide a quantity (`9.81*m` is a force, `x/1e-3` has no
+//! dimension), so a number other than a small ratio makes a product unknown, and fits anywhere in a sum.
+
+use bramah_expr::print::number;
+use bramah_expr::units::power_of;
+use bramah_expr::units::{Dimension, Unit};
+use std::f64::consts::{PI, TAU};
+
+/// A unit as far as it is known. `factor` and `offset` are as in [`Unit`], NaN when not known.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Quantity {
+    pub dimension: Dimension,
+    pub angle: i16,
+    pub factor: f64,
+    pub offset: f64,
+}
+
+/// What is known about the unit of an expression.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Measure {
+    /// Nothing.
+    Unknown,
+    /// A count, a truth value, a small ratio or the result of `sin` and the like: fits anywhere; 1 in products.
+    Number,
+    /// A number with a factor pi, which may convert angles: fits anywhere; leaves only the dimension in products.
+    Circle,
+    /// Any other number: fits anywhere; makes products unknown.
+    Wild,
+    /// A unit.
+    Known(Quantity),
+}
+
+/// How two units that should be the same differ.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Difference {
+    Dimension,
+    /// Same dimension, other factor or offset.
+    Factor,
+}
+
+impl Quantity {
+    pub const NUMBER: Quantity = Quantity { dimension: Dimension::NONE, angle: 0, factor: 1.0, offset: 0.0 };
+    pub const SECOND: Quantity = Quantity { dimension: Dimension::TIME, ..Quantity::NUMBER };
+
+    pub fn of(unit: &Unit) -> Self {
+        Quantity { dimension: unit.dimension, angle: unit.angle, factor: unit.factor(), offset: unit.offset }
+    }
+
+    pub fn times(self, other: Quantity) -> Measure {
+        let dimension = self.dimension.times(other.dimension);
+        let angle = self.angle.checked_add(other.angle);
+        Self::made(dimension, angle, self.factor * other.factor)
+    }
+
+    pub fn over(self, other: Quantity) -> Measure {
+        let dimension = self.dimension.over(other.dimension);
+        let angle = self.angle.checked_sub(other.angle);
+        Self::made(dimension, angle, self.factor / other.factor)
+    }
+
+    pub fn power(self, exponent: f64) -> Measure {
+        let angle = power_of(self.angle, exponent);
+        Self::made(self.dimension.power(exponent), angle, self.factor.powf(exponent))
+    }
+
+    /// The same unit with a zero point that is not known.
+    pub fn shifted(self) -> Quantity {
+        Quantity { offset: f64::NAN, ..self }
+    }
+
+    fn made(dimension: Option<Dimension>, angle: Option<i16>, factor: f64) -> Measure {
+        match (dimension, angle) {
+            (Some(dimension), Some(angle)) => Measure::Known(Quantity { dimension, angle, factor, offset: 0.0 }),
+            _ => Measure::Unknown,
+        }
+    }
+
+    /// What keeps two values from being equal, as far as both are known.
+    pub fn difference(self, other: Quantity) -> Option<Difference> {
+        if self.dimension != other.dimension {
+            return Some(Difference::Dimension);
+        }
+        let ratio = self.factor / other.factor;
+        // `1/min` may count revolutions: a factor 2 pi against a unit without angle is none.
+        let counts = (self.angle == 0) != (other.angle == 0) && (same(ratio, TAU) || same(ratio * TAU, 1.0));
+        let factor = !ratio.is_nan() && !same(ratio, 1.0) && !counts;
+        let offset = (self.offset - other.offset).abs() > 1e-6;
+        (factor || offset).then_some(Difference::Factor)
+    }
+
+    /// One of two equal units: what one lacks is taken from the other.
+    fn merge(self, other: Quantity) -> Quantity {
+        let known = |a: f64, b: f64| if a.is_nan() { b } else { a };
+        Quantity { factor: known(self.factor, other.factor), offset: known(self.offset, other.offset), ..self }
+    }
+}
+
+fn same(a: f64, b: f64) -> bool {
+    (a - b).abs() <= 1e-6 * b.abs()
+}
+
+impl Measure {
+    /// The class of a number.
+    pub fn of_number(value: f64) -> Measure {
+        let turns = value / PI;
+        if is_small_ratio(value, &[1.0, 2.0, 3.0, 4.0]) {
+            Measure::Number
+        } else if is_small_ratio(turns, &[1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 32.0, 64.0]) {
+            Measure::Circle
+        } else {
+            Measure::Wild
+        }
+    }
+
+    pub fn known(self) -> Option<Quantity> {
+        match self {
+            Measure::Known(quantity) => Some(quantity),
+            _ => None,
+        }
+    }
+
+    /// As a factor in a product: the unit it contributes.
+    fn as_factor(self) -> Option<Quantity> {
+        match self {
+            Measure::Number => Some(Quantity::NUMBER),
+            Measure::Circle => Some(Quantity { factor: f64::NAN, ..Quantity::NUMBER }),
+            Measure::Known(quantity) => Some(quantity),
+            Measure::Unknown | Measure::Wild => None,
+        }
+    }
+
+    pub fn times(self, other: Measure) -> Measure {
+        self.product(other, Quantity::times)
+    }
+
+    pub fn over(self, other: Measure) -> Measure {
+        self.product(other, Quantity::over)
+    }
+
+    fn product(self, other: Measure, op: fn(Quantity, Quantity) -> Measure) -> Measure {
+        use Measure::{Circle, Known, Number, Unknown, Wild};
+        match (self, other) {
+            (Unknown, _) | (_, Unknown) | (Wild, Known(_)) | (Known(_), Wild) => Unknown,
+            (Wild, _) | (_, Wild) => Wild,
+            (Number, Number) => Number,
+            (Number | Circle, Number | Circle) => Circle,
+            // Twice a temperature in degC may be the first half of a mean.
+            (Known(quantity), Number) if quantity.offset.is_nan() => self,
+            (Number, Known(quantity)) if quantity.offset.is_nan() => op(Quantity::NUMBER, quantity).with_free_offset(),
+            _ => match (self.as_factor(), other.as_factor()) {
+                (Some(a), Some(b)) => op(a, b),
+                _ => Unknown,
+            },
+        }
+    }
+
+    fn with_free_offset(self) -> Measure {
+        self.known().map_or(self, |quantity| Measure::Known(quantity.shifted()))
+    }
+
+    pub fn power(self, exponent: f64) -> Measure {
+        match self {
+            Measure::Known(quantity) => quantity.power(exponent),
+            Measure::Circle => Measure::Wild,
+            other => other,
+        }
+    }
+
+    /// Two sides that must be the same.
+    pub fn join(self, other: Measure) -> Measure {
+        use Measure::{Known, Number, Unknown, Wild};
+        match (self, other) {
+            (Known(a), Known(b)) => Known(a.merge(b)),
+            (Known(a), Wild) | (Wild, Known(a)) => Known(a.shifted()),
+            (Known(a), _) | (_, Known(a)) => Known(a),
+            (Unknown, _) | (_, Unknown) => Unknown,
+            (Number, Number) => Number,
+            _ => Wild,
+        }
+    }
+
+    /// The sum (`sign` 1) or difference (-1). The difference of two temperatures has no zero point; a temperature plus
+    /// a difference is again a temperature, and which one was which is not known.
+    pub fn sum(self, other: Measure, sign: f64) -> Measure {
+        let joined = self.join(other);
+        let (Measure::Known(a), Measure::Known(b)) = (self, other) else { return joined };
+        let offset = match (a.offset, b.offset) {
+            (0.0, 0.0) => 0.0,
+            (x, y) if x == y && sign < 0.0 => 0.0,
+            _ => f64::NAN,
+        };
+        joined.known().map_or(joined, |q| Measure::Known(Quantity { offset, ..q }))
+    }
+}
+
+/// Whether a number is, but for its sign, `p/q` with small whole numbers.
+fn is_small_ratio(value: f64, denominators: &[f64]) -> bool {
+    denominators.iter().any(|q| {
+        let p = value.abs() * q;
+        (1.0..=4.0).contains(&p.round()) && (p - p.round()).abs() < 1e-12
+    })
+}
+
+/// As `Pa`, or `0.01 1/s` when one is not the coherent SI unit.
+impl std::fmt::Display for Quantity {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        if !self.factor.is_nan() && !same(self.factor, 1.0) {
+            write!(f, "{} ", number(self.factor, Some(6)))?;
+        }
+        match (self.angle, self.dimension.is_none()) {
+            (0, _) => write!(f, "{}", self.dimension)?,
+            (60, true) => write!(f, "rad")?,
+            (60, false) if self.dimension.to_string().starts_with("1/") => {
+                write!(f, "rad{}", &self.dimension.to_string()[1..])?;
+            }
+            _ => write!(f, "{}", self.dimension)?,
+        }
+        if self.offset > 0.0 { write!(f, " from {} K", number(self.offset, Some(6))) } else { Ok(()) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_classed() {
+        for x in [1.0, 2.0, -0.5, 0.25, 4.0, 1.0 / 3.0, 4.0 / 3.0] {
+            assert!(matches!(Measure::of_number(x), Measure::Number), "{x}");
+        }
+        for x in [PI, TAU, PI / 4.0, 4.0 / 3.0 * PI] {
+            assert!(matches!(Measure::of_number(x), Measure::Circle), "{x}");
+        }
+        for x in [0.0, 60.0, 1e5, 9.81, 3.6, 1e-3, 10.0] {
+            assert!(matches!(Measure::of_number(x), Measure::Wild), "{x}");
+        }
+    }
+}

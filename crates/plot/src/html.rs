@@ -1,0 +1,149 @@
+//! A figure as one HTML page with zoom and hover, that needs no network and no other file.
+
+use std::fmt::Write as _;
+
+use serde::Serialize;
+
+use super::decimate::{Points, decimate, staircase};
+use super::figure::{Figure, Panel, colour};
+use super::svg;
+use bramah_results::number;
+
+/// A curve keeps at most four points in each of this many stretches; zooming shows details down to these.
+const COLUMNS: usize = 5_000;
+/// Significant digits of the numbers in the page.
+const DIGITS: usize = 7;
+
+const PAGE: &str = include_str!("page.html");
+const SCRIPT: &str = include_str!("page.js");
+
+#[derive(Serialize)]
+struct PanelHead<'a> {
+    x: &'a str,
+    y: &'a str,
+    words: &'a [String],
+    names: Vec<&'a str>,
+    colours: Vec<&'a str>,
+    dashed: Vec<bool>,
+    crosses: Vec<bool>,
+}
+
+/// Writes the page. `facts` are pairs of name and value shown below the picture: model, command, statistics.
+pub fn write(figure: &Figure, facts: &[(String, String)]) -> String {
+    write_around(figure, facts, "")
+}
+
+/// The same with HTML between the title and the curves.
+pub fn write_around(figure: &Figure, facts: &[(String, String)], before: &str) -> String {
+    let title = if figure.title.is_empty() { "bramah" } else { &figure.title };
+    let mut rows = String::new();
+    for (name, value) in facts {
+        let _ = writeln!(rows, "<tr><th>{}</th><td>{}</td></tr>", svg::escape(name), svg::escape(value));
+    }
+    let parts = [
+        ("{{title}}", svg::escape(title)),
+        ("{{before}}", before.to_owned()),
+        ("{{picture}}", svg::write(figure)),
+        ("{{facts}}", rows),
+        ("{{head}}", in_script(&head(figure))),
+        ("{{curves}}", curves(figure)),
+        ("{{script}}", SCRIPT.to_owned()),
+    ];
+    fill(PAGE, &parts)
+}
+
+/// Replaces marks from left to right, so that text put in is never searched for marks.
+fn fill(page: &str, parts: &[(&str, String)]) -> String {
+    let mut out = String::new();
+    let mut rest = page;
+    while let Some(at) = rest.find("{{") {
+        out.push_str(&rest[..at]);
+        rest = &rest[at..];
+        match parts.iter().find(|(mark, _)| rest.starts_with(mark)) {
+            Some((mark, text)) => {
+                out.push_str(text);
+                rest = &rest[mark.len()..];
+            }
+            None => {
+                out.push_str("{{");
+                rest = &rest[2..];
+            }
+        }
+    }
+    out.push_str(rest);
+    out
+}
+
+fn head(figure: &Figure) -> String {
+    let panel = |p: &'_ Panel| -> serde_json::Value {
+        serde_json::to_value(PanelHead {
+            x: &p.x_label,
+            y: &p.y_label,
+            words: &p.words,
+            names: p.series.iter().map(|s| s.name.as_str()).collect(),
+            colours: p.series.iter().map(|s| colour(s.colour)).collect(),
+            dashed: p.series.iter().map(|s| s.dashed).collect(),
+            crosses: p.series.iter().map(|s| s.crosses).collect(),
+        })
+        .expect("texts always serialize")
+    };
+    let panels: Vec<serde_json::Value> = figure.panels.iter().map(panel).collect();
+    serde_json::json!({ "shared": figure.shared_x, "panels": panels }).to_string()
+}
+
+/// `</script>` inside a name must not end the script.
+fn in_script(json: &str) -> String {
+    json.replace('<', "\\u003c")
+}
+
+/// The numbers: a list of panels, of curves, each `[x, y, x, y, ...]`; gaps are null.
+fn curves(figure: &Figure) -> String {
+    let mut out = String::from("[");
+    for (i, panel) in figure.panels.iter().enumerate() {
+        out.push_str(if i > 0 { ",\n[" } else { "[" });
+        for (k, series) in panel.series.iter().enumerate() {
+            let points: Points = if series.held {
+                staircase(&series.x, &series.y)
+            } else {
+                series.x.iter().copied().zip(series.y.iter().copied()).collect()
+            };
+            let points = if series.crosses { points } else { decimate(points, COLUMNS) };
+            out.push_str(if k > 0 { ",\n[" } else { "[" });
+            for (n, (x, y)) in points.into_iter().enumerate() {
+                let separator = if n > 0 { "," } else { "" };
+                let _ = write!(out, "{separator}{},{}", json_number(x, 12), json_number(y, DIGITS));
+            }
+            out.push(']');
+        }
+        out.push(']');
+    }
+    out.push(']');
+    out
+}
+
+fn json_number(value: f64, digits: usize) -> String {
+    if value.is_finite() { number::rounded(value, digits) } else { "null".to_owned() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::figure::Series;
+    use super::*;
+
+    #[test]
+    fn one_page_without_network() {
+        let series = Series {
+            name: "</script>{{facts}}".into(),
+            x: vec![0.0, 1.0],
+            y: vec![1e5, f64::NAN],
+            ..Series::default()
+        };
+        let panels = vec![Panel { series: vec![series], ..Panel::default() }];
+        let figure = Figure { title: "a < b".into(), panels, shared_x: true };
+        let page = write(&figure, &[("model".into(), "A & B".into())]);
+        assert!(page.contains("[[[0,100000,1,null]]]"), "{page}");
+        assert!(page.contains("<td>A &amp; B</td>"));
+        assert_eq!(page.matches("</script>").count(), 1);
+        assert!(!page.replace("http://www.w3.org/2000/svg", "").contains("http"));
+    }
+}

@@ -1,0 +1,321 @@
+//! Where the boxes of a network stand.
+//!
+//! Components are put into columns by their distance from one end of the network, so that a connection joins equal or
+//! neighbouring columns; within a column they are ordered by the mean place of their neighbours, which avoids most
+//! crossings. Long networks turn back and go on in the next row.
+
+use std::collections::VecDeque;
+
+use petgraph::graph::{EdgeIndex, NodeIndex};
+use petgraph::visit::EdgeRef;
+
+use super::symbols::symbol;
+use bramah_model::network::Graph;
+
+/// Columns in a row before the network turns.
+const COLUMNS: usize = 8;
+/// Between columns, for the wires.
+const GAP_X: f64 = 90.0;
+/// Between boxes of a column.
+const GAP_Y: f64 = 22.0;
+/// Around everything.
+const MARGIN: f64 = 20.0;
+/// Height of name and class in a box, and of a port.
+const HEAD: f64 = 38.0;
+const PORT: f64 = 16.0;
+/// Side of a symbol.
+pub(super) const SYMBOL: f64 = 40.0;
+
+/// The side of a box.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Side {
+    Left,
+    Right,
+}
+
+/// Where a wire begins.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    pub x: f64,
+    pub y: f64,
+    pub side: Side,
+}
+
+/// A component.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Boxed {
+    pub x: f64,
+    pub y: f64,
+    pub width: f64,
+    pub height: f64,
+    /// Drawn in the middle, between the ports.
+    pub symbol: Option<&'static str>,
+    left: Vec<String>,
+    right: Vec<String>,
+}
+
+impl Boxed {
+    /// The upper left corner of the symbol.
+    pub fn symbol_place(&self) -> (f64, f64) {
+        let room = self.height - HEAD - 4.0;
+        (self.x + (self.width - SYMBOL) / 2.0, self.y + HEAD + (room - SYMBOL) / 2.0)
+    }
+}
+
+/// All boxes, by the numbers of their nodes.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Layout {
+    pub boxes: Vec<Boxed>,
+    pub width: f64,
+    pub height: f64,
+}
+
+impl Layout {
+    pub fn new(graph: &Graph) -> Self {
+        let neighbours = neighbours(graph);
+        let mut layout = Layout { boxes: vec![Boxed::default(); graph.node_count()], ..Layout::default() };
+        for node in graph.node_indices() {
+            let component = &graph[node];
+            let classes = std::iter::once(&component.class).chain(&component.bases).map(String::as_str);
+            let symbol = symbol(classes);
+            layout.boxes[node.index()] =
+                Boxed { width: box_width(component, symbol.is_some()), symbol, ..Boxed::default() };
+        }
+        let mut top = MARGIN;
+        for part in parts(&neighbours) {
+            let columns = ordered(columns(&part, &neighbours), &neighbours);
+            for (r, row) in columns.chunks(COLUMNS).enumerate() {
+                layout.place_x(row, r % 2 == 1);
+            }
+            layout.choose_sides(graph, &part);
+            for row in columns.chunks(COLUMNS) {
+                top = layout.place_y(row, top, &neighbours);
+            }
+        }
+        layout.width = layout.boxes.iter().map(|b| b.x + b.width).fold(0.0, f64::max) + MARGIN;
+        layout.height = top.max(2.0 * MARGIN);
+        layout
+    }
+
+    /// Where a port is for a wire to the box `other`: a port with wires to both sides stands on both.
+    pub fn end(&self, node: usize, port: &str, other: usize) -> Place {
+        let wished = self.side_towards(node, other);
+        let places = self.places(node, port);
+        let found = places.iter().find(|p| p.side == wished).or(places.first());
+        let b = &self.boxes[node];
+        found.copied().unwrap_or(Place { x: b.x, y: b.y, side: Side::Left })
+    }
+
+    /// All places where a port is drawn.
+    pub fn places(&self, node: usize, port: &str) -> Vec<Place> {
+        let b = &self.boxes[node];
+        let y = |i: usize| b.y + HEAD + PORT * (i as f64 + 0.5);
+        let left = b.left.iter().position(|p| p == port).map(|i| Place { x: b.x, y: y(i), side: Side::Left });
+        let right = b.right.iter().position(|p| p == port);
+        let right = right.map(|i| Place { x: b.x + b.width, y: y(i), side: Side::Right });
+        left.into_iter().chain(right).collect()
+    }
+
+    /// Boxes of one column are joined on their right.
+    fn side_towards(&self, node: usize, other: usize) -> Side {
+        let middle = |b: &Boxed| b.x + b.width / 2.0;
+        let away = middle(&self.boxes[other]) - middle(&self.boxes[node]);
+        if away < -1.0 { Side::Left } else { Side::Right }
+    }
+
+    /// Columns from left to right, or from right to left where the network has turned.
+    fn place_x(&mut self, row: &[Vec<usize>], turned: bool) {
+        let width = |column: &[usize], boxes: &[Boxed]| column.iter().map(|&n| boxes[n].width).fold(0.0, f64::max);
+        let widths: Vec<f64> = row.iter().map(|c| width(c, &self.boxes)).collect();
+        let full = COLUMNS as f64 * 150.0 + (COLUMNS - 1) as f64 * GAP_X;
+        let total = widths.iter().sum::<f64>() + GAP_X * (widths.len() - 1) as f64;
+        let mut x = if turned { MARGIN + full.max(total) } else { MARGIN };
+        for (column, width) in row.iter().zip(&widths) {
+            if turned {
+                x -= width;
+            }
+            for &node in column {
+                self.boxes[node].x = x + (width - self.boxes[node].width) / 2.0;
+            }
+            x += if turned { -GAP_X } else { width + GAP_X };
+        }
+    }
+
+    /// A port looks to the sides where its wires go.
+    fn choose_sides(&mut self, graph: &Graph, part: &[usize]) {
+        for &node in part {
+            let index = NodeIndex::new(node);
+            for port in &graph[index].ports {
+                let others = graph.edges(index).filter_map(|edge| other_end(graph, edge.id(), index, port));
+                let sides: Vec<Side> = others.map(|other| self.side_towards(node, other.index())).collect();
+                let b = &mut self.boxes[node];
+                if sides.contains(&Side::Left) {
+                    b.left.push(port.clone());
+                }
+                if sides.contains(&Side::Right) || sides.is_empty() {
+                    b.right.push(port.clone());
+                }
+            }
+            let b = &mut self.boxes[node];
+            let ports = PORT * b.left.len().max(b.right.len()).max(1) as f64;
+            b.height = HEAD + ports.max(if b.symbol.is_some() { SYMBOL } else { 0.0 }) + 4.0;
+        }
+    }
+
+    /// Stacks the columns of a row, each centred and then drawn towards its neighbours; returns where the next begins.
+    fn place_y(&mut self, row: &[Vec<usize>], top: f64, neighbours: &[Vec<usize>]) -> f64 {
+        let height = |layout: &Layout, column: &[usize]| -> f64 {
+            column.iter().map(|&n| layout.boxes[n].height + GAP_Y).sum::<f64>() - GAP_Y
+        };
+        let tallest = row.iter().map(|c| height(self, c)).fold(0.0, f64::max);
+        for column in row {
+            let mut y = top + (tallest - height(self, column)) / 2.0;
+            for &node in column {
+                self.boxes[node].y = y;
+                y += self.boxes[node].height + GAP_Y;
+            }
+        }
+        let members: Vec<usize> = row.iter().flatten().copied().collect();
+        for _ in 0..3 {
+            for column in row {
+                self.settle(column, (top, top + tallest), &members, neighbours);
+            }
+        }
+        top + tallest + 2.0 * GAP_Y
+    }
+
+    /// Moves each box of a column towards the mean of its neighbours in the row, keeping order and distances.
+    fn settle(&mut self, column: &[usize], (top, bottom): (f64, f64), members: &[usize], neighbours: &[Vec<usize>]) {
+        let middle = |b: &Boxed| b.y + b.height / 2.0;
+        let mut y = top;
+        let mut room: f64 = column.iter().map(|&n| self.boxes[n].height + GAP_Y).sum();
+        for &node in column {
+            let near: Vec<f64> =
+                neighbours[node].iter().filter(|n| members.contains(n)).map(|&n| middle(&self.boxes[n])).collect();
+            let b = &self.boxes[node];
+            let wish =
+                if near.is_empty() { b.y } else { near.iter().sum::<f64>() / near.len() as f64 - b.height / 2.0 };
+            let latest = bottom + GAP_Y - room;
+            let place = wish.clamp(y, latest.max(y));
+            room -= b.height + GAP_Y;
+            y = place + b.height + GAP_Y;
+            self.boxes[node].y = place;
+        }
+    }
+}
+
+/// Where the wire goes that leaves `node` at `port`, if it does.
+fn other_end(graph: &Graph, edge: EdgeIndex, node: NodeIndex, port: &str) -> Option<NodeIndex> {
+    let (a, b) = graph.edge_endpoints(edge)?;
+    let wire = &graph[edge];
+    if a == node && wire.from == port {
+        Some(b)
+    } else if b == node && wire.to == port {
+        Some(a)
+    } else {
+        None
+    }
+}
+
+fn box_width(component: &bramah_model::network::ComponentBox, symbol: bool) -> f64 {
+    let chars = |s: &str| s.chars().count() as f64;
+    let class = component.class.rsplit('.').next().unwrap_or("");
+    let port = component.ports.iter().map(|p| chars(p)).fold(0.0, f64::max);
+    let between = if symbol { SYMBOL + 8.0 } else { 12.0 };
+    (7.2 * chars(&component.name)).max(6.0 * chars(class)).max(2.0 * 5.6 * port + between).max(70.0) + 18.0
+}
+
+/// Each node's neighbours, without itself, in the order of their numbers.
+fn neighbours(graph: &Graph) -> Vec<Vec<usize>> {
+    let mut all = vec![Vec::new(); graph.node_count()];
+    for edge in graph.edge_references() {
+        let (a, b) = (edge.source().index(), edge.target().index());
+        if a != b {
+            all[a].push(b);
+            all[b].push(a);
+        }
+    }
+    for list in &mut all {
+        list.sort_unstable();
+        list.dedup();
+    }
+    all
+}
+
+/// Connected parts, each by the numbers of its nodes.
+fn parts(neighbours: &[Vec<usize>]) -> Vec<Vec<usize>> {
+    let mut seen = vec![false; neighbours.len()];
+    let mut parts = Vec::new();
+    for start in 0..neighbours.len() {
+        if !seen[start] {
+            let mut part: Vec<usize> = distances(start, neighbours).into_iter().map(|(n, _)| n).collect();
+            part.iter().for_each(|&n| seen[n] = true);
+            part.sort_unstable();
+            parts.push(part);
+        }
+    }
+    parts
+}
+
+/// Nodes and their distance from the start, nearest first.
+fn distances(start: usize, neighbours: &[Vec<usize>]) -> Vec<(usize, usize)> {
+    let mut seen = vec![false; neighbours.len()];
+    seen[start] = true;
+    let mut queue = VecDeque::from([(start, 0)]);
+    let mut out = Vec::new();
+    while let Some((node, distance)) = queue.pop_front() {
+        out.push((node, distance));
+        for &next in &neighbours[node] {
+            if !std::mem::replace(&mut seen[next], true) {
+                queue.push_back((next, distance + 1));
+            }
+        }
+    }
+    out
+}
+
+/// A part in columns of equal distance from one of its ends; of the two ends the one declared first.
+fn columns(part: &[usize], neighbours: &[Vec<usize>]) -> Vec<Vec<usize>> {
+    let farthest = |from: usize| {
+        let all = distances(from, neighbours);
+        let most = all.iter().map(|d| d.1).max().unwrap_or(0);
+        all.iter().filter(|d| d.1 == most).map(|d| d.0).min().unwrap_or(from)
+    };
+    let end = farthest(part[0]);
+    let start = end.min(farthest(end));
+    let mut columns: Vec<Vec<usize>> = Vec::new();
+    for (node, distance) in distances(start, neighbours) {
+        if columns.len() <= distance {
+            columns.push(Vec::new());
+        }
+        columns[distance].push(node);
+    }
+    columns
+}
+
+/// Orders each column by the mean place of its neighbours, forth and back some times.
+fn ordered(mut columns: Vec<Vec<usize>>, neighbours: &[Vec<usize>]) -> Vec<Vec<usize>> {
+    let mut rank = vec![0.0; neighbours.len()];
+    let number = |column: &[usize], rank: &mut Vec<f64>| {
+        for (i, &node) in column.iter().enumerate() {
+            rank[node] = (i as f64 + 0.5) / column.len() as f64;
+        }
+    };
+    columns.iter().for_each(|c| number(c, &mut rank));
+    for round in 0..8 {
+        let order: Vec<usize> =
+            if round % 2 == 0 { (0..columns.len()).collect() } else { (0..columns.len()).rev().collect() };
+        for i in order {
+            let wish = |node: usize| {
+                let near = &neighbours[node];
+                let sum: f64 = near.iter().map(|&n| rank[n]).sum();
+                if near.is_empty() { rank[node] } else { sum / near.len() as f64 }
+            };
+            let mut keyed: Vec<(f64, usize)> = columns[i].iter().map(|&n| (wish(n), n)).collect();
+            keyed.sort_by(|a, b| a.0.total_cmp(&b.0));
+            columns[i] = keyed.into_iter().map(|(_, n)| n).collect();
+            number(&columns[i], &mut rank);
+        }
+    }
+    columns
+}

@@ -1,0 +1,293 @@
+//! Consistent values at the start: parameters, guesses, the initial system by damped Newton, homotopy where needed.
+
+use super::blocks::{BlockFailure, Blocks, Setting};
+use super::modes::Modes;
+use super::newton::{NewtonFailure, Reason, Scales};
+use super::report;
+use super::settings::Settings;
+use crate::lower::{Layout, System};
+use bramah_expr::{ExprId, Node, VarId};
+use bramah_model::flat::{Equation, Origin, OriginKind, Type, Variability};
+use bramah_model::structure::{Block, Dae, Unknown, places, starts};
+use bramah_syntax::diag::{Code, Diagnostic};
+
+/// A redundant fixed start may be off by this part of its size.
+const CHECK_TOLERANCE: f64 = 1e-6;
+
+/// The shortest step of the homotopy parameter.
+const SMALLEST_STEP: f64 = 1e-4;
+
+/// Parameters as the settings say, and start values as guesses in all other variables.
+pub fn prepare(system: &System, settings: &Settings) -> Vec<f64> {
+    let mut values = system.layout.values();
+    let mut overridden = vec![false; if settings.parameters.is_empty() { 0 } else { system.dae.variables.len() }];
+    for &(v, value) in &settings.parameters {
+        values[system.layout.var(v)] = value;
+        overridden[v.index()] = true;
+    }
+    system.evaluate_parameters(&mut values, &overridden);
+    values[Layout::TIME] = settings.start_time;
+    guess(system, &mut values);
+    values
+}
+
+/// Values given from outside must satisfy what is asserted of parameters, before anything is computed from them; those
+/// of the model itself were judged with its structure.
+///
+/// # Errors
+/// The first assertion that does not hold (E503).
+pub fn check_parameters(system: &System, settings: &Settings, values: &[f64]) -> Result<(), Diagnostic> {
+    if settings.parameters.is_empty() {
+        return Ok(());
+    }
+    let asserts = system.standing_asserts.iter().map(|&i| &system.dae.asserts[i]);
+    match asserts.filter(|a| !a.warning).find(|a| system.eval(a.condition, values) == 0.0) {
+        None => Ok(()),
+        Some(assert) => {
+            let text = report::message_text(system, &assert.message, values);
+            let text = format!("{text} (with the parameters given)");
+            Err(report::at_origin(&system.dae, Code::AssertionFailed, text, assert.origin, "does not hold").advised())
+        }
+    }
+}
+
+fn guess(system: &System, values: &mut [f64]) {
+    for (v, variable) in (0..).map(VarId).zip(&system.dae.variables) {
+        let free = system.dae.free_parameters.contains(&v);
+        if variable.variability <= Variability::Parameter && !free {
+            continue;
+        }
+        let value = system.start(v, values).filter(|s| s.is_finite()).unwrap_or_else(|| {
+            let nothing = if matches!(variable.ty, Type::Enumeration(_)) { 1.0_f64 } else { 0.0 };
+            let nothing = system.min(v, values).map_or(nothing, |min| nothing.max(min));
+            system.max(v, values).map_or(nothing, |max| nothing.min(max))
+        });
+        values[system.layout.var(v)] = if value.is_finite() { value } else { 0.0 };
+        if let Some(pre) = system.layout.pre(v) {
+            values[pre] = values[system.layout.var(v)];
+        }
+    }
+    system.aliases(values);
+}
+
+/// Solves the initial system from the guesses in `values`.
+///
+/// # Errors
+/// What could not be solved; `values` is where it failed.
+pub fn solve(system: &System, scales: &Scales, modes: &mut Modes, values: &mut [f64]) -> Result<(), BlockFailure> {
+    values[Layout::INITIAL] = 1.0;
+    modes.after = false;
+    let mut start = Start { system, scales, modes, blocks: Blocks::new(&system.initial, scales, modes) };
+    let guesses = values.to_vec();
+    // the root that the model asks for is the one that the simplified equations lead to (MLS 3.7.4)
+    let followed = worth_homotopy(&system.dae) && start.homotopy(values, &guesses).is_ok();
+    let result = if followed {
+        Ok(())
+    } else {
+        values.copy_from_slice(&guesses);
+        values[Layout::LAMBDA] = 1.0;
+        start.run(values)
+    };
+    let result = match result {
+        Err(BlockFailure::Loop(failure)) if failure.reason == Reason::NoConvergence => {
+            let failed = values.to_vec();
+            start.elsewhere(&failure, values, &guesses).map_err(|_| {
+                values.copy_from_slice(&failed);
+                BlockFailure::Loop(failure)
+            })
+        }
+        other => other,
+    };
+    values[Layout::LAMBDA] = 1.0;
+    values[Layout::INITIAL] = 0.0;
+    modes.after = true;
+    result
+}
+
+/// Fixed starts that constraints have made redundant must agree with what the others lead to; where others do not, a
+/// warning says so.
+///
+/// # Errors
+/// The first fixed one that does not (E401).
+pub fn check_starts(system: &System, scales: &Scales, values: &[f64]) -> Result<Vec<Diagnostic>, Diagnostic> {
+    let mut missed = Vec::new();
+    for &(residual, equation) in &system.dae.initial_checks {
+        let equation = &system.dae.equations[equation as usize];
+        let (found, asked) = (system.eval(equation.lhs, values), system.eval(equation.rhs, values));
+        let nominal = match system.dae.exprs.node(equation.lhs) {
+            Node::Var(v) | Node::Der(v) => scales.nominal[v.index()],
+            // the terms of a sum cancel
+            _ => terms(system, equation, values),
+        };
+        let allowed = CHECK_TOLERANCE * (found.abs().max(asked.abs()) + nominal);
+        if system.eval(residual, values).abs() > allowed {
+            match guessed(&system.dae, equation) {
+                Some(v) => missed.push(missed_start(system, v, equation, found, asked)),
+                None => return Err(contradiction(system, equation, found, asked)),
+            }
+        }
+    }
+    Ok(missed)
+}
+
+/// The variable whose start a check is, where that is not `fixed` beside one that is: a guess, as the language has it
+/// (MLS 8.6).
+fn guessed(dae: &Dae, equation: &Equation) -> Option<VarId> {
+    match dae.exprs.node(equation.lhs) {
+        Node::Var(v) if equation.origin.kind == OriginKind::Guess => Some(v),
+        _ => None,
+    }
+}
+
+fn missed_start(system: &System, v: VarId, equation: &Equation, found: f64, asked: f64) -> Diagnostic {
+    let dae = &system.dae;
+    let name = dae.text(equation.lhs);
+    let text = format!(
+        "`{name}` starts at {}, not at {}: the other start values and the constraints make it so",
+        report::number(found),
+        report::number(asked)
+    );
+    let origin = Origin { span: places::place_of(&dae.variables, &dae.instances, v), ..equation.origin };
+    let made = report::at_origin(dae, Code::StartMissed, text, origin, "its `start` was taken as a guess");
+    match starts::modifier(&name, true) {
+        Some(m) => made.help(format!("if it must hold, write `fixed = true` beside it: `{m}`")),
+        None => made.help("if it must hold, write `fixed = true` beside it"),
+    }
+}
+
+/// The largest value of a variable that an equation reads.
+fn terms(system: &System, equation: &Equation, values: &[f64]) -> f64 {
+    let dae = &system.dae;
+    let read = [equation.lhs, equation.rhs].into_iter().flat_map(|e| dae.exprs.variables(e));
+    read.map(|v| values[system.layout.var(v)].abs()).fold(0.0, f64::max)
+}
+
+fn contradiction(system: &System, equation: &Equation, found: f64, asked: f64) -> Diagnostic {
+    let dae = &system.dae;
+    let name = dae.text(equation.lhs);
+    let (found, asked) = (report::number(found), report::number(asked));
+    let text =
+        format!("`{name}` is to start at {asked}, but the other start values and the constraints make it {found}");
+    let Node::Var(v) = dae.exprs.node(equation.lhs) else {
+        return report::at_origin(dae, Code::InitialOver, text, equation.origin, "this start is fixed")
+            .help("fix fewer of the starts that the constraints tie together, or give values that fit");
+    };
+    let origin = Origin { span: places::place_of(&dae.variables, &dae.instances, v), ..equation.origin };
+    let label = format!("`{name}` is fixed at the start");
+    let behind = starts::parameter_behind(&dae.exprs, &dae.variables, v);
+    let freed = starts::modifier(&name, false).map(|m| format!("let it follow from the others: `{m}`"));
+    let given = behind.map(|p| format!("give a value that fits: `{p} = {found}`"));
+    let ways: Vec<String> = freed.into_iter().chain(given).collect();
+    let made = report::at_origin(dae, Code::InitialOver, text, origin, &label);
+    if ways.is_empty() { made.help("free one of these starts") } else { made.help(ways.join("; or ")) }
+}
+
+fn worth_homotopy(dae: &Dae) -> bool {
+    let is_homotopy = |e: u32| matches!(dae.exprs.node(ExprId(e)), Node::Homotopy(..));
+    let loops = dae.initial.iter().any(|b| !matches!(b, Block::Assign(_)));
+    loops && (0..u32::try_from(dae.exprs.len()).unwrap_or(0)).any(is_homotopy)
+}
+
+struct Start<'a> {
+    system: &'a System,
+    scales: &'a Scales,
+    modes: &'a Modes,
+    blocks: Blocks,
+}
+
+impl Start<'_> {
+    fn run(&mut self, values: &mut [f64]) -> Result<(), BlockFailure> {
+        let setting = Setting { system: self.system, scales: self.scales, modes: self.modes };
+        self.blocks.run(&self.system.initial, &setting, values)?;
+        if !self.system.dae.free_parameters.is_empty() {
+            self.system.parameters_changed(values);
+        }
+        self.system.aliases(values);
+        Ok(())
+    }
+
+    /// From other beginnings of the unknowns of a loop that was not solved: their nominal values, ten times these, a
+    /// tenth. A pressure without a `start` begins at that of its connector, which may be far from where it has to be.
+    fn elsewhere(&mut self, failure: &NewtonFailure, values: &mut [f64], guesses: &[f64]) -> Result<(), BlockFailure> {
+        let mut last = Ok(());
+        for part in [1.0, 10.0, 0.1] {
+            values.copy_from_slice(guesses);
+            values[Layout::LAMBDA] = 1.0;
+            for &(unknown, ..) in &failure.unknowns {
+                let Unknown::Var(v) = unknown else { continue };
+                let i = v.index();
+                let guess = part * self.scales.nominal[i];
+                values[self.system.layout.var(v)] = guess.max(self.scales.min[i]).min(self.scales.max[i]);
+            }
+            last = self.run(values);
+            if last.is_ok() {
+                break;
+            }
+        }
+        last
+    }
+
+    /// From the simplified system to the actual one in steps that grow while they succeed.
+    fn homotopy(&mut self, values: &mut [f64], guesses: &[f64]) -> Result<(), BlockFailure> {
+        values.copy_from_slice(guesses);
+        values[Layout::LAMBDA] = 0.0;
+        self.run(values)?;
+        let (mut at, mut step) = (0.0_f64, 0.25_f64);
+        let mut last = values.to_vec();
+        while at < 1.0 {
+            let next = (at + step).min(1.0);
+            values[Layout::LAMBDA] = next;
+            match self.run(values) {
+                Ok(()) => {
+                    last.copy_from_slice(values);
+                    at = next;
+                    step *= 2.0;
+                }
+                Err(failure) => {
+                    values.copy_from_slice(&last);
+                    step *= 0.5;
+                    if step < SMALLEST_STEP {
+                        return Err(failure);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lower::{Options, lower};
+    use std::sync::Arc;
+
+    /// Two wheels in mesh with both speeds fixed.
+    fn start(second: &str) -> Result<Vec<Diagnostic>, Diagnostic> {
+        let text = format!(
+            "model M
+               Real w1(start = 1, fixed = true), w2(start = {second}, fixed = true), t;
+             equation
+               der(w1) = 3 - t;
+               0.5*der(w2) = t;
+               w2 = 2*w1;
+             end M;"
+        );
+        let flat = bramah_model::compile::flatten_text(&text, None).value.expect("sound").flat;
+        let dae = bramah_model::compile::analyze(&flat).value.expect("sound");
+        let system = lower(Arc::new(dae), &Options::INTERPRETED);
+        let mut values = prepare(&system, &Settings::default());
+        let scales = Scales::new(&system, &values);
+        let mut modes = Modes::new(&system, 1e-6);
+        assert!(solve(&system, &scales, &mut modes, &mut values).is_ok());
+        check_starts(&system, &scales, &values)
+    }
+
+    #[test]
+    fn redundant_starts_must_agree() {
+        assert_eq!(start("2"), Ok(Vec::new()));
+        let error = start("3").expect_err("2*1 is not 3");
+        assert_eq!(error.code, Code::InitialOver);
+        assert!(error.message.contains("`w1` is to start at 1"), "{}", error.message);
+    }
+}

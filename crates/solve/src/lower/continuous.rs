@@ -1,0 +1,220 @@
+//! The IDA system: definitions of residual, Jacobian and zero crossings, and of what is observed.
+
+use super::eliminate::{Fate, Plan};
+use super::jacobian::{Differentials, Entry, compress};
+use super::layout::{Layout, Slot, slot};
+use super::program::Defs;
+use super::shape::{Kernels, Rules, Shaper};
+use super::{Integral, Pattern, RowKind};
+use bramah_expr::VarId;
+use bramah_model::structure::{CrossingKind, Dae, Unknown};
+use rustc_hash::{FxHashMap, FxHashSet};
+
+/// The definitions of the IDA system.
+#[derive(Debug)]
+pub struct ContinuousDraft {
+    /// Locals and right sides of rows.
+    pub residual: Defs,
+    /// Per row, the slot of its right side.
+    pub row_slots: Vec<Slot>,
+    /// The same with derivatives.
+    pub jacobian: Differentials,
+    /// Structure of the matrix.
+    pub pattern: Pattern,
+    /// Per entry, the slots of what is added and subtracted.
+    pub entries: Vec<(Slot, Slot)>,
+}
+
+/// Makes the definitions of residual and Jacobian.
+pub fn draft(plan: &Plan, shaper: &mut Shaper) -> ContinuousDraft {
+    let rules = Rules { initial: false, inline: &plan.inline, hoist: true };
+    let (mut residual, mut jacobian) = (Defs::default(), Differentials::default());
+    seed(plan, &mut jacobian, &mut shaper.layout);
+    let mut define = |value, target, is_read, shaper: &mut Shaper| {
+        let shaped = shaper.shape(value, &rules);
+        residual.define(&mut shaper.kernels, target, &shaped);
+        jacobian.define(shaper, target, &shaped, is_read);
+    };
+    let mut targets: Vec<Slot> = Vec::with_capacity(plan.explicit.len());
+    for (i, assign) in plan.explicit.iter().enumerate() {
+        let own = slot(shaper.layout.unknown(assign.unknown));
+        let target = if plan.fates[i] == Fate::Kept { shaper.layout.work(1) } else { own };
+        if let Fate::Local | Fate::Kept = plan.fates[i] {
+            let is_read = plan.fates[i] == Fate::Local && plan.users[i] > 0;
+            define(assign.value, target, is_read, shaper);
+        }
+        targets.push(target);
+    }
+    let mut row_slots = Vec::with_capacity(plan.rows.len());
+    for (row, &explicit) in plan.rows.iter().zip(&plan.row_explicit) {
+        row_slots.push(explicit.map_or_else(
+            || {
+                let target = shaper.layout.work(1);
+                define(row.value, target, false, shaper);
+                target
+            },
+            |i| targets[i],
+        ));
+    }
+    let (pattern, entries) = matrix(plan, &row_slots, &jacobian, &mut shaper.layout);
+    ContinuousDraft { residual, row_slots, jacobian, pattern, entries }
+}
+
+fn seed(plan: &Plan, jacobian: &mut Differentials, layout: &mut Layout) {
+    let one = layout.number(1.0);
+    for (j, column) in (0..).zip(&plan.columns) {
+        jacobian.seed(slot(layout.var(column.variable)), j, one);
+    }
+    for &(column, der) in &plan.torn {
+        jacobian.seed(der, slot(column), slot(Layout::CJ));
+    }
+}
+
+/// `der(x) - value` and `v - value` turn the sign of the value's derivatives.
+fn matrix(
+    plan: &Plan,
+    row_slots: &[Slot],
+    jacobian: &Differentials,
+    layout: &mut Layout,
+) -> (Pattern, Vec<(Slot, Slot)>) {
+    let (zero, one) = (layout.number(0.0), layout.number(1.0));
+    let mut entries = Vec::new();
+    for (i, (row, &place)) in (0..).zip(plan.rows.iter().zip(row_slots)) {
+        let diagonal = match row.kind {
+            RowKind::Derivative => Some(slot(Layout::CJ)),
+            RowKind::Explicit => Some(one),
+            RowKind::Follows(_) => Some(one),
+            RowKind::Residual => None,
+        };
+        let own = if let RowKind::Follows(column) = row.kind { slot(column) } else { i };
+        entries.extend(diagonal.map(|plus| Entry { column: own, row: i, plus, minus: zero }));
+        for &(column, derivative) in jacobian.gradient(place) {
+            let (plus, minus) = if diagonal.is_some() { (zero, derivative) } else { (derivative, zero) };
+            entries.push(Entry { column, row: i, plus, minus });
+        }
+    }
+    compress(plan.columns.len(), entries, zero)
+}
+
+/// Everything that follows explicitly from the unknowns of IDA, for outputs, crossings and asserts.
+#[derive(Clone, Debug, Default)]
+pub struct Observables {
+    /// Explicit assignments in order (but not those that IDA keeps), then aliases.
+    pub defs: Defs,
+    producer: FxHashMap<Slot, u32>,
+}
+
+impl Observables {
+    /// The definitions of all explicit variables and aliases.
+    pub fn new(dae: &Dae, plan: &Plan, shaper: &mut Shaper) -> Observables {
+        let mut observables = Observables::default();
+        let inline = FxHashMap::default();
+        let rules = Rules { initial: false, inline: &inline, hoist: true };
+        for (assign, &fate) in plan.explicit.iter().zip(&plan.fates) {
+            if fate != Fate::Kept {
+                let target = slot(shaper.layout.unknown(assign.unknown));
+                let shaped = shaper.shape(assign.value, &rules);
+                observables.producer.insert(target, slot(observables.defs.len()));
+                observables.defs.define(&mut shaper.kernels, target, &shaped);
+            }
+        }
+        for alias in &dae.aliases {
+            let input = shaper.kernels.pool.var(VarId(0));
+            let value = if alias.negated { shaper.kernels.pool.neg(input) } else { input };
+            let (from, to) = (slot(shaper.layout.var(alias.target)), slot(shaper.layout.var(alias.variable)));
+            observables.producer.insert(to, slot(observables.defs.len()));
+            observables.defs.push(&mut shaper.kernels, vec![value], &[from], &[to]);
+        }
+        observables
+    }
+
+    /// The definitions that these slots need, in order.
+    pub fn needed(&self, kernels: &Kernels, slots: impl IntoIterator<Item = Slot>) -> Defs {
+        let mut wanted: FxHashSet<u32> = FxHashSet::default();
+        let mut stack: Vec<Slot> = slots.into_iter().collect();
+        while let Some(slot) = stack.pop() {
+            if let Some(&i) = self.producer.get(&slot)
+                && wanted.insert(i)
+            {
+                stack.extend_from_slice(self.defs.get(kernels, i as usize).1);
+            }
+        }
+        let mut chosen: Vec<usize> = wanted.into_iter().map(|i| i as usize).collect();
+        chosen.sort_unstable();
+        self.defs.select(kernels, chosen)
+    }
+
+    /// The same definitions with all those before them that they need.
+    pub fn before(&self, kernels: &Kernels, defs: &Defs) -> Defs {
+        let read = (0..defs.len()).flat_map(|i| defs.get(kernels, i).1.iter().copied());
+        let mut all = self.needed(kernels, read);
+        all.append(defs);
+        all
+    }
+}
+
+/// Conserved quantities and their rates.
+#[derive(Debug, Default)]
+pub struct QuantitiesDraft {
+    /// Both, from the slots of variables.
+    pub defs: Defs,
+    /// Each quantity by itself.
+    pub alone: Vec<Defs>,
+    /// The quantities.
+    pub integrals: Vec<Integral>,
+}
+
+/// The definitions of conserved quantities; rates go into the slots of their derivatives.
+pub fn quantities(plan: &Plan, shaper: &mut Shaper) -> QuantitiesDraft {
+    let mut draft = QuantitiesDraft::default();
+    let inline = FxHashMap::default();
+    let rules = Rules { initial: false, inline: &inline, hoist: true };
+    for &(conserved, column, state) in &plan.integrals {
+        let (slot, slope) = (shaper.layout.work(1), shaper.layout.work(1));
+        let rate = self::slot(shaper.layout.unknown(Unknown::Der(conserved.variable)));
+        let [quantity, growth] = [conserved.quantity, conserved.rate].map(|e| shaper.shape(e, &rules));
+        let mut alone = Defs::default();
+        alone.define(&mut shaper.kernels, slot, &quantity);
+        draft.defs.append(&alone);
+        draft.defs.define(&mut shaper.kernels, rate, &growth);
+        draft.alone.push(alone);
+        draft.integrals.push(Integral { column, state, slot, slope, entry: None, row: Vec::new() });
+    }
+    draft
+}
+
+/// Root functions.
+#[derive(Debug, Default)]
+pub struct CrossingsDraft {
+    /// Which entries of `dae.crossings` have one.
+    pub list: Vec<usize>,
+    /// The root functions from the slots of variables.
+    pub defs: Defs,
+    /// The slot of each root function.
+    pub slots: Vec<Slot>,
+}
+
+/// The definitions of the root functions.
+pub fn crossings(dae: &Dae, shaper: &mut Shaper) -> CrossingsDraft {
+    let mut draft = CrossingsDraft::default();
+    let inline = FxHashMap::default();
+    let rules = Rules { initial: false, inline: &inline, hoist: true };
+    for (i, crossing) in dae.crossings.iter().enumerate() {
+        let (e, inputs) = match crossing.kind {
+            CrossingKind::Relation(_, left, right) => {
+                let (sides, inputs) = shaper.shape_all(&[left, right], &rules);
+                (shaper.kernels.pool.sub(sides[0], sides[1]), inputs)
+            }
+            CrossingKind::Floor(argument) => {
+                let shaped = shaper.shape(argument, &rules);
+                (shaped.expr, shaped.inputs)
+            }
+            CrossingKind::Time(..) => continue,
+        };
+        let target = shaper.layout.work(1);
+        draft.defs.push(&mut shaper.kernels, vec![e], &inputs, &[target]);
+        draft.slots.push(target);
+        draft.list.push(i);
+    }
+    draft
+}

@@ -1,0 +1,136 @@
+//! Exact sparse derivatives by the chain rule.
+//!
+//! Each definition's kernel is differentiated by those of its inputs that depend on a column. At run time the partial
+//! derivatives are computed by kernels, then sums of products carry d slot / d column from definition to definition.
+
+use super::Pattern;
+use super::layout::{Layout, Slot, slot};
+use super::program::{Defs, Products};
+use super::shape::{Shaped, Shaper};
+use bramah_expr::{ExprId, Exprs, Node};
+use rustc_hash::FxHashMap;
+
+/// The columns a slot depends on, ascending, each with the slot of the derivative.
+pub type Gradient = Vec<(u32, Slot)>;
+
+/// Collects what computes the derivatives of slots by columns.
+#[derive(Debug, Default)]
+pub struct Differentials {
+    gradients: FxHashMap<Slot, Gradient>,
+    /// Values and partial derivatives.
+    pub defs: Defs,
+    /// The chain rule.
+    pub products: Products,
+}
+
+/// One product of the chain rule: column, partial derivative, inner derivative.
+type Term = (u32, Slot, Slot);
+
+impl Differentials {
+    /// Says that `slot` holds a column's unknown (`factor` is the slot of 1) or its derivative (the slot of `cj`).
+    pub fn seed(&mut self, slot: Slot, column: u32, factor: Slot) {
+        self.gradients.insert(slot, vec![(column, factor)]);
+    }
+
+    /// The derivatives of a slot.
+    pub fn gradient(&self, slot: Slot) -> &[(u32, Slot)] {
+        self.gradients.get(&slot).map_or(&[], Vec::as_slice)
+    }
+
+    /// Adds a definition: its value, if something reads it, and its derivatives.
+    pub fn define(&mut self, shaper: &mut Shaper, target: Slot, shaped: &Shaped, value_is_read: bool) {
+        let (mut outputs, mut targets) = (Vec::new(), Vec::new());
+        if value_is_read {
+            outputs.push(shaped.expr);
+            targets.push(target);
+        }
+        let mut terms: Vec<Term> = Vec::new();
+        for (input, &from) in (0..).zip(&shaped.inputs) {
+            if !self.gradients.contains_key(&from) {
+                continue;
+            }
+            let partial = shaper.kernels.partial(shaped.expr, input);
+            if partial == Exprs::ZERO {
+                continue;
+            }
+            let place = partial_slot(shaper, partial, &shaped.inputs, &mut outputs, &mut targets);
+            terms.extend(self.gradients[&from].iter().map(|&(column, inner)| (column, place, inner)));
+        }
+        if !outputs.is_empty() {
+            self.defs.push(&mut shaper.kernels, outputs, &shaped.inputs, &targets);
+        }
+        terms.sort_by_key(|&(column, ..)| column);
+        let gradient: Gradient = terms
+            .chunk_by(|a, b| a.0 == b.0)
+            .map(|terms| (terms[0].0, self.accumulate(&mut shaper.layout, terms)))
+            .collect();
+        if gradient.is_empty() {
+            self.gradients.remove(&target);
+        } else {
+            self.gradients.insert(target, gradient);
+        }
+    }
+
+    /// The slot of a sum of products.
+    fn accumulate(&mut self, layout: &mut Layout, terms: &[Term]) -> Slot {
+        let one = layout.number(1.0);
+        if let &[(_, partial, inner)] = terms {
+            if partial == one {
+                return inner;
+            }
+            if inner == one {
+                return partial;
+            }
+        }
+        let sum = layout.work(1);
+        self.products.factors.extend(terms.iter().map(|&(_, partial, inner)| (partial, inner)));
+        self.products.sums.push((sum, slot(self.products.factors.len())));
+        sum
+    }
+}
+
+/// Where a partial derivative is found: a number's slot, an input's slot, or a new slot that the kernel writes.
+fn partial_slot(
+    shaper: &mut Shaper,
+    partial: ExprId,
+    inputs: &[Slot],
+    outputs: &mut Vec<ExprId>,
+    targets: &mut Vec<Slot>,
+) -> Slot {
+    match shaper.kernels.pool.node(partial) {
+        Node::Num(bits) => shaper.layout.number(f64::from_bits(bits)),
+        Node::Var(v) => inputs[v.index()],
+        _ => {
+            let place = shaper.layout.work(1);
+            outputs.push(partial);
+            targets.push(place);
+            place
+        }
+    }
+}
+
+/// A matrix entry: `values[plus] - values[minus]`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Entry {
+    pub column: u32,
+    pub row: u32,
+    pub plus: Slot,
+    pub minus: Slot,
+}
+
+/// Sorts entries into compressed columns, merging those of one place, which must not both have the same sign.
+pub fn compress(n: usize, mut entries: Vec<Entry>, zero: Slot) -> (Pattern, Vec<(Slot, Slot)>) {
+    entries.sort_by_key(|e| (e.column, e.row));
+    let mut pattern = Pattern { n, colptr: vec![0; n + 1], rowidx: Vec::with_capacity(entries.len()) };
+    let mut slots = Vec::with_capacity(entries.len());
+    for same in entries.chunk_by(|a, b| (a.column, a.row) == (b.column, b.row)) {
+        let either = |part: fn(&Entry) -> Slot| same.iter().map(part).find(|&s| s != zero).unwrap_or(zero);
+        pattern.rowidx.push(same[0].row as usize);
+        pattern.colptr[same[0].column as usize + 1] += 1;
+        slots.push((either(|e| e.plus), either(|e| e.minus)));
+    }
+    for j in 0..n {
+        pattern.colptr[j + 1] += pattern.colptr[j];
+    }
+    (pattern, slots)
+}

@@ -1,0 +1,194 @@
+//! Where every number lives: one flat array per run.
+
+use bramah_expr::{ExprId, Exprs, Node, VarId};
+use bramah_model::structure::{Block, Dae, Unknown};
+use rustc_hash::FxHashMap;
+
+/// A place in the array of values. Byte offsets of slots fit into 32 bits.
+pub type Slot = u32;
+
+const NONE: Slot = Slot::MAX;
+
+/// The slots of a model. One array of [`Layout::len`] numbers holds everything that kernels read and write: what the
+/// run says (time, homotopy, phase), variables, derivatives, values before the event, numbers of the text, and work.
+#[derive(Clone, Debug)]
+pub struct Layout {
+    der: Vec<Slot>,
+    pre: Vec<Slot>,
+    numbers: FxHashMap<u64, Slot>,
+    preset: Vec<(Slot, f64)>,
+    len: u32,
+}
+
+impl Layout {
+    /// Simulated time, s.
+    pub const TIME: usize = 0;
+    /// Homotopy parameter of the initial system: 0 simplified, 1 actual.
+    pub const LAMBDA: usize = 1;
+    /// 1 during initialization, else 0.
+    pub const INITIAL: usize = 2;
+    /// 1 at the end of a successful run, else 0.
+    pub const TERMINAL: usize = 3;
+    /// The solver's `cj`, for Jacobians.
+    pub(super) const CJ: usize = 4;
+    const VARIABLES: u32 = 5;
+
+    /// The slots of the variables of `dae`, of all derivatives and of all values before events that occur in it.
+    pub fn new(dae: &Dae) -> Layout {
+        let variables = u32::try_from(dae.variables.len()).expect("fewer than 2^32 variables");
+        let mut layout = Layout {
+            der: vec![NONE; dae.variables.len()],
+            pre: vec![NONE; dae.variables.len()],
+            numbers: FxHashMap::default(),
+            preset: vec![(slot(Self::LAMBDA), 1.0)],
+            len: Self::VARIABLES + variables,
+        };
+        dae.states.iter().for_each(|&x| layout.add_der(x));
+        dae.conserved.iter().for_each(|c| layout.add_der(c.variable));
+        dae.discrete.iter().for_each(|&v| layout.add_pre(v));
+        for block in dae.continuous.iter().chain(&dae.event).chain(&dae.initial) {
+            layout.add_unknowns(block);
+        }
+        layout.add_leaves(&dae.exprs);
+        layout
+    }
+
+    /// Length of the array of values.
+    pub fn len(&self) -> usize {
+        self.len as usize
+    }
+
+    /// Never: time and its companions are always there.
+    pub fn is_empty(&self) -> bool {
+        false
+    }
+
+    /// The slot of a variable's value.
+    pub fn var(&self, v: VarId) -> usize {
+        Self::VARIABLES as usize + v.index()
+    }
+
+    /// The slot of a variable's time derivative, if the model mentions it.
+    pub fn der(&self, v: VarId) -> Option<usize> {
+        existing(self.der[v.index()])
+    }
+
+    /// The slot of a variable's value before the event, if it is discrete or the model mentions it.
+    pub fn pre(&self, v: VarId) -> Option<usize> {
+        existing(self.pre[v.index()])
+    }
+
+    /// The slots of all values before the event.
+    pub(super) fn pre_slots(&self) -> impl Iterator<Item = Slot> {
+        self.pre.iter().copied().filter(|&slot| slot != NONE)
+    }
+
+    /// The slot of an unknown of a block.
+    pub fn unknown(&self, unknown: Unknown) -> usize {
+        match unknown {
+            Unknown::Var(v) => self.var(v),
+            Unknown::Der(v) => self.der(v).expect("every derivative that is solved for has a slot"),
+        }
+    }
+
+    /// A fresh array: the numbers of the text are in place, the homotopy parameter is 1, all else is 0.
+    pub fn values(&self) -> Vec<f64> {
+        let mut values = vec![0.0; self.len()];
+        for &(slot, number) in &self.preset {
+            values[slot as usize] = number;
+        }
+        values
+    }
+
+    /// The slot that a leaf of an expression reads; `None` for what is not a leaf.
+    pub(super) fn leaf(&self, node: Node) -> Option<Slot> {
+        let found = match node {
+            Node::Num(bits) => *self.numbers.get(&bits)?,
+            Node::Time => slot(Self::TIME),
+            Node::Var(v) => Self::VARIABLES + v.0,
+            Node::Der(v) => self.der[v.index()],
+            Node::Pre(v) => self.pre[v.index()],
+            Node::Initial => slot(Self::INITIAL),
+            Node::Terminal => slot(Self::TERMINAL),
+            _ => return None,
+        };
+        (found != NONE).then_some(found)
+    }
+
+    /// The slot that always holds this number.
+    pub(super) fn number(&mut self, value: f64) -> Slot {
+        if let Some(&found) = self.numbers.get(&value.to_bits()) {
+            return found;
+        }
+        let fresh = self.work(1);
+        self.numbers.insert(value.to_bits(), fresh);
+        self.preset.push((fresh, value));
+        fresh
+    }
+
+    /// The slot of a number that is known to have one.
+    pub(super) fn known_number(&self, bits: u64) -> Option<Slot> {
+        self.numbers.get(&bits).copied()
+    }
+
+    /// The first of `count` new neighbouring slots.
+    pub(super) fn work(&mut self, count: usize) -> Slot {
+        let first = self.len;
+        self.len += slot(count);
+        assert!(self.len < 1 << 28, "the byte offset of every slot fits into 31 bits");
+        first
+    }
+
+    fn add_der(&mut self, v: VarId) {
+        if self.der[v.index()] == NONE {
+            self.der[v.index()] = self.work(1);
+        }
+    }
+
+    fn add_pre(&mut self, v: VarId) {
+        if self.pre[v.index()] == NONE {
+            self.pre[v.index()] = self.work(1);
+        }
+    }
+
+    fn add_unknowns(&mut self, block: &Block) {
+        let mut add = |unknown: Unknown| {
+            if let Unknown::Der(v) = unknown {
+                self.add_der(v);
+            }
+        };
+        match block {
+            Block::Assign(assign) => add(assign.unknown),
+            Block::Loop(l) => {
+                l.tearing.iter().for_each(|&u| add(u));
+                l.inner.iter().for_each(|a| add(a.unknown));
+            }
+            Block::Mixed(mixed) => {
+                mixed.discrete.iter().for_each(|a| add(a.unknown));
+                mixed.continuous.iter().for_each(|b| self.add_unknowns(b));
+            }
+        }
+    }
+
+    fn add_leaves(&mut self, exprs: &Exprs) {
+        for id in 0..exprs.len() {
+            match exprs.node(ExprId(slot(id))) {
+                Node::Der(v) => self.add_der(v),
+                Node::Pre(v) => self.add_pre(v),
+                Node::Num(bits) => {
+                    self.number(f64::from_bits(bits));
+                }
+                _ => {}
+            }
+        }
+    }
+}
+
+/// An index as a slot.
+pub(super) fn slot(index: usize) -> Slot {
+    Slot::try_from(index).expect("fewer than 2^32 slots")
+}
+
+fn existing(slot: Slot) -> Option<usize> {
+    (slot != NONE).then_some(slot as usize)
+}

@@ -1,0 +1,336 @@
+//! Shapes: expressions that differ only in the slots of their leaves become one kernel.
+//!
+//! A definition is copied into the kernels' own pool with its leaves numbered in the order in which they are met. The
+//! pool shares equal nodes, so two definitions have the same shape exactly when they end up as the same node. Parts
+//! that depend on parameters alone become leaves too: their values are computed once per set of parameters.
+
+use super::layout::{Layout, Slot, slot};
+use super::program::Defs;
+use bramah_expr::{ExprId, Exprs, Node, Rel, Unary, VarId};
+use bramah_model::flat::Variability;
+use bramah_model::structure::Dae;
+use rustc_hash::FxHashMap;
+
+/// Index of a [`Kernel`].
+pub type KernelId = u32;
+
+/// Expressions over numbered inputs, computed together.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Kernel {
+    /// Number of inputs; input `i` is `Node::Var(VarId(i))` in the kernels' pool.
+    pub inputs: u32,
+    /// What is computed.
+    pub outputs: Vec<ExprId>,
+}
+
+/// All kernels of a model.
+#[derive(Clone, Debug, Default)]
+pub struct Kernels {
+    /// Holds their expressions; its functions are the model's and their derivatives.
+    pub pool: Exprs,
+    list: Vec<Kernel>,
+    index: FxHashMap<Kernel, KernelId>,
+    partials: FxHashMap<(ExprId, u32), ExprId>,
+}
+
+impl Kernels {
+    /// The kernel with this index.
+    pub fn get(&self, kernel: KernelId) -> &Kernel {
+        &self.list[kernel as usize]
+    }
+
+    /// All numbers that occur in them.
+    pub fn numbers(&self) -> impl Iterator<Item = f64> {
+        (0..self.pool.len()).filter_map(|id| self.pool.as_num(ExprId(slot(id))))
+    }
+
+    /// The kernel that computes these outputs.
+    pub fn intern(&mut self, kernel: Kernel) -> KernelId {
+        if let Some(&known) = self.index.get(&kernel) {
+            return known;
+        }
+        let fresh = slot(self.list.len());
+        self.list.push(kernel.clone());
+        self.index.insert(kernel, fresh);
+        fresh
+    }
+
+    /// The derivative of a kernel's expression by one of its inputs.
+    pub fn partial(&mut self, e: ExprId, input: u32) -> ExprId {
+        if let Some(&known) = self.partials.get(&(e, input)) {
+            return known;
+        }
+        let leaf = self.pool.var(VarId(input));
+        let partial = self.pool.differentiate(e, leaf);
+        self.partials.insert((e, input), partial);
+        partial
+    }
+}
+
+/// An expression as a kernel's expression and the slots of its inputs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Shaped {
+    /// In the kernels' pool.
+    pub expr: ExprId,
+    /// The slot of each input.
+    pub inputs: Vec<Slot>,
+}
+
+/// How leaves and phases are treated while shapes are made.
+#[derive(Clone, Copy, Debug)]
+pub struct Rules<'a> {
+    /// The initial system: `homotopy` depends on its parameter. Else it is its first argument.
+    pub initial: bool,
+    /// Explicit variables whose definition takes their place, by slot.
+    pub inline: &'a FxHashMap<Slot, ExprId>,
+    /// Parts that depend on parameters alone become leaves.
+    pub hoist: bool,
+}
+
+/// What a node of the model turns into.
+enum Turn {
+    /// A leaf with this slot.
+    Leaf(Slot),
+    /// Another node of the model.
+    Other(ExprId),
+    /// A number.
+    Number(f64),
+    /// `homotopy` in the initial system.
+    Homotopy(ExprId, ExprId),
+    /// The same operation.
+    Operation,
+}
+
+/// Makes shapes of a model's expressions.
+pub struct Shaper<'a> {
+    source: &'a Exprs,
+    /// Slots, to which those of hoisted parts are added.
+    pub layout: Layout,
+    /// The kernels made so far.
+    pub kernels: Kernels,
+    /// Per node of the model: depends on parameters alone.
+    fixed: Vec<bool>,
+    /// Parts that depend on parameters alone, in the order in which they were found, and their slots.
+    pub hoisted: Vec<(ExprId, Slot)>,
+    hoisted_index: FxHashMap<ExprId, Slot>,
+    /// Shapes made by the rules of events and observers: the expression and where its inputs begin and how many.
+    shapes: FxHashMap<(ExprId, bool), (ExprId, u32, u32)>,
+    shape_inputs: Vec<Slot>,
+    has_homotopy: bool,
+    memo: Vec<(u32, ExprId)>,
+    numbered: Vec<(u32, u32)>,
+    stamp: u32,
+    stack: Vec<ExprId>,
+}
+
+impl<'a> Shaper<'a> {
+    /// A maker of shapes for this model.
+    pub fn new(dae: &'a Dae, layout: Layout) -> Self {
+        let source = &dae.exprs;
+        let mut pool = Exprs::default();
+        pool.functions.clone_from(&source.functions);
+        Shaper {
+            source,
+            kernels: Kernels { pool, ..Kernels::default() },
+            fixed: fixed_nodes(source, &fixed_parameters(dae)),
+            hoisted: Vec::new(),
+            hoisted_index: FxHashMap::default(),
+            shapes: FxHashMap::default(),
+            shape_inputs: Vec::new(),
+            has_homotopy: (0..source.len()).any(|id| matches!(source.node(ExprId(slot(id))), Node::Homotopy(..))),
+            memo: vec![(0, Exprs::ZERO); source.len()],
+            numbered: vec![(0, 0); layout.len()],
+            layout,
+            stamp: 0,
+            stack: Vec::new(),
+        }
+    }
+
+    /// The shape of an expression of the model.
+    pub fn shape(&mut self, e: ExprId, rules: &Rules) -> Shaped {
+        let key = (e, rules.initial && self.has_homotopy);
+        let plain = rules.hoist && rules.inline.is_empty();
+        if plain && let Some(&(expr, start, len)) = self.shapes.get(&key) {
+            return Shaped { expr, inputs: self.shape_inputs[start as usize..][..len as usize].to_vec() };
+        }
+        let (exprs, inputs) = self.shape_all(&[e], rules);
+        if plain {
+            self.shapes.insert(key, (exprs[0], slot(self.shape_inputs.len()), slot(inputs.len())));
+            self.shape_inputs.extend_from_slice(&inputs);
+        }
+        Shaped { expr: exprs[0], inputs }
+    }
+
+    /// The shapes of some expressions over the same inputs.
+    pub fn shape_all(&mut self, roots: &[ExprId], rules: &Rules) -> (Vec<ExprId>, Vec<Slot>) {
+        self.stamp += 1;
+        let mut inputs = Vec::new();
+        self.stack.extend(roots.iter().rev());
+        while let Some(&top) = self.stack.last() {
+            if self.known(top).is_some() || self.finish(top, rules, &mut inputs) {
+                self.stack.pop();
+            }
+        }
+        let exprs = roots.iter().map(|&e| self.known(e).expect("roots are finished last")).collect();
+        (exprs, inputs)
+    }
+
+    fn known(&self, e: ExprId) -> Option<ExprId> {
+        let (stamp, copy) = self.memo[e.index()];
+        (stamp == self.stamp).then_some(copy)
+    }
+
+    /// Copies a node whose arguments are copied; else puts those on the stack that are not and says false.
+    fn finish(&mut self, e: ExprId, rules: &Rules, inputs: &mut Vec<Slot>) -> bool {
+        let copy = match self.turn(e, rules) {
+            Turn::Leaf(slot) => Some(self.input(slot, inputs)),
+            Turn::Number(value) => Some(self.kernels.pool.num(value)),
+            Turn::Other(other) => self.wanted(&[other]).then(|| self.known(other).expect("just seen")),
+            Turn::Homotopy(actual, simplified) => {
+                self.wanted(&[actual, simplified]).then(|| self.homotopy(actual, simplified, inputs))
+            }
+            Turn::Operation => {
+                let source = self.source;
+                self.wanted(source.operands(e).as_slice()).then(|| self.copy(e))
+            }
+        };
+        if let Some(copy) = copy {
+            self.memo[e.index()] = (self.stamp, copy);
+        }
+        copy.is_some()
+    }
+
+    fn turn(&mut self, e: ExprId, rules: &Rules) -> Turn {
+        let node = self.source.node(e);
+        match node {
+            Node::Num(bits) => Turn::Number(f64::from_bits(bits)),
+            Node::Sample(..) => Turn::Number(0.0),
+            Node::Homotopy(actual, simplified) if rules.initial => Turn::Homotopy(actual, simplified),
+            Node::Homotopy(actual, _) => Turn::Other(actual),
+            _ => match self.layout.leaf(node) {
+                Some(slot) => rules.inline.get(&slot).map_or(Turn::Leaf(slot), |&value| Turn::Other(value)),
+                None if rules.hoist && self.fixed[e.index()] => Turn::Leaf(self.hoisted_slot(e)),
+                None => Turn::Operation,
+            },
+        }
+    }
+
+    /// The definitions of all parts that depend on parameters alone.
+    pub fn hoisted_definitions(&mut self) -> Defs {
+        let inline = FxHashMap::default();
+        let rules = Rules { initial: false, inline: &inline, hoist: false };
+        let mut defs = Defs::default();
+        for (e, target) in self.hoisted.clone() {
+            let shaped = self.shape(e, &rules);
+            defs.define(&mut self.kernels, target, &shaped);
+        }
+        defs
+    }
+
+    /// The slot of a part that depends on parameters alone.
+    fn hoisted_slot(&mut self, e: ExprId) -> Slot {
+        if let Some(&known) = self.hoisted_index.get(&e) {
+            return known;
+        }
+        let fresh = self.layout.work(1);
+        self.hoisted.push((e, fresh));
+        self.hoisted_index.insert(e, fresh);
+        fresh
+    }
+
+    /// Whether all are copied; pushes those that are not, the first on top.
+    fn wanted(&mut self, operands: &[ExprId]) -> bool {
+        let before = self.stack.len();
+        for &operand in operands.iter().rev() {
+            if self.known(operand).is_none() {
+                self.stack.push(operand);
+            }
+        }
+        self.stack.len() == before
+    }
+
+    fn input(&mut self, slot: Slot, inputs: &mut Vec<Slot>) -> ExprId {
+        if self.numbered.len() <= slot as usize {
+            self.numbered.resize(self.layout.len(), (0, 0));
+        }
+        let (stamp, number) = &mut self.numbered[slot as usize];
+        if *stamp != self.stamp {
+            *stamp = self.stamp;
+            *number = super::layout::slot(inputs.len());
+            inputs.push(slot);
+        }
+        self.kernels.pool.var(VarId(*number))
+    }
+
+    /// `lambda*actual + (1 - lambda)*simplified`, exactly `actual` at the end.
+    fn homotopy(&mut self, actual: ExprId, simplified: ExprId, inputs: &mut Vec<Slot>) -> ExprId {
+        let lambda = self.input(slot(Layout::LAMBDA), inputs);
+        let (a, s) = (self.known(actual).expect("copied"), self.known(simplified).expect("copied"));
+        let pool = &mut self.kernels.pool;
+        let arrived = pool.rel(Rel::Eq, lambda, Exprs::ONE);
+        let rest = pool.sub(Exprs::ONE, lambda);
+        let (left, right) = (pool.mul(lambda, a), pool.mul(rest, s));
+        let mix = pool.add(left, right);
+        pool.if_(arrived, a, mix)
+    }
+
+    fn copy(&mut self, e: ExprId) -> ExprId {
+        let (memo, stamp) = (&self.memo, self.stamp);
+        copy_node(self.source, e, &mut self.kernels.pool, |operand| {
+            debug_assert_eq!(memo[operand.index()].0, stamp, "arguments are copied first");
+            memo[operand.index()].1
+        })
+    }
+}
+
+/// The node `e` of `from` in the pool `to`, over arguments that are already there.
+pub fn copy_node(from: &Exprs, e: ExprId, to: &mut Exprs, of: impl Fn(ExprId) -> ExprId) -> ExprId {
+    match from.node(e) {
+        Node::Num(bits) => to.num(f64::from_bits(bits)),
+        Node::Unary(op, a) => to.unary(op, of(a)),
+        Node::Binary(op, a, b) => to.binary(op, of(a), of(b)),
+        Node::Rel(rel, a, b) | Node::EventRel(rel, a, b) => to.rel(rel, of(a), of(b)),
+        Node::EventFloor(a) => to.unary(Unary::Floor, of(a)),
+        Node::If(c, a, b) => to.if_(of(c), of(a), of(b)),
+        Node::Call(function, output, args) => {
+            let args: Vec<ExprId> = from.args(args).iter().map(|&arg| of(arg)).collect();
+            to.call(function, output, &args)
+        }
+        leaf => to.intern(leaf),
+    }
+}
+
+/// Per variable: a parameter or constant whose value is known before the initial system is solved.
+pub fn fixed_parameters(dae: &Dae) -> Vec<bool> {
+    let mut fixed: Vec<bool> =
+        dae.variables.iter().map(|v| !v.input && v.variability <= Variability::Parameter).collect();
+    if dae.free_parameters.is_empty() {
+        return fixed;
+    }
+    for v in &dae.free_parameters {
+        fixed[v.index()] = false;
+    }
+    for &v in &dae.parameters {
+        if let Some(binding) = dae.variables[v.index()].binding {
+            fixed[v.index()] &= dae.exprs.variables(binding).iter().all(|used| fixed[used.index()]);
+        }
+    }
+    fixed
+}
+
+/// Per node: depends on fixed parameters and numbers alone.
+fn fixed_nodes(pool: &Exprs, parameters: &[bool]) -> Vec<bool> {
+    let mut fixed: Vec<bool> = Vec::with_capacity(pool.len());
+    for id in 0..pool.len() {
+        let e = ExprId(slot(id));
+        let own = match pool.node(e) {
+            Node::Num(_) => true,
+            Node::Var(v) => parameters.get(v.index()).copied().unwrap_or(false),
+            Node::Time | Node::Der(_) | Node::Pre(_) | Node::Sample(..) => false,
+            Node::Initial | Node::Terminal | Node::Homotopy(..) => false,
+            _ => true,
+        };
+        fixed.push(own && pool.operands(e).as_slice().iter().all(|operand| fixed[operand.index()]));
+    }
+    fixed
+}

@@ -1,0 +1,334 @@
+//! From the steps of a kernel to Cranelift's instructions.
+
+use super::code::{Branch, Code, Operand, Step};
+use super::layout::Slot;
+use super::native::CALL_FUNCTION;
+use bramah_expr::function::Function;
+use bramah_expr::{Binary, Rel, Unary};
+use cranelift_codegen::ir::condcodes::{FloatCC, IntCC};
+use cranelift_codegen::ir::immediates::Offset32;
+use cranelift_codegen::ir::types::{F64, I8, I32};
+use cranelift_codegen::ir::{
+    BlockArg, FuncRef, InstBuilder, MemFlagsData, StackSlot, StackSlotData, StackSlotKind, Type, Value,
+};
+use cranelift_frontend::FunctionBuilder;
+use cranelift_jit::JITModule;
+use cranelift_module::{FuncId, Module};
+use rustc_hash::FxHashMap;
+
+/// Turns steps into instructions of one function.
+pub struct Translator<'a> {
+    /// Holds the function that is being written.
+    pub builder: FunctionBuilder<'a>,
+    module: &'a mut JITModule,
+    imports: &'a FxHashMap<&'static str, FuncId>,
+    functions: &'a [Function],
+    used: FxHashMap<&'static str, FuncRef>,
+    pointer: Type,
+    arguments: [Value; 4],
+    registers: Vec<Value>,
+    /// Registers that hold the result of a relation or logical operation, as an integer.
+    truths: FxHashMap<u32, Value>,
+    inputs: FxHashMap<u32, Value>,
+    depth: u32,
+}
+
+impl<'a> Translator<'a> {
+    /// Starts a function of four pointer-sized arguments: values, table, number of rows, functions.
+    pub fn new(
+        mut builder: FunctionBuilder<'a>,
+        module: &'a mut JITModule,
+        imports: &'a FxHashMap<&'static str, FuncId>,
+        functions: &'a [Function],
+    ) -> Self {
+        let pointer = module.target_config().pointer_type();
+        let block = builder.create_block();
+        builder.append_block_params_for_function_params(block);
+        builder.switch_to_block(block);
+        builder.seal_block(block);
+        let p = builder.block_params(block);
+        let arguments = [p[0], p[1], p[2], p[3]];
+        Translator {
+            builder,
+            module,
+            imports,
+            functions,
+            used: FxHashMap::default(),
+            pointer,
+            arguments,
+            registers: Vec::new(),
+            truths: FxHashMap::default(),
+            inputs: FxHashMap::default(),
+            depth: 0,
+        }
+    }
+
+    /// Code whose inputs are slots and whose outputs go to `targets`.
+    pub fn straight(&mut self, code: &Code, targets: &[Slot]) {
+        self.body(code);
+        let outputs: Vec<Value> = code.outputs.iter().map(|&output| self.value(output)).collect();
+        for (&value, &target) in outputs.iter().zip(targets) {
+            let offset = slot_offset(target);
+            self.builder.ins().store(MemFlagsData::trusted(), value, self.arguments[0], offset);
+        }
+        self.builder.ins().return_(&[]);
+    }
+
+    /// `for row in table { load inputs; compute; store outputs }`
+    pub fn looped(&mut self, code: &Code, inputs: u32) {
+        let [_, table, rows, _] = self.arguments;
+        let width = 4 * i64::from(inputs) + 4 * i64::try_from(code.outputs.len()).expect("a small number");
+        let bytes = self.builder.ins().imul_imm_s(rows, width);
+        let end = self.builder.ins().iadd(table, bytes);
+        let (header, body, exit) =
+            (self.builder.create_block(), self.builder.create_block(), self.builder.create_block());
+        let row = self.builder.append_block_param(header, self.pointer);
+        self.builder.ins().jump(header, &[BlockArg::Value(table)]);
+        self.builder.switch_to_block(header);
+        let more = self.builder.ins().icmp(IntCC::UnsignedLessThan, row, end);
+        self.builder.ins().brif(more, body, &[], exit, &[]);
+        self.builder.switch_to_block(body);
+        self.builder.seal_block(body);
+        self.row(code, inputs, row);
+        let next = self.builder.ins().iadd_imm_s(row, width);
+        self.builder.ins().jump(header, &[BlockArg::Value(next)]);
+        self.builder.seal_block(header);
+        self.builder.switch_to_block(exit);
+        self.builder.seal_block(exit);
+        self.builder.ins().return_(&[]);
+    }
+
+    fn row(&mut self, code: &Code, inputs: u32, row: Value) {
+        for input in 0..inputs {
+            let address = self.address(row, input);
+            let value = self.builder.ins().load(F64, MemFlagsData::trusted(), address, 0);
+            self.inputs.insert(input, value);
+        }
+        self.body(code);
+        for (k, &output) in (inputs..).zip(&code.outputs) {
+            let value = self.value(output);
+            let address = self.address(row, k);
+            self.builder.ins().store(MemFlagsData::trusted(), value, address, 0);
+        }
+    }
+
+    /// The address of the value whose slot stands in place `k` of the row.
+    fn address(&mut self, row: Value, k: u32) -> Value {
+        let offset = Offset32::new(4 * i32::try_from(k).expect("a small number"));
+        let slot = self.builder.ins().uload32(MemFlagsData::trusted(), row, offset);
+        let bytes = self.builder.ins().ishl_imm_u(slot, 3);
+        self.builder.ins().iadd(self.arguments[0], bytes)
+    }
+
+    fn body(&mut self, code: &Code) {
+        let nothing = Value::from_u32(0);
+        self.registers = vec![nothing; code.registers as usize];
+        self.steps(&code.steps);
+    }
+
+    fn steps(&mut self, steps: &[Step]) {
+        for step in steps {
+            self.step(step);
+        }
+    }
+
+    fn step(&mut self, step: &Step) {
+        match step {
+            &Step::Unary(op, dst, a) => self.registers[dst as usize] = self.unary(op, dst, a),
+            &Step::Binary(op, dst, a, b) => self.registers[dst as usize] = self.binary(op, dst, a, b),
+            &Step::Rel(rel, dst, a, b) => {
+                let (a, b) = (self.value(a), self.value(b));
+                let truth = self.builder.ins().fcmp(relation(rel), a, b);
+                self.registers[dst as usize] = self.as_number(dst, truth);
+            }
+            &Step::Select { dst, c, a, b } => {
+                let (c, a, b) = (self.truth(c), self.value(a), self.value(b));
+                self.registers[dst as usize] = self.builder.ins().select(c, a, b);
+            }
+            Step::Branch { dst, c, then, otherwise } => {
+                self.registers[*dst as usize] = self.branch(*c, then, otherwise);
+            }
+            Step::Call { function, args, outputs } => self.call(function.0, args, outputs),
+        }
+    }
+
+    fn value(&mut self, operand: Operand) -> Value {
+        match operand {
+            Operand::Register(r) => self.registers[r as usize],
+            Operand::Number(bits) => self.builder.ins().f64const(f64::from_bits(bits)),
+            Operand::Input(input) => match self.inputs.get(&input) {
+                Some(&known) => known,
+                None => self.load(input),
+            },
+        }
+    }
+
+    /// Loads a slot; what is loaded outside all branches is remembered.
+    fn load(&mut self, input: u32) -> Value {
+        let (values, offset) = (self.arguments[0], slot_offset(input));
+        let value = self.builder.ins().load(F64, MemFlagsData::trusted(), values, offset);
+        if self.depth == 0 {
+            self.inputs.insert(input, value);
+        }
+        value
+    }
+
+    /// Whether a value is not 0.
+    fn truth(&mut self, operand: Operand) -> Value {
+        if let Operand::Register(r) = operand
+            && let Some(&known) = self.truths.get(&r)
+        {
+            return known;
+        }
+        let (value, zero) = (self.value(operand), self.builder.ins().f64const(0.0));
+        self.builder.ins().fcmp(FloatCC::NotEqual, value, zero)
+    }
+
+    fn as_number(&mut self, dst: u32, truth: Value) -> Value {
+        self.truths.insert(dst, truth);
+        let (one, zero) = (self.builder.ins().f64const(1.0), self.builder.ins().f64const(0.0));
+        self.builder.ins().select(truth, one, zero)
+    }
+
+    fn unary(&mut self, op: Unary, dst: u32, a: Operand) -> Value {
+        let name = match op {
+            Unary::Not => return self.not(dst, a),
+            Unary::Neg | Unary::Abs | Unary::Sqrt | Unary::Sign => "",
+            Unary::Exp => "exp",
+            Unary::Log => "log",
+            Unary::Log10 => "log10",
+            Unary::Sin => "sin",
+            Unary::Cos => "cos",
+            Unary::Tan => "tan",
+            Unary::Asin => "asin",
+            Unary::Acos => "acos",
+            Unary::Atan => "atan",
+            Unary::Sinh => "sinh",
+            Unary::Cosh => "cosh",
+            Unary::Tanh => "tanh",
+            Unary::Floor => "floor",
+        };
+        let a = self.value(a);
+        match op {
+            Unary::Neg => self.builder.ins().fneg(a),
+            Unary::Abs => self.builder.ins().fabs(a),
+            Unary::Sqrt => self.builder.ins().sqrt(a),
+            Unary::Sign => self.sign(a),
+            _ => self.import(name, &[a]),
+        }
+    }
+
+    fn not(&mut self, dst: u32, a: Operand) -> Value {
+        let truth = self.truth(a);
+        let one = self.builder.ins().iconst(I8, 1);
+        let turned = self.builder.ins().bxor(truth, one);
+        self.as_number(dst, turned)
+    }
+
+    fn sign(&mut self, a: Value) -> Value {
+        let (zero, one) = (self.builder.ins().f64const(0.0), self.builder.ins().f64const(1.0));
+        let minus = self.builder.ins().f64const(-1.0);
+        let rest = self.builder.ins().fadd(a, zero);
+        let negative = self.builder.ins().fcmp(FloatCC::LessThan, a, zero);
+        let positive = self.builder.ins().fcmp(FloatCC::GreaterThan, a, zero);
+        let lower = self.builder.ins().select(negative, minus, rest);
+        self.builder.ins().select(positive, one, lower)
+    }
+
+    fn binary(&mut self, op: Binary, dst: u32, a: Operand, b: Operand) -> Value {
+        if let Binary::And | Binary::Or = op {
+            let (a, b) = (self.truth(a), self.truth(b));
+            let both = self.builder.ins();
+            let truth = if op == Binary::And { both.band(a, b) } else { both.bor(a, b) };
+            return self.as_number(dst, truth);
+        }
+        let (a, b) = (self.value(a), self.value(b));
+        match op {
+            Binary::Add => self.builder.ins().fadd(a, b),
+            Binary::Sub => self.builder.ins().fsub(a, b),
+            Binary::Mul => self.builder.ins().fmul(a, b),
+            Binary::Div => self.builder.ins().fdiv(a, b),
+            Binary::Min => self.first_if(FloatCC::LessThanOrEqual, a, b),
+            Binary::Max => self.first_if(FloatCC::GreaterThanOrEqual, a, b),
+            Binary::Atan2 => self.import("atan2", &[a, b]),
+            _ => self.import("pow", &[a, b]),
+        }
+    }
+
+    /// The first when it compares so with the second or is not a number, else the second.
+    fn first_if(&mut self, condition: FloatCC, a: Value, b: Value) -> Value {
+        let compares = self.builder.ins().fcmp(condition, a, b);
+        let not_a_number = self.builder.ins().fcmp(FloatCC::Unordered, a, a);
+        let first = self.builder.ins().bor(compares, not_a_number);
+        self.builder.ins().select(first, a, b)
+    }
+
+    fn branch(&mut self, c: Operand, then: &Branch, otherwise: &Branch) -> Value {
+        let c = self.truth(c);
+        let [yes, no, merge] = [(); 3].map(|()| self.builder.create_block());
+        let result = self.builder.append_block_param(merge, F64);
+        self.builder.ins().brif(c, yes, &[], no, &[]);
+        self.depth += 1;
+        for (block, side) in [(yes, then), (no, otherwise)] {
+            self.builder.switch_to_block(block);
+            self.builder.seal_block(block);
+            self.steps(&side.steps);
+            let value = self.value(side.value.expect("a finished branch has a value"));
+            self.builder.ins().jump(merge, &[BlockArg::Value(value)]);
+        }
+        self.depth -= 1;
+        self.builder.switch_to_block(merge);
+        self.builder.seal_block(merge);
+        result
+    }
+
+    fn reference(&mut self, name: &'static str) -> FuncRef {
+        let (module, builder, id) = (&mut *self.module, &mut self.builder, self.imports[name]);
+        *self.used.entry(name).or_insert_with(|| module.declare_func_in_func(id, builder.func))
+    }
+
+    fn import(&mut self, name: &'static str, args: &[Value]) -> Value {
+        let function = self.reference(name);
+        let call = self.builder.ins().call(function, args);
+        self.builder.inst_results(call)[0]
+    }
+
+    /// Arguments and results of a user function pass through the stack.
+    fn call(&mut self, function: u32, args: &[Operand], outputs: &[(u32, u32)]) {
+        let results = self.functions[function as usize].outputs.len();
+        let (inputs, out) = (self.stack(args.len()), self.stack(results));
+        let from = self.builder.ins().stack_addr(self.pointer, inputs, 0);
+        for (i, &arg) in (0..).zip(args) {
+            let value = self.value(arg);
+            self.builder.ins().store(MemFlagsData::trusted(), value, from, slot_offset(i));
+        }
+        let callee = self.reference(CALL_FUNCTION);
+        let number = self.builder.ins().iconst(I32, i64::from(function));
+        let to = self.builder.ins().stack_addr(self.pointer, out, 0);
+        self.builder.ins().call(callee, &[self.arguments[3], number, from, to]);
+        for &(output, dst) in outputs {
+            let offset = slot_offset(output);
+            self.registers[dst as usize] = self.builder.ins().load(F64, MemFlagsData::trusted(), to, offset);
+        }
+    }
+
+    fn stack(&mut self, numbers: usize) -> StackSlot {
+        let bytes = 8 * u32::try_from(numbers.max(1)).expect("a small number");
+        self.builder.create_sized_stack_slot(StackSlotData::new(StackSlotKind::ExplicitSlot, bytes, 3))
+    }
+}
+
+fn slot_offset(slot: Slot) -> Offset32 {
+    Offset32::new(i32::try_from(8 * i64::from(slot)).expect("layouts are small enough for 32-bit offsets"))
+}
+
+fn relation(rel: Rel) -> FloatCC {
+    match rel {
+        Rel::Lt => FloatCC::LessThan,
+        Rel::Le => FloatCC::LessThanOrEqual,
+        Rel::Gt => FloatCC::GreaterThan,
+        Rel::Ge => FloatCC::GreaterThanOrEqual,
+        Rel::Eq => FloatCC::Equal,
+        Rel::Ne => FloatCC::NotEqual,
+    }
+}

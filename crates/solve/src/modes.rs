@@ -1,0 +1,303 @@
+//! Modes: the discrete stand-ins of relations, `floor` and time relations, and which side of zero they say.
+//!
+//! A relation `a > b` is watched through `d = a - b`. IDA disables a root function that is exactly zero after a restart,
+//! and results would be silently wrong. So the function given to IDA is `d` shifted beyond the threshold, away from the
+//! present side: never zero after a restart, and when IDA reports the root, `d` has really changed its side.
+
+use crate::lower::{Layout, System};
+use bramah_expr::{ExprId, Rel, VarId};
+use bramah_model::structure::{Assign, Block, Crossing, CrossingKind, Dae, Unknown};
+use rustc_hash::FxHashSet;
+
+/// Shift of root functions beyond the threshold, in units of the sides' size.
+const SHIFT: f64 = 1e-12;
+/// The shift where both sides have always been zero.
+const SMALLEST_SHIFT: f64 = 1e-300;
+/// Error of the solution, in tolerances: what IDA has seen cross may lie so far on the old side.
+const NEAR: f64 = 10.0;
+/// A time event is reached when time is this close, relative to the larger of both.
+const SAME_TIME: f64 = 1e-12;
+const NONE: u32 = u32::MAX;
+
+/// Whether two times are the same up to rounding.
+pub fn same_time(a: f64, b: f64) -> bool {
+    a == b || (a - b).abs() <= SAME_TIME * a.abs().max(b.abs()) && a.is_finite() && b.is_finite()
+}
+
+/// The state of all crossings.
+#[derive(Clone, Debug)]
+pub struct Modes {
+    crossing_of: Vec<u32>,
+    slots: Vec<usize>,
+    /// A value that a crossing keeps during an event because IDA has seen it cross; NaN for none.
+    forced: Vec<f64>,
+    any_forced: bool,
+    /// The largest difference seen so far, for the size of the shift.
+    size: Vec<f64>,
+    tolerance: f64,
+    /// True at events (time relations hold as just after the event), false in the initial system.
+    pub after: bool,
+}
+
+impl Modes {
+    /// No crossing forced.
+    pub fn new(system: &System, tolerance: f64) -> Self {
+        let crossings = &system.dae.crossings;
+        let mut crossing_of = vec![NONE; system.dae.variables.len()];
+        for (c, crossing) in (0..).zip(crossings) {
+            crossing_of[crossing.mode.index()] = c;
+        }
+        Modes {
+            crossing_of,
+            slots: crossings.iter().map(|c| system.layout.var(c.mode)).collect(),
+            forced: vec![f64::NAN; crossings.len()],
+            any_forced: false,
+            size: vec![0.0; crossings.len()],
+            tolerance,
+            after: false,
+        }
+    }
+
+    /// The crossing that a variable is the mode of.
+    pub fn crossing(&self, v: VarId) -> Option<u32> {
+        let c = self.crossing_of[v.index()];
+        (c != NONE).then_some(c)
+    }
+
+    /// Gives a crossing the value it has just crossed to.
+    pub fn force(&mut self, system: &System, crossing: usize, direction: i32, values: &[f64]) {
+        let now = values[self.slots[crossing]];
+        self.forced[crossing] = match system.dae.crossings[crossing].kind {
+            CrossingKind::Floor(_) => now + f64::from(direction.signum()),
+            _ => f64::from(now == 0.0),
+        };
+        self.any_forced = true;
+    }
+
+    /// Lets a crossing keep a value within the error of the solution, as if IDA had seen it cross to it.
+    pub fn hold(&mut self, crossing: u32, value: f64) {
+        self.forced[crossing as usize] = value;
+        self.any_forced = true;
+    }
+
+    /// Whether a crossing keeps what IDA has seen.
+    pub fn forces(&self) -> bool {
+        self.any_forced
+    }
+
+    /// Whether the event ended with a crossing on the side from which IDA had seen it leave.
+    pub fn refused(&self, values: &[f64]) -> bool {
+        self.any_forced && self.forced.iter().zip(&self.slots).any(|(f, &s)| !f.is_nan() && *f != values[s])
+    }
+
+    /// Ends the event.
+    pub fn release(&mut self) {
+        if self.any_forced {
+            self.forced.fill(f64::NAN);
+            self.any_forced = false;
+        }
+    }
+
+    /// The mode of a crossing given the value its equation has just computed.
+    pub fn correct(&self, system: &System, crossing: u32, computed: f64, values: &[f64]) -> f64 {
+        let c = crossing as usize;
+        match system.dae.crossings[c].kind {
+            CrossingKind::Time(rel, at) if self.after && computed != f64::from(after(rel)) => {
+                let at = system.eval(at, values);
+                if same_time(values[Layout::TIME], at) { f64::from(after(rel)) } else { computed }
+            }
+            CrossingKind::Relation(_, left, right) if self.wants(c, computed) => {
+                let (left, right) = (system.eval(left, values), system.eval(right, values));
+                let size = self.size[c].max(left.abs()).max(right.abs());
+                self.keep(c, computed, (left - right).abs(), size)
+            }
+            CrossingKind::Floor(argument) if self.wants(c, computed) => {
+                let argument = system.eval(argument, values);
+                let distance = (argument - self.forced[c]).abs().min((argument - self.forced[c] - 1.0).abs());
+                self.keep(c, computed, distance, argument.abs().max(1.0))
+            }
+            _ => computed,
+        }
+    }
+
+    fn wants(&self, c: usize, computed: f64) -> bool {
+        self.any_forced && !self.forced[c].is_nan() && self.forced[c] != computed
+    }
+
+    /// The forced value while the difference is within the error of the solution.
+    fn keep(&self, c: usize, computed: f64, distance: f64, size: f64) -> f64 {
+        if distance <= NEAR * self.tolerance * size { self.forced[c] } else { computed }
+    }
+
+    /// Takes note of a difference, for the size of a crossing.
+    pub fn seen(&mut self, crossing: usize, difference: f64) {
+        if difference.is_finite() {
+            self.size[crossing] = self.size[crossing].max(difference.abs());
+        }
+    }
+
+    /// Whether a difference is within the error of the solution, as far as its sizes so far tell.
+    pub fn near(&self, crossing: usize, difference: f64) -> bool {
+        difference.abs() <= NEAR * self.tolerance * self.size[crossing]
+    }
+}
+
+/// Whether a crossing is a function of time that no state follows: no error test sees it, and a long step could hold two
+/// of its roots.
+pub fn follows_time(dae: &Dae) -> bool {
+    let watched = |c: &Crossing| match c.kind {
+        CrossingKind::Relation(_, left, right) => Some([left, right]),
+        CrossingKind::Floor(argument) => Some([argument, argument]),
+        CrossingKind::Time(..) => None,
+    };
+    let watched: Vec<ExprId> = dae.crossings.iter().filter_map(watched).flatten().collect();
+    if watched.is_empty() {
+        return false;
+    }
+    let mut moved: FxHashSet<VarId> = dae.delays.iter().map(|d| d.variable).collect();
+    let moves = |e: ExprId, moved: &FxHashSet<VarId>| {
+        let on = dae.exprs.dependencies(&[e]);
+        on.time || on.vars.iter().any(|v| moved.contains(v))
+    };
+    for block in &dae.continuous {
+        if let Block::Assign(Assign { unknown: Unknown::Var(v), value, .. }) = block
+            && moves(*value, &moved)
+        {
+            moved.insert(*v);
+        }
+    }
+    watched.iter().any(|&e| moves(e, &moved))
+}
+
+/// A time relation just after the time it compares with.
+pub fn after(rel: Rel) -> bool {
+    matches!(rel, Rel::Gt | Rel::Ge | Rel::Ne)
+}
+
+/// The root functions given to IDA: one for each relation, two for each `floor`.
+#[derive(Clone, Debug, Default)]
+pub struct RootFunctions {
+    functions: Vec<RootFunction>,
+    raw: Vec<f64>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct RootFunction {
+    /// Index into `System::root_crossings`.
+    raw: usize,
+    /// Index into `Dae::crossings`.
+    crossing: usize,
+    /// Subtracted: 0 for relations, a bound of the present interval for `floor`.
+    base: f64,
+    /// Added: away from the present side.
+    shift: f64,
+    /// For `floor`: the lower bound (false) or the upper one (true).
+    upper: bool,
+}
+
+impl RootFunctions {
+    /// For all crossings that need them.
+    pub fn new(system: &System) -> Self {
+        let mut functions = Vec::new();
+        for (raw, &crossing) in system.root_crossings.iter().enumerate() {
+            let one = RootFunction { raw, crossing, base: 0.0, shift: 0.0, upper: false };
+            functions.push(one);
+            if matches!(system.dae.crossings[crossing].kind, CrossingKind::Floor(_)) {
+                functions.push(RootFunction { upper: true, ..one });
+            }
+        }
+        RootFunctions { functions, raw: vec![0.0; system.root_crossings.len()] }
+    }
+
+    /// How many.
+    pub fn len(&self) -> usize {
+        self.functions.len()
+    }
+
+    /// True when there is none.
+    pub fn is_empty(&self) -> bool {
+        self.functions.is_empty()
+    }
+
+    /// The crossing behind a function.
+    pub fn crossing(&self, function: usize) -> usize {
+        self.functions[function].crossing
+    }
+
+    /// The entry of [`Self::raw`] behind a function.
+    pub fn raw_index(&self, function: usize) -> usize {
+        self.functions[function].raw
+    }
+
+    /// What is added to the difference behind a function: positive where it is watched from above.
+    pub fn shift(&self, function: usize) -> f64 {
+        self.functions[function].shift
+    }
+
+    /// The unshifted differences, to be filled by the system before [`Self::write`] or [`Self::settle`].
+    pub fn raw(&mut self) -> &mut [f64] {
+        &mut self.raw
+    }
+
+    /// The function values from the raw differences.
+    pub fn write(&self, g: &mut [f64]) {
+        for (g, f) in g.iter_mut().zip(&self.functions) {
+            *g = self.raw[f.raw] - f.base + f.shift;
+        }
+    }
+
+    /// After a start or event: shifts each function so that it lies on the side its mode says.
+    pub fn settle(&mut self, system: &System, modes: &mut Modes, values: &[f64]) {
+        for f in &mut self.functions {
+            let mode = values[modes.slots[f.crossing]];
+            let side = match system.dae.crossings[f.crossing].kind {
+                CrossingKind::Floor(_) => {
+                    f.base = mode + f64::from(u8::from(f.upper));
+                    if f.upper { -1.0 } else { 1.0 }
+                }
+                CrossingKind::Relation(rel, ..) => side(rel, mode != 0.0, self.raw[f.raw]),
+                CrossingKind::Time(..) => 1.0,
+            };
+            let d = self.raw[f.raw] - f.base;
+            modes.seen(f.crossing, d);
+            let shift = SHIFT * modes.size[f.crossing].max(f.base.abs()) + SMALLEST_SHIFT;
+            f.shift = side * if d * side < 0.0 { 2.0 * d.abs() + shift } else { shift };
+        }
+    }
+}
+
+/// The side of zero on which `left - right` lies, given whether the relation holds.
+fn side(rel: Rel, holds: bool, difference: f64) -> f64 {
+    match rel {
+        Rel::Gt | Rel::Ge if holds => 1.0,
+        Rel::Lt | Rel::Le if !holds => 1.0,
+        Rel::Gt | Rel::Ge | Rel::Lt | Rel::Le => -1.0,
+        Rel::Eq | Rel::Ne => {
+            if difference >= 0.0 {
+                1.0
+            } else {
+                -1.0
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sides_include_the_threshold_where_the_relation_does() {
+        // d = 0: `>=` holds and lies above, `>` does not hold and lies below
+        assert_eq!(side(Rel::Ge, true, 0.0), 1.0);
+        assert_eq!(side(Rel::Gt, false, 0.0), -1.0);
+        assert_eq!(side(Rel::Le, true, 0.0), -1.0);
+        assert_eq!(side(Rel::Lt, false, 0.0), 1.0);
+    }
+
+    #[test]
+    fn times_merge_within_rounding() {
+        assert!(same_time(0.1 + 0.2, 0.3));
+        assert!(!same_time(0.3, 0.3 + 1e-9));
+    }
+}

@@ -1,0 +1,216 @@
+//! Watches a run: events that make no progress in time, assertions.
+
+use super::report::at_origin;
+use crate::lower::System;
+use bramah_syntax::diag::{Code, Diagnostic};
+use rustc_hash::FxHashMap;
+use std::collections::VecDeque;
+
+/// The same relations crossing so often within this part of the run count as chattering.
+const SLIDING_EVENTS: usize = 2000;
+const SLIDING_WINDOW: f64 = 1e-4;
+const INSTANT: f64 = 1e-9;
+
+/// Recent events, to recognise chattering.
+#[derive(Debug)]
+pub struct Chatter {
+    span: f64,
+    at_once: usize,
+    /// Time and crossing (none for time events) of the last events.
+    recent: VecDeque<(f64, Option<u32>)>,
+}
+
+impl Chatter {
+    /// For a run of this length that allows so many events in a billionth of it.
+    pub fn new(span: f64, at_once: u32) -> Self {
+        Chatter { span, at_once: at_once.max(1) as usize, recent: VecDeque::new() }
+    }
+
+    /// Notes an event; true when events make no progress any more.
+    pub fn note(&mut self, t: f64, crossing: Option<u32>) -> bool {
+        self.recent.push_back((t, crossing));
+        if self.recent.len() > SLIDING_EVENTS.max(self.at_once) {
+            self.recent.pop_front();
+        }
+        self.within(self.at_once, INSTANT * self.span, t)
+            || (crossing.is_some()
+                && self.within(SLIDING_EVENTS, SLIDING_WINDOW * self.span, t)
+                && self.recent.iter().all(|e| e.1.is_some()))
+    }
+
+    fn within(&self, count: usize, window: f64, t: f64) -> bool {
+        self.recent.len() >= count && t - self.recent[self.recent.len() - count].0 <= window
+    }
+
+    /// E502, with the relation that crossed most often.
+    pub fn report(&self, system: &System, t: f64) -> Diagnostic {
+        let dae = &system.dae;
+        let mut counts = vec![0_usize; dae.crossings.len()];
+        self.recent.iter().filter_map(|e| e.1).for_each(|c| counts[c as usize] += 1);
+        let since = self.recent.front().map_or(t, |e| e.0);
+        let at = super::report::number(t);
+        let note = format!("{} events since time {} s", self.recent.len(), super::report::number(since));
+        let worst = (0..counts.len()).max_by_key(|&c| (counts[c], std::cmp::Reverse(c))).filter(|&c| counts[c] > 0);
+        let diagnostic = match worst {
+            Some(c) => {
+                let crossing = &dae.crossings[c];
+                let relation = &dae.variables[crossing.mode.index()].name;
+                let text = format!("`{relation}` changes without end at time {at} s");
+                at_origin(dae, Code::Chattering, text, crossing.origin, "this relation")
+            }
+            None => {
+                Diagnostic::new(Code::Chattering, format!("time events follow each other without end at time {at} s"))
+            }
+        };
+        diagnostic.note(note).help(
+            "both sides of the relation drive the model back across it: add hysteresis, `smooth`/`noEvent`, \
+             or a state between, as dry friction has with its stick mode",
+        )
+    }
+}
+
+/// So many intervals from event to event of one relation, each shorter than the one before, and the last of them this part
+/// of the run, are impacts that accumulate, as those of a ball that bounces.
+const SHRINKING: u32 = 10;
+const ACCUMULATED: f64 = 1e-6;
+
+/// Its sides are further apart than at the last event by this factor, and by this much in the unit of the relation, for so
+/// many of the last intervals: then nothing holds them back any more.
+const PASSED: f64 = 1e6;
+const APART: f64 = 1e-9;
+const INTERVALS: f64 = 100.0;
+
+/// Impacts that follow each other faster and faster: at their limit the relation is not seen to change any more, and what it
+/// held back goes through.
+#[derive(Debug, Default)]
+pub struct Accumulation {
+    /// By relation and direction: the last event, the interval before it, and how many intervals have shrunk.
+    seen: FxHashMap<(u32, bool), (f64, f64, u32)>,
+    limit: Option<Limit>,
+}
+
+/// Impacts that have accumulated.
+#[derive(Clone, Copy, Debug)]
+struct Limit {
+    relation: u32,
+    /// The last one.
+    time: f64,
+    /// Between the last two.
+    interval: f64,
+    /// How far the sides of the relation were apart then.
+    distance: f64,
+}
+
+impl Accumulation {
+    /// Notes an event of a relation and its direction; another event begins anew. True where impacts have accumulated.
+    pub fn note(&mut self, span: f64, t: f64, crossing: Option<(u32, bool)>) -> bool {
+        let Some(key) = crossing else {
+            self.limit = None;
+            return false;
+        };
+        if self.limit.is_some_and(|l| l.relation != key.0) {
+            self.limit = None;
+        }
+        let seen = self.seen.entry(key).or_insert((t, f64::INFINITY, 0));
+        let interval = t - seen.0;
+        let shrunk = if interval < seen.1 { seen.2 + 1 } else { 0 };
+        *seen = (t, if interval > 0.0 { interval } else { f64::INFINITY }, shrunk);
+        let accumulated = shrunk >= SHRINKING && interval <= ACCUMULATED * span;
+        if accumulated {
+            self.limit = Some(Limit { relation: key.0, time: t, interval, distance: 0.0 });
+        }
+        accumulated
+    }
+
+    /// How far the sides of the relation are apart behind the event noted last.
+    pub fn stands(&mut self, distance: f64) {
+        if let Some(limit) = &mut self.limit {
+            limit.distance = distance.abs();
+        }
+    }
+
+    /// The relation to be watched.
+    pub fn watched(&self) -> Option<u32> {
+        self.limit.map(|l| l.relation)
+    }
+
+    /// E502 where a relation that held back has been passed.
+    pub fn judge(&self, system: &System, t: f64, distance: f64) -> Option<Diagnostic> {
+        let limit = self.limit?;
+        if t - limit.time <= INTERVALS * limit.interval || distance.abs() <= APART.max(PASSED * limit.distance) {
+            return None;
+        }
+        let dae = &system.dae;
+        let crossing = &dae.crossings[limit.relation as usize];
+        let name = &dae.variables[crossing.mode.index()].name;
+        let at = super::report::number(limit.time);
+        let text = format!("`{name}` does not change after time {at} s, and what it held back goes on through it");
+        Some(
+            at_origin(dae, Code::Chattering, text, crossing.origin, "this relation")
+                .note(format!("events followed each other faster and faster up to time {at} s"))
+                .help("let the body come to rest: a state of rest that the `when` enters below a small speed, or a stiff stop with damping instead of `reinit`"),
+        )
+    }
+}
+
+/// Which assertions have been reported already.
+#[derive(Debug, Default)]
+pub struct Reported {
+    asserts: Vec<bool>,
+    actions: Vec<bool>,
+    shared: bool,
+    jumped: bool,
+}
+
+impl Reported {
+    /// None reported yet.
+    pub fn new(system: &System) -> Self {
+        let (asserts, actions) = (system.dae.asserts.len(), system.dae.actions.len());
+        Reported { asserts: vec![false; asserts], actions: vec![false; actions], shared: false, jumped: false }
+    }
+
+    /// True the first time an `assert` outside `when` is reported.
+    pub fn first(&mut self, assert: usize) -> bool {
+        !std::mem::replace(&mut self.asserts[assert], true)
+    }
+
+    /// True the first time that a load is shared in no unique way.
+    pub fn first_shared(&mut self) -> bool {
+        !std::mem::replace(&mut self.shared, true)
+    }
+
+    /// True the first time that a loop jumps.
+    pub fn first_jump(&mut self) -> bool {
+        !std::mem::replace(&mut self.jumped, true)
+    }
+
+    /// True the first time an action's `assert` is reported.
+    pub fn first_action(&mut self, action: usize) -> bool {
+        !std::mem::replace(&mut self.actions[action], true)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn many_events_at_once_are_chattering() {
+        let mut chatter = Chatter::new(1.0, 200);
+        assert!((0..199).all(|_| !chatter.note(0.5, None)));
+        assert!(chatter.note(0.5, None));
+    }
+
+    #[test]
+    fn a_fast_clock_is_not() {
+        let mut chatter = Chatter::new(10.0, 200);
+        assert!((0..10_000).all(|k| !chatter.note(f64::from(k) * 1e-7, None)));
+    }
+
+    #[test]
+    fn a_relation_that_slides_is() {
+        let mut chatter = Chatter::new(10.0, 200);
+        let first = (0..10_000).find(|&k| chatter.note(f64::from(k) * 1e-7, Some(3)));
+        assert_eq!(first, Some(1999));
+    }
+}

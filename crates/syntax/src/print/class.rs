@@ -1,0 +1,321 @@
+//! Text of files, classes, components and modifications.
+
+use super::Printer;
+use crate::ast::{
+    Argument, ArgumentKind, Causality, Class, ClassBody, ClassKind, Component, Constraint, Element, ElementKind,
+    EnumLiteral, Extends, Import, LongBody, Modification, Prefixes, StoredDefinition, TypePrefix, Variability,
+};
+
+impl Printer {
+    pub(super) fn file(&mut self, file: &StoredDefinition) {
+        if let Some(within) = &file.within {
+            self.word("within ");
+            self.path(within);
+            self.end(";");
+        }
+        for class in &file.classes {
+            self.class(class);
+            self.end(";");
+        }
+    }
+
+    /// A class without its semicolon.
+    pub(super) fn class(&mut self, class: &Class) {
+        self.prefixes(&class.prefixes);
+        self.prefix(class.prefixes.encapsulated, "encapsulated");
+        self.prefix(class.prefixes.partial, "partial");
+        self.word(keywords(class.kind));
+        self.word(" ");
+        match &class.body {
+            ClassBody::Long(body) => self.long_class(class, body),
+            ClassBody::Short { prefix, base, subscripts, modification } => {
+                self.short_head(class);
+                self.type_prefix(prefix);
+                self.path(base);
+                self.subscripts(subscripts);
+                self.optional_modification(modification.as_ref());
+                self.comment(class);
+            }
+            ClassBody::Enumeration(literals) => {
+                self.short_head(class);
+                self.enumeration(literals.as_deref());
+                self.comment(class);
+            }
+            ClassBody::Derivative { function, by } => {
+                self.short_head(class);
+                self.word("der(");
+                self.path(function);
+                for name in by {
+                    self.word(", ");
+                    self.ident(name);
+                }
+                self.word(")");
+                self.comment(class);
+            }
+        }
+        self.constraint(class.constraint.as_ref());
+    }
+
+    fn short_head(&mut self, class: &Class) {
+        self.ident(&class.name);
+        self.word(" = ");
+    }
+
+    fn comment(&mut self, class: &Class) {
+        self.description(class.description.as_deref());
+        self.annotation(class.annotation.as_ref());
+    }
+
+    fn enumeration(&mut self, literals: Option<&[EnumLiteral]>) {
+        self.word("enumeration(");
+        match literals {
+            None => self.word(":"),
+            Some(literals) => self.separated(literals, ", ", |p, literal| {
+                p.ident(&literal.name);
+                p.description(literal.description.as_deref());
+            }),
+        }
+        self.word(")");
+    }
+
+    fn long_class(&mut self, class: &Class, body: &LongBody) {
+        if let Some(modification) = &body.class_extends {
+            self.word("extends ");
+            self.ident(&class.name);
+            self.optional_modification(modification.as_ref());
+        } else {
+            self.ident(&class.name);
+        }
+        self.description(class.description.as_deref());
+        self.word("\n");
+        self.elements(&body.elements);
+        self.sections(body);
+        if let Some(external) = &body.external_text {
+            self.depth += 1;
+            self.line(&format!("external {external};"));
+            self.depth -= 1;
+        }
+        if let Some(annotation) = &class.annotation {
+            self.depth += 1;
+            self.begin();
+            self.word("annotation");
+            self.argument_list(&annotation.arguments);
+            self.end(";");
+            self.depth -= 1;
+        }
+        self.begin();
+        self.word("end ");
+        self.ident(&class.name);
+    }
+
+    fn elements(&mut self, elements: &[Element]) {
+        let mut protected = false;
+        for element in elements {
+            if element.protected != protected {
+                protected = element.protected;
+                self.line(if protected { "protected" } else { "public" });
+            }
+            self.lines(std::slice::from_ref(element), Self::element);
+        }
+    }
+
+    fn sections(&mut self, body: &LongBody) {
+        for (keyword, equations) in [("initial equation", &body.initial_equations), ("equation", &body.equations)] {
+            if !equations.is_empty() {
+                self.line(keyword);
+                self.lines(equations, Self::equation);
+            }
+        }
+        for (keyword, sections) in [("initial algorithm", &body.initial_algorithms), ("algorithm", &body.algorithms)] {
+            for statements in sections {
+                self.line(keyword);
+                self.lines(statements, Self::statement);
+            }
+        }
+    }
+
+    fn element(&mut self, element: &Element) {
+        match &element.kind {
+            ElementKind::Import(import) => self.import(import),
+            ElementKind::Extends(extends) => self.extends(extends),
+            ElementKind::Class(class) => self.class(class),
+            ElementKind::Component(component) => self.component(component),
+        }
+    }
+
+    fn import(&mut self, import: &Import) {
+        self.word("import ");
+        match import {
+            Import::Single { alias, path } => {
+                if let Some(alias) = alias {
+                    self.ident(alias);
+                    self.word(" = ");
+                }
+                self.path(path);
+            }
+            Import::All(path) => {
+                self.path(path);
+                self.word(".*");
+            }
+            Import::Some(path, names) => {
+                self.path(path);
+                self.word(".{");
+                self.separated(names, ", ", Self::ident);
+                self.word("}");
+            }
+        }
+    }
+
+    fn extends(&mut self, extends: &Extends) {
+        self.word("extends ");
+        self.path(&extends.base);
+        self.optional_modification(extends.modification.as_ref());
+    }
+
+    fn prefixes(&mut self, prefixes: &Prefixes) {
+        self.prefix(prefixes.redeclare, "redeclare");
+        self.prefix(prefixes.final_, "final");
+        self.prefix(prefixes.inner, "inner");
+        self.prefix(prefixes.outer, "outer");
+        self.prefix(prefixes.replaceable, "replaceable");
+    }
+
+    fn type_prefix(&mut self, prefix: &TypePrefix) {
+        self.prefix(prefix.flow, "flow");
+        self.prefix(prefix.stream, "stream");
+        match prefix.variability {
+            Some(Variability::Constant) => self.word("constant "),
+            Some(Variability::Parameter) => self.word("parameter "),
+            Some(Variability::Discrete) => self.word("discrete "),
+            None => {}
+        }
+        match prefix.causality {
+            Some(Causality::Input) => self.word("input "),
+            Some(Causality::Output) => self.word("output "),
+            None => {}
+        }
+    }
+
+    /// A component clause without its semicolon.
+    pub(super) fn component(&mut self, component: &Component) {
+        self.prefixes(&component.prefixes);
+        self.declaration(component);
+    }
+
+    fn declaration(&mut self, component: &Component) {
+        self.type_prefix(&component.prefix);
+        self.path(&component.class);
+        self.word(" ");
+        self.ident(&component.name);
+        self.subscripts(&component.subscripts);
+        self.optional_modification(component.modification.as_ref());
+        if let Some(condition) = &component.condition {
+            self.word(" if ");
+            self.expression(condition);
+        }
+        self.description(component.description.as_deref());
+        self.annotation(component.annotation.as_ref());
+        self.constraint(component.constraint.as_ref());
+    }
+
+    fn constraint(&mut self, constraint: Option<&Constraint>) {
+        if let Some(constraint) = constraint {
+            self.word(" constrainedby ");
+            self.path(&constraint.path);
+            self.optional_modification(constraint.modification.as_ref());
+        }
+    }
+
+    /// A blank and the text in quotation marks, if there.
+    pub(super) fn description(&mut self, description: Option<&str>) {
+        if let Some(text) = description {
+            self.word(" ");
+            self.string(text);
+        }
+    }
+
+    fn annotation(&mut self, annotation: Option<&Modification>) {
+        if let Some(annotation) = annotation {
+            self.word(" annotation");
+            self.argument_list(&annotation.arguments);
+        }
+    }
+
+    fn optional_modification(&mut self, modification: Option<&Modification>) {
+        if let Some(modification) = modification {
+            self.modification(modification);
+        }
+    }
+
+    /// `(...) = value` with a blank before the sign.
+    pub(super) fn modification(&mut self, modification: &Modification) {
+        let has_value = modification.value.is_some() || modification.break_value;
+        if !modification.arguments.is_empty() || !has_value {
+            self.argument_list(&modification.arguments);
+        }
+        if let Some(value) = &modification.value {
+            self.word(" = ");
+            self.expression(value);
+        } else if modification.break_value {
+            self.word(" = break");
+        }
+    }
+
+    fn argument_list(&mut self, arguments: &[Argument]) {
+        self.word("(");
+        self.separated(arguments, ", ", Self::argument);
+        self.word(")");
+    }
+
+    pub(super) fn argument(&mut self, argument: &Argument) {
+        match &argument.kind {
+            ArgumentKind::Modify { path, modification, description } => {
+                self.argument_prefixes(argument, &Prefixes::default());
+                self.path(path);
+                self.optional_modification(modification.as_ref());
+                self.description(description.as_deref());
+            }
+            ArgumentKind::Component(component) => {
+                self.argument_prefixes(argument, &component.prefixes);
+                self.declaration(component);
+            }
+            ArgumentKind::Class(class) => {
+                self.argument_prefixes(argument, &class.prefixes);
+                let prefixes = Prefixes { redeclare: false, replaceable: false, final_: false, ..class.prefixes };
+                self.class(&Class { prefixes, ..Class::clone(class) });
+            }
+            ArgumentKind::BreakComponent(name) => {
+                self.word("break ");
+                self.ident(name);
+            }
+            ArgumentKind::BreakConnect(a, b) => {
+                self.word("break connect(");
+                self.expression(a);
+                self.word(", ");
+                self.expression(b);
+                self.word(")");
+            }
+        }
+    }
+
+    fn argument_prefixes(&mut self, argument: &Argument, prefixes: &Prefixes) {
+        self.prefix(prefixes.redeclare, "redeclare");
+        self.prefix(argument.each, "each");
+        self.prefix(argument.final_, "final");
+        self.prefix(prefixes.replaceable, "replaceable");
+    }
+}
+
+fn keywords(kind: ClassKind) -> &'static str {
+    match kind {
+        ClassKind::Function { operator, purity } => match (purity, operator) {
+            (None, false) => "function",
+            (None, true) => "operator function",
+            (Some(true), false) => "pure function",
+            (Some(true), true) => "pure operator function",
+            (Some(false), false) => "impure function",
+            (Some(false), true) => "impure operator function",
+        },
+        other => other.word(),
+    }
+}

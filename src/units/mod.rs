@@ -1,9 +1,0 @@
-//! Units of measurement: reading unit strings and converting values.
-
-mod dimension;
-mod symbols;
-pub mod unit;
-
-pub use dimension::Dimension;
-pub(crate) use dimension::power_of;
-pub use unit::{Unit, UnitError, quantity};
