@@ -3,7 +3,7 @@
 
 usage: ablation.py SCORER WORK PAGE.md [--commit C]
 
-Each rule is a constant of src/gap/policy.rs with the value at which it does nothing. SCORER is score.py of the recordings,
+Each rule is a constant of crates/gap/src/policy.rs with the value at which it does nothing. SCORER is score.py of the recordings,
 WORK a folder for a checkout and its build. The scorer's JSON of each run stays there; runs that are there are not repeated.
 """
 
@@ -49,8 +49,8 @@ def checkout(work, commit):
 
 
 def changed(tree, name, value):
-    path = os.path.join(tree, "src/gap/policy.rs")
-    run(["git", "checkout", "--quiet", "--", "src/gap/policy.rs"], cwd=tree)
+    path = os.path.join(tree, "crates/gap/src/policy.rs")
+    run(["git", "checkout", "--quiet", "--", "crates/gap/src/policy.rs"], cwd=tree)
     if name is None:
         return
     text, count = re.subn(rf"(pub const {name}: [^=]*= )[^;]*;", rf"\g<1>{value};", open(path).read())
@@ -97,7 +97,7 @@ def main():
     lines = ["| " + " | ".join(r) + " |" for r in [heads, ["---"] * len(heads)] + rows]
     with open(options.page, "w") as out:
         out.write("# What each rule of the judge is good for\n\n")
-        out.write(f"Written by `benches/ablation.py` at commit {commit}: the recordings of real machines of `gap.md`, one rule taken out at a time by a value of its constant in `src/gap/policy.rs` at which it does nothing.\n\n")
+        out.write(f"Written by `benches/ablation.py` at commit {commit}: the recordings of real machines of `gap.md`, one rule taken out at a time by a value of its constant in `crates/gap/src/policy.rs` at which it does nothing.\n\n")
         out.write("\n".join(lines) + "\n")
 
 

@@ -2,112 +2,29 @@
 #![allow(clippy::disallowed_methods, reason = "reads the project's own text")]
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-/// What each part may use of the others, in the order of the stages: nothing uses what comes later. `cli` stands above all
-/// and may use everything.
-const MAY_USE: &[(&str, &[&str])] = &[
-    ("diag", &[]),
-    ("world", &[]),
-    ("shipped", &["world"]),
-    ("syntax", &["diag"]),
-    ("resolve", &["diag", "syntax", "world"]),
-    ("expr", &["diag", "syntax"]),
-    ("types", &["expr"]),
-    ("units", &["expr"]),
-    ("external", &["expr", "units", "world"]),
-    ("results", &["diag", "units"]),
-    ("instance", &["diag", "expr", "external", "resolve", "results", "syntax", "types", "units"]),
-    ("network", &["diag", "instance", "syntax", "types", "units"]),
-    ("flat", &["diag", "expr", "instance", "network", "syntax", "types", "units"]),
-    ("unit_check", &["diag", "expr", "flat", "units"]),
-    ("structure", &["diag", "expr", "flat"]),
-    ("lower", &["diag", "expr", "flat", "structure"]),
-    ("solve", &["diag", "expr", "flat", "lower", "results", "structure"]),
-    (
-        "compile",
-        &[
-            "diag",
-            "expr",
-            "flat",
-            "instance",
-            "lower",
-            "network",
-            "resolve",
-            "shipped",
-            "structure",
-            "syntax",
-            "unit_check",
-            "world",
-        ],
-    ),
-    (
-        "circuit",
-        &["compile", "diag", "expr", "flat", "instance", "lower", "results", "solve", "structure", "units", "world"],
-    ),
-    ("plot", &["network", "results", "units"]),
-    ("fmi", &["circuit", "compile", "instance", "plot", "results", "units", "world"]),
-    ("experiment", &["diag", "results", "units"]),
-    ("study", &["compile", "diag", "expr", "flat", "results", "solve", "units", "world"]),
-    ("estimate", &[]),
-    (
-        "analysis",
-        &[
-            "circuit",
-            "compile",
-            "diag",
-            "estimate",
-            "experiment",
-            "expr",
-            "flat",
-            "lower",
-            "network",
-            "plot",
-            "results",
-            "solve",
-            "structure",
-            "study",
-            "units",
-            "world",
-        ],
-    ),
-    (
-        "gap",
-        &[
-            "analysis",
-            "compile",
-            "diag",
-            "estimate",
-            "expr",
-            "flat",
-            "instance",
-            "lower",
-            "network",
-            "plot",
-            "results",
-            "shipped",
-            "solve",
-            "structure",
-            "study",
-            "syntax",
-            "units",
-            "world",
-        ],
-    ),
-    (
-        "editor",
-        &["compile", "diag", "expr", "lower", "resolve", "results", "shipped", "syntax", "types", "units", "world"],
-    ),
+/// The modules of each crate with several stages, in their order: none uses a later one. Between crates the compiler sees
+/// to it.
+const ORDER: &[(&str, &[&str])] = &[
+    ("syntax", &["diag", "world"]),
+    ("expr", &["types", "units"]),
+    ("model", &["resolve", "shipped", "instance", "network", "flat", "unit_check", "structure", "compile"]),
+    ("analysis", &["experiment", "study"]),
 ];
+
+/// Modules that use nothing else of their crate.
+const STAND_ALONE: [(&str, &str); 5] =
+    [("syntax", "diag"), ("syntax", "world"), ("solve", "lower"), ("analysis", "estimate"), ("analysis", "experiment")];
 
 /// The one file besides `cli` that reads a clock, for the statistics of a run.
 const CLOCK: &str = "solve/driver.rs";
 
 /// The files besides `cli` that touch the disk: the world of this machine, and folders for libraries to be loaded from.
-const DISK: [&str; 3] = ["world/compiler.rs", "world/disk.rs", "world/folder.rs"];
+const DISK: [&str; 3] = ["syntax/world/compiler.rs", "syntax/world/disk.rs", "syntax/world/folder.rs"];
 
 /// The one file besides `cli` that runs another program.
-const COMPILER: &str = "world/compiler.rs";
+const COMPILER: &str = "syntax/world/compiler.rs";
 
 /// The files that talk to C and to machine code.
 const UNSAFE: [&str; 7] = [
@@ -115,34 +32,45 @@ const UNSAFE: [&str; 7] = [
     "solve/ida/context.rs",
     "solve/ida/operations.rs",
     "solve/ida/sensitivity.rs",
-    "lower/native.rs",
+    "solve/lower/native.rs",
     "external/c/native.rs",
     "external/mockup/native.rs",
 ];
 
-fn source() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("src")
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Files below a folder, by their path from `src/`, without their tests and comments.
+/// The crates below the front, by their folders' names.
+fn crates() -> Vec<String> {
+    let folders = std::fs::read_dir(root().join("crates")).expect("readable").flatten();
+    let mut found: Vec<String> = folders.map(|f| f.file_name().to_string_lossy().into_owned()).collect();
+    found.sort();
+    found
+}
+
+/// All files of the crates and the front without their tests and comments: `solve/lower/native.rs` for a file of a crate,
+/// `cli/mod.rs` for one of the front.
 fn files() -> BTreeMap<String, String> {
     let mut found = BTreeMap::new();
-    let mut folders = vec![source()];
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(folder).expect("readable").flatten() {
-            let path = entry.path();
-            if path.is_dir() {
-                folders.push(path);
-            } else if path.extension().is_some_and(|e| e == "rs") {
-                let name = path.strip_prefix(source()).expect("below src").to_string_lossy().replace('\\', "/");
-                if !name.contains("tests") {
-                    found.insert(name, code(&std::fs::read_to_string(&path).expect("a text")));
-                }
-            }
-        }
+    let below = crates().into_iter().map(|c| (root().join("crates").join(&c).join("src"), format!("{c}/")));
+    for (source, prefix) in below.chain([(root().join("src"), String::new())]) {
+        read(&source, &source, &prefix, &mut found);
     }
     assert!(found.len() > 100, "{} files", found.len());
     found
+}
+
+fn read(folder: &Path, source: &Path, prefix: &str, found: &mut BTreeMap<String, String>) {
+    for entry in std::fs::read_dir(folder).expect("readable").flatten() {
+        let path = entry.path();
+        let below = path.strip_prefix(source).expect("below src").to_string_lossy().replace('\\', "/");
+        if path.is_dir() {
+            read(&path, source, prefix, found);
+        } else if path.extension().is_some_and(|e| e == "rs") && !below.contains("tests") {
+            found.insert(format!("{prefix}{below}"), code(&std::fs::read_to_string(&path).expect("a text")));
+        }
+    }
 }
 
 /// Without comments, and without the tests at the end.
@@ -151,9 +79,9 @@ fn code(text: &str) -> String {
     text.lines().filter(|line| !line.trim_start().starts_with("//")).fold(String::new(), |out, line| out + line + "\n")
 }
 
-/// The part of the house that a file belongs to: `flat/mod.rs` to `flat`, `types.rs` to `types`.
-fn part(file: &str) -> &str {
-    file.split(['/', '.']).next().unwrap_or(file)
+/// The module of a crate that a file belongs to: `model/flat/mod.rs` to `flat`.
+fn module(file: &str) -> &str {
+    file.split(['/', '.']).nth(1).unwrap_or(file)
 }
 
 /// The names behind `crate::`, also those of a list in braces.
@@ -173,42 +101,36 @@ fn used(text: &str) -> Vec<&str> {
 }
 
 #[test]
-fn nothing_uses_a_later_stage() {
-    for (i, (part, may_use)) in MAY_USE.iter().enumerate() {
-        for used in *may_use {
-            let at = MAY_USE.iter().position(|(p, _)| p == used);
-            assert!(at.is_some_and(|at| at < i), "`{part}` uses `{used}`, which does not come before it");
+fn nothing_uses_a_later_stage_of_its_crate() {
+    let files = files();
+    let mut wrong = Vec::new();
+    for (crate_name, order) in ORDER {
+        let place = |name: &str| order.iter().position(|m| *m == name);
+        for module in *order {
+            let there = |f: &&str| f.starts_with(&format!("{crate_name}/{module}"));
+            assert!(files.keys().map(String::as_str).any(|f| there(&f)), "{crate_name} has no `{module}`");
+        }
+        for (file, text) in files.iter().filter(|(f, _)| f.starts_with(&format!("{crate_name}/"))) {
+            let Some(own) = place(module(file)) else { continue };
+            let later = used(text).into_iter().filter(|name| place(name).is_some_and(|at| at > own));
+            wrong.extend(later.map(|name| format!("{file} uses {name}")));
         }
     }
-}
-
-#[test]
-fn each_part_uses_only_what_lies_before_it() {
-    let parts: Vec<&str> = MAY_USE.iter().map(|(name, _)| *name).chain(["cli"]).collect();
-    let mut wrong = Vec::new();
-    for (file, text) in files() {
-        let own = part(&file);
-        let Some((_, allowed)) = MAY_USE.iter().find(|(name, _)| *name == own) else { continue };
-        for name in used(&text) {
-            if name != own && parts.contains(&name) && !allowed.contains(&name) {
-                wrong.push(format!("{file} uses {name}"));
-            }
+    for (crate_name, module) in STAND_ALONE {
+        let own = |file: &String| file.starts_with(&format!("{crate_name}/{module}"));
+        assert!(files.keys().any(own), "{crate_name} has no `{module}`");
+        for (file, text) in files.iter().filter(|(f, _)| own(f)) {
+            wrong.extend(used(text).into_iter().filter(|n| *n != module).map(|n| format!("{file} uses {n}")));
         }
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
 #[test]
-fn every_part_is_named_and_every_name_a_part() {
-    let files = files();
-    let mut found: Vec<&str> = files.keys().map(|f| part(f)).filter(|p| !["lib", "main", "cli"].contains(p)).collect();
-    found.dedup();
-    let mut named: Vec<&str> = MAY_USE.iter().map(|(name, _)| *name).collect();
-    named.sort_unstable();
-    assert_eq!(found, named);
-    let text = std::fs::read_to_string(source().join("../ARCHITECTURE.md")).expect("it is there");
-    for name in found.into_iter().chain(["cli"]) {
-        assert!(text.contains(&format!("src/{name}")), "ARCHITECTURE.md does not name src/{name}");
+fn every_crate_is_on_the_map() {
+    let text = std::fs::read_to_string(root().join("ARCHITECTURE.md")).expect("it is there");
+    for name in crates() {
+        assert!(text.contains(&format!("crates/{name}")), "ARCHITECTURE.md does not name crates/{name}");
     }
 }
 
@@ -216,7 +138,7 @@ fn every_part_is_named_and_every_name_a_part() {
 fn files_clock_and_environment_belong_to_the_command() {
     let doors = ["std::fs", "std::env", "std::process", "Instant::now", "SystemTime", "File::open", "println!"];
     for (file, text) in files() {
-        if part(&file) == "cli" || file == "main.rs" {
+        if file.starts_with("cli/") || file == "main.rs" {
             continue;
         }
         // what the machine is, is no part of its environment

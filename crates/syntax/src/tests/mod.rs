@@ -58,7 +58,7 @@ pub fn without_places(tree: &impl Debug) -> String {
 
 /// All models of the neighbouring folder with reference material; empty where there is none.
 pub fn shared_models() -> Vec<PathBuf> {
-    let here = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
+    let here = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../..");
     let shared = ["../shared", "../../shared"].map(|up| here.join(up));
     let Some(root) = shared.iter().find(|root| root.is_dir()) else { return Vec::new() };
     let mut models = Vec::new();
