@@ -290,7 +290,7 @@ fn own_variables(instance: &Instance<'_, '_>, scope: ScopeId) -> Vec<u32> {
 fn quantity(instance: &mut Instance<'_, '_>, variable: u32) -> Quantity {
     let full = &instance.variables[variable as usize].name;
     let name = full.rsplit('.').next().unwrap_or(full).to_string();
-    Quantity { name, unit: instance.text_attribute(variable, "unit").unwrap_or_default() }
+    Quantity { name, unit: instance.parameters().text_attribute(variable, "unit").unwrap_or_default() }
 }
 
 fn parameters(instance: &mut Instance<'_, '_>, scope: ScopeId) -> Vec<Quantity> {

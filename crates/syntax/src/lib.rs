@@ -12,7 +12,7 @@ pub mod symbol;
 pub mod token;
 
 use crate::diag::{Checked, Code, Diagnostic, FileId, Span};
-use parser::Parser;
+use parser::{Parser, class, expr};
 
 /// What could be made of a text.
 #[derive(Clone, Debug)]
@@ -32,7 +32,7 @@ pub fn parse(file: FileId, text: &str) -> Parsed {
         return Parsed { tree: ast::StoredDefinition::default(), diagnostics: vec![diagnostic] };
     }
     let mut parser = Parser::new(file, text);
-    let tree = parser.stored_definition();
+    let tree = class::stored_definition(&mut parser);
     Parsed { tree, diagnostics: parser.into_diagnostics() }
 }
 
@@ -42,7 +42,7 @@ pub fn parse_expression(file: FileId, text: &str) -> Checked<ast::Expr> {
         return Checked::failed(vec![diagnostic]);
     }
     let mut parser = Parser::new(file, text);
-    let expr = parser.whole_expression();
+    let expr = expr::whole_expression(&mut parser);
     let diagnostics = parser.into_diagnostics();
     if diagnostics.is_empty() { Checked { value: expr, diagnostics } } else { Checked::failed(diagnostics) }
 }

@@ -100,7 +100,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
 
     /// What the equation just read needs to have a meaning, under the conditions around it.
     fn watch(&mut self, view: View) {
-        let mut calls = self.instance.take_calls();
+        let mut calls = self.instance.statements().take_calls();
         for call in &mut calls {
             for &guard in &self.guards {
                 call.guard = self.instance.exprs.and(guard, call.guard);
@@ -134,11 +134,11 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
             }
             return;
         };
-        let Some(values) = self.instance.loop_values(first, body, view) else { return };
+        let Some(values) = self.instance.statements().loop_values(first, body, view) else { return };
         for value in values {
-            self.instance.push_local(first.name.name, value);
+            self.instance.statements().push_local(first.name.name, value);
             self.for_equation(rest, body, view, out);
-            self.instance.pop_local();
+            self.instance.statements().pop_local();
         }
     }
 
@@ -147,14 +147,14 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
             self.tuple(targets, r, view, span, out);
             return;
         }
-        let (a, b) = (self.instance.eval(l, view), self.instance.eval(r, view));
+        let (a, b) = (self.instance.evaluator().eval(l, view), self.instance.evaluator().eval(r, view));
         if let (Some(a), Some(b)) = (a, b) {
             self.equal_values(&a, &b, span, out);
         }
     }
 
     fn tuple(&mut self, targets: &'a [Option<Expr>], r: &'a Expr, view: View, span: Span, out: &mut Vec<Pair>) {
-        let Some(value) = self.instance.eval_all(r, view) else { return };
+        let Some(value) = self.instance.evaluator().eval_all(r, view) else { return };
         let values = match &value {
             Val::Tuple(values) => values.to_vec(),
             other => vec![other.clone()],
@@ -168,7 +168,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
         }
         for (target, value) in targets.iter().zip(&values) {
             let Some(target) = target else { continue };
-            if let Some(t) = self.instance.eval(target, view) {
+            if let Some(t) = self.instance.evaluator().eval(target, view) {
                 self.equal_values(&t, value, span, out);
             }
         }
@@ -211,7 +211,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
             }
             return;
         };
-        let Some(c) = self.instance.eval(condition, view) else { return };
+        let Some(c) = self.instance.evaluator().eval(condition, view) else { return };
         let Some((test, Type::Boolean)) = c.scalar() else {
             self.instance.diagnostics.push(
                 Diagnostic::new(Code::TypeMismatch, "a condition must be a Boolean")
@@ -220,7 +220,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
             return;
         };
         if self.instance.variability(test) <= Variability::Parameter && !self.instance.found_at_start(test) {
-            match self.instance.constant_boolean(condition, view) {
+            match self.instance.evaluator().constant_boolean(condition, view) {
                 Some(true) => {
                     for e in body {
                         self.equation(e, view, out);
@@ -270,14 +270,14 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
         let mut when = When { branches: Vec::new(), origin: self.origin(span, view) };
         let mut first: Option<Vec<VarId>> = None;
         for (condition, body) in branches {
-            let Some(conditions) = self.instance.when_conditions(condition, view) else { continue };
+            let Some(conditions) = self.instance.statements().when_conditions(condition, view) else { continue };
             self.watch(view);
             let mut actions = Vec::new();
-            let was = self.instance.set_no_event(true);
+            let was = self.instance.statements().set_no_event(true);
             for e in body {
                 self.when_body(e, view, Exprs::ONE, &mut actions);
             }
-            self.instance.set_no_event(was);
+            self.instance.statements().set_no_event(was);
             when.branches.push(WhenBranch { conditions, actions });
             let here = std::mem::take(&mut self.determined);
             match &first {
@@ -320,7 +320,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
             EquationKind::Equal(l, r) => {
                 let mut pairs = Vec::new();
                 self.equal(l, r, view, e.span, &mut pairs);
-                for mut call in self.instance.take_calls() {
+                for mut call in self.instance.statements().take_calls() {
                     call.guard = self.instance.exprs.and(guard, call.guard);
                     self.algorithm_action(call, view, out);
                 }
@@ -358,11 +358,11 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
             }
             return;
         };
-        let Some(values) = self.instance.loop_values(first, body, view) else { return };
+        let Some(values) = self.instance.statements().loop_values(first, body, view) else { return };
         for value in values {
-            self.instance.push_local(first.name.name, value);
+            self.instance.statements().push_local(first.name.name, value);
             self.when_for(rest, body, view, guard, out);
-            self.instance.pop_local();
+            self.instance.statements().pop_local();
         }
     }
 
@@ -380,7 +380,10 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
             }
             return;
         };
-        let Some(test) = self.instance.eval(condition, view).and_then(|c| c.scalar()).map(|(e, _)| e) else { return };
+        let Some(test) = self.instance.evaluator().eval(condition, view).and_then(|c| c.scalar()).map(|(e, _)| e)
+        else {
+            return;
+        };
         let pool = &mut self.instance.exprs;
         let yes = pool.and(guard, test);
         let no = pool.not(test);
@@ -461,7 +464,9 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
                     self.bad_call(span, "`reinit` takes a variable and its new value");
                     return;
                 };
-                let (Some(t), Some(v)) = (self.instance.eval(target, view), self.instance.eval(value, view)) else {
+                let (Some(t), Some(v)) =
+                    (self.instance.evaluator().eval(target, view), self.instance.evaluator().eval(value, view))
+                else {
                     return;
                 };
                 let mut pairs = Vec::new();
@@ -491,11 +496,11 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
                 }
             }
             "terminate" => {
-                let text = args.first().and_then(|m| self.instance.eval(m, view));
+                let text = args.first().and_then(|m| self.instance.evaluator().eval(m, view));
                 out.push(WhenAction::Terminate { message: message(text), guard, origin });
             }
             // a function without outputs says what must hold, or does what no model can see
-            _ => match self.instance.eval_all(call, view) {
+            _ => match self.instance.evaluator().eval_all(call, view) {
                 Some(Val::Tuple(values)) if values.is_empty() => {}
                 None => {}
                 _ => self.bad_call(
@@ -513,7 +518,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
         let ExprKind::Call { args, .. } = &call.kind else { return };
         let mut values = Vec::with_capacity(args.len());
         for arg in args {
-            let Some(value) = self.instance.eval(arg, view) else { return };
+            let Some(value) = self.instance.evaluator().eval(arg, view) else { return };
             values.extend(value.scalar().filter(|(_, ty)| *ty == Type::Real).map(|(e, _)| e));
         }
         let origin = self.origin(span, view);
@@ -558,7 +563,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
                 self.conserved(call, view, span);
             }
             _ => {
-                for call in self.instance.call_keeping_assertions(call, view) {
+                for call in self.instance.statements().call_keeping_assertions(call, view) {
                     let origin = self.origin(call.span, view);
                     let assert = assert_of(self.instance, call, origin);
                     self.push_guarded(assert);
@@ -579,7 +584,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
     }
 
     fn assertion(&mut self, call: &'a Expr, view: View, span: Span) -> Option<Assert> {
-        let Asserted { condition, message: text, warning } = self.instance.assertion(call, view)?;
+        let Asserted { condition, message: text, warning } = self.instance.statements().assertion(call, view)?;
         Some(Assert { condition, message: message(text), warning, origin: self.origin(span, view) })
     }
 
@@ -598,7 +603,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
             };
             let (always, in_when) = (of(&always), of(&in_when));
             let targets: Vec<&'a ast::Reference> = always.iter().chain(&in_when).copied().collect();
-            let Some(own) = self.instance.assigned_value(view, &targets) else { return };
+            let Some(own) = self.instance.statements().assigned_value(view, &targets) else { return };
             let scalars = |targets: &[&'a ast::Reference]| {
                 let mut found = FxHashSet::default();
                 let below: Vec<&[ast::ReferencePart]> = targets.iter().map(|r| &r.parts[1..]).collect();
@@ -608,13 +613,13 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
             let (all, in_when) = (scalars(&targets), scalars(&in_when));
             let start = self.algorithm_start(&own, &all, &in_when);
             originals.push(Assigned { name, own, in_when });
-            self.instance.push_local(name, start);
+            self.instance.statements().push_local(name, start);
             count += 1;
         }
-        let done = self.instance.run_section(section, view, count);
-        let results: Vec<Val> = self.instance.take_locals(count);
-        let whens = self.instance.take_whens();
-        let calls = self.instance.take_calls();
+        let done = self.instance.statements().run_section(section, view, count);
+        let results: Vec<Val> = self.instance.statements().take_locals(count);
+        let whens = self.instance.statements().take_whens();
+        let calls = self.instance.statements().take_calls();
         if done.is_none() {
             self.section_failed(section);
             return;

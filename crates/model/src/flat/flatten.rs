@@ -25,7 +25,7 @@ pub fn flatten(instance: &mut Instance<'_, '_>, network: &Network) -> Checked<Fl
     flat.varied = instance.varied;
     streams::prepare(instance, network);
     variables(instance, &numbers, &mut flat);
-    instance.check_texts();
+    instance.parameters().check_texts();
     Walker::new(instance, &numbers, &mut flat).walk(&scopes);
     connections(instance, network, &numbers, &mut flat);
     overconstrained::equations(instance, network, &numbers, &mut flat);
@@ -41,7 +41,7 @@ pub fn flatten(instance: &mut Instance<'_, '_>, network: &Network) -> Checked<Fl
         .iter()
         .map(|e| (e.name.clone(), e.literals.iter().map(|l| l.as_str().to_string()).collect()))
         .collect();
-    let constraints = instance.constraint_sizes();
+    let constraints = instance.builder().constraint_sizes();
     flat.exprs = std::mem::take(&mut instance.exprs);
     let mut diagnostics = std::mem::take(&mut instance.diagnostics);
     if !diagnostics.iter().any(Diagnostic::is_error) {
@@ -112,27 +112,30 @@ fn attributes(instance: &mut Instance<'_, '_>, i: u32, v: &mut Variable) {
         let (name, b) = instance.variables[i as usize].attributes[k].clone();
         match name.as_str() {
             "unit" => {
-                v.unit = instance.text_attribute(i, "unit").filter(|u| !u.is_empty()).map(Into::into);
-                v.difference = v.unit.as_deref().is_some_and(is_temperature) && instance.is_difference(i) == Some(true);
+                v.unit = instance.parameters().text_attribute(i, "unit").filter(|u| !u.is_empty()).map(Into::into);
+                v.difference = v.unit.as_deref().is_some_and(is_temperature)
+                    && instance.parameters().is_difference(i) == Some(true);
             }
             "displayUnit" => {
-                v.display_unit = instance.text_attribute(i, "displayUnit").filter(|u| !u.is_empty()).map(Into::into);
+                v.display_unit =
+                    instance.parameters().text_attribute(i, "displayUnit").filter(|u| !u.is_empty()).map(Into::into);
             }
             "quantity" => {
-                instance.text_attribute(i, "quantity");
+                instance.parameters().text_attribute(i, "quantity");
             }
             "fixed" => {
-                if let Some(x) = instance.known_attribute(i, name, &b, Type::Boolean) {
+                if let Some(x) = instance.parameters().known_attribute(i, name, &b, Type::Boolean) {
                     v.fixed = x != 0.0;
                     v.confidence.free = x == 0.0;
                 }
             }
             "unbounded" => {
-                instance.known_attribute(i, name, &b, Type::Boolean);
+                instance.parameters().known_attribute(i, name, &b, Type::Boolean);
             }
             "start" | "min" | "max" | "nominal" => {
-                let Some(value) = instance.bound(i, &b, false) else { continue };
-                let Some(value) = instance.coerce(value, v.ty, &format!("{}.{name}", v.name), b.expr.span) else {
+                let Some(value) = instance.parameters().bound(i, &b, false) else { continue };
+                let Some(value) = instance.parameters().coerce(value, v.ty, &format!("{}.{name}", v.name), b.expr.span)
+                else {
                     continue;
                 };
                 let e = value.scalar().map(|(e, _)| e);
@@ -219,10 +222,10 @@ fn binding(instance: &mut Instance<'_, '_>, i: u32, v: &mut Variable, flat: &mut
         }
         return;
     };
-    let value = instance.bound(i, &b, false);
-    let watched = instance.take_calls();
+    let value = instance.parameters().bound(i, &b, false);
+    let watched = instance.statements().take_calls();
     let Some(value) = value else { return };
-    let Some(value) = instance.coerce(value, v.ty, &v.name, b.expr.span) else { return };
+    let Some(value) = instance.parameters().coerce(value, v.ty, &v.name, b.expr.span) else { return };
     let Some((e, _)) = value.scalar() else { return };
     equations::watch(instance, flat, watched, v.origin.instance);
     if v.variability == Variability::Constant && instance.variability(e) == Variability::Parameter {
@@ -255,7 +258,7 @@ fn binding(instance: &mut Instance<'_, '_>, i: u32, v: &mut Variable, flat: &mut
         return;
     }
     if instance.variables[i as usize].stream {
-        instance.leaves_with(i, e);
+        instance.mixing().leaves_with(i, e);
     }
     let id = instance.variables[i as usize].id;
     let lhs = instance.exprs.var(id);

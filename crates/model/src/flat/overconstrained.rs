@@ -10,7 +10,7 @@ use bramah_expr::Exprs;
 /// The equations of connections that the connection graph breaks.
 pub(super) fn equations(instance: &mut Instance<'_, '_>, network: &Network, numbers: &Numbers, flat: &mut FlatModel) {
     for link in &network.constrained {
-        let Some(residue) = instance.constraint_residue(link.a, link.b, link.span) else { continue };
+        let Some(residue) = instance.builder().constraint_residue(link.a, link.b, link.span) else { continue };
         let origin = Origin { span: link.span, instance: numbers.of(link.scope), kind: OriginKind::ConnectPotential };
         for value in residue.values {
             flat.equations.push(Equation { lhs: value, rhs: Exprs::ZERO, origin });

@@ -71,7 +71,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     pub(super) fn unknown_base(&mut self, path: &ast::Path, class: ClassId, parent: View) {
-        let part = self.lookup_path(parent, path).err().unwrap_or(0);
+        let part = self.names().lookup_path(parent, path).err().unwrap_or(0);
         if part == 0 && self.broken_import(parent, path.parts[0].name).is_some() {
             self.unknown_class_at(parent, path, part);
             return;
@@ -83,7 +83,7 @@ impl<'a> Instance<'a, '_> {
 
     pub(super) fn unknown_class_at(&mut self, view: View, path: &ast::Path, part: usize) {
         if let Some(import) = self.broken_import(view, path.parts[0].name).filter(|_| part == 0) {
-            let part = self.lookup_path(super::ROOT, &import).err().unwrap_or(0);
+            let part = self.names().lookup_path(super::ROOT, &import).err().unwrap_or(0);
             self.unknown_class_at(super::ROOT, &import, part);
             return;
         }
@@ -91,7 +91,7 @@ impl<'a> Instance<'a, '_> {
             self.class_names_at(view)
         } else {
             let shorter = ast::Path { global: path.global, parts: path.parts[..part].to_vec(), span: path.span };
-            match self.lookup_path(view, &shorter) {
+            match self.names().lookup_path(view, &shorter) {
                 Ok(super::lookup::Found::Class(c)) => {
                     let nested = nested_classes(self.library.class(c.class)).map(|n| n.name.name);
                     nested.chain(self.library.folder_members(c.class)).collect()
@@ -199,6 +199,11 @@ impl<'a> Instance<'a, '_> {
             d = d.help(format!("attributes are: {}", known.join(", ")));
         }
         self.report(d);
+    }
+
+    pub(in crate::instance) fn fail<T>(&mut self, code: Code, message: &str, span: Span) -> Option<T> {
+        self.report(Diagnostic::new(code, message).at(span, ""));
+        None
     }
 }
 

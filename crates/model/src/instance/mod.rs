@@ -10,6 +10,7 @@ mod calls;
 mod errors;
 pub mod evaluation;
 pub mod tree;
+pub mod views;
 
 pub use building::components::{ModelRequest, instantiate};
 pub use building::given::{GIVEN, Override};
@@ -18,6 +19,10 @@ use calls::{builtin, call, files, procedure, vectorised};
 use evaluation::state;
 pub use evaluation::{algorithm, deduce, references, value};
 pub use tree::{lookup, modifiers, template};
+pub use views::{
+    BuiltinCalls, ComponentBuilder, Evaluator, ExternalCalls, FunctionCalls, NameLookup, Operators, ParameterValues,
+    ProcedureTranslator, Statements, StreamMixing,
+};
 
 use crate::resolve::{ClassId, Library};
 use bramah_expr::types::{StateSelect, Type, Variability};
@@ -396,7 +401,7 @@ impl<'a> Instance<'a, '_> {
         for v in self.exprs.variables(e) {
             let i = *self.order.get(v.index())?;
             let span = self.variables[i as usize].span;
-            let value = self.known_value(i, span);
+            let value = self.parameters().known_value(i, span);
             self.diagnostics.truncate(mark);
             values.push((self.exprs.var(v), value?.scalar()?.0));
         }
@@ -407,7 +412,7 @@ impl<'a> Instance<'a, '_> {
     /// The number that a parameter has, if it can be told, without fixing it.
     pub fn peek(&mut self, i: u32) -> Option<f64> {
         let (mark, span) = (self.diagnostics.len(), self.variables[i as usize].span);
-        let value = self.without_fixing(|s| s.known_value(i, span));
+        let value = self.without_fixing(|s| s.parameters().known_value(i, span));
         self.diagnostics.truncate(mark);
         value?.as_number(&self.exprs)
     }
@@ -441,12 +446,12 @@ impl<'a> Instance<'a, '_> {
         let found = match (data.binding.clone(), fixed) {
             (Some(b), _) => {
                 let mark = self.diagnostics.len();
-                let value = self.bound(i, &b, false);
+                let value = self.parameters().bound(i, &b, false);
                 self.diagnostics.truncate(mark);
                 let scalar = value.and_then(|v| v.scalar());
                 scalar.is_some_and(|(e, _)| self.found_at_start(e))
             }
-            (None, Some((name, b))) => self.known_attribute(i, name, &b, Type::Boolean) == Some(0.0),
+            (None, Some((name, b))) => self.parameters().known_attribute(i, name, &b, Type::Boolean) == Some(0.0),
             (None, None) => false,
         };
         self.at_start.insert(v, found);
@@ -465,5 +470,17 @@ impl<'a> Instance<'a, '_> {
     fn operand_variability(&self, e: ExprId) -> Variability {
         let operands = self.exprs.operands(e);
         operands.as_slice().iter().map(|o| self.variabilities[o.index()]).max().unwrap_or(Variability::Constant)
+    }
+
+    /// The name of a component as the user knows it.
+    pub fn node_name(&self, node: NodeId) -> String {
+        match self.node(node) {
+            Node::Var(i) => self.variables[*i as usize].name.clone(),
+            Node::Object(s) => self.scope(*s).name.clone(),
+            Node::Array { elements, .. } => {
+                let first = elements.first().map_or(String::new(), |&e| self.node_name(e));
+                first.rsplit_once('[').map_or(first.clone(), |(head, _)| head.to_string())
+            }
+        }
     }
 }

@@ -164,7 +164,7 @@ impl Collector {
                     }
                 }
                 EquationKind::For { iterators, body } if concerns_network(body) => {
-                    instance.for_each(iterators, Body::Equations(body), view, &mut |instance| {
+                    instance.statements().for_each(iterators, Body::Equations(body), view, &mut |instance| {
                         self.equations(instance, body, view, base);
                     });
                 }
@@ -214,7 +214,7 @@ impl Collector {
     }
 
     fn join(&mut self, instance: &mut Instance<'_, '_>, a: (NodeId, bool), b: (NodeId, bool), at: &Place) {
-        if instance.is_overconstrained(a.0) && instance.is_overconstrained(b.0) {
+        if instance.builder().is_overconstrained(a.0) && instance.builder().is_overconstrained(b.0) {
             self.forest.links.push(Link { a: a.0, b: b.0, span: at.span, scope: at.scope });
             return;
         }
@@ -259,7 +259,7 @@ impl Collector {
             if !matches!(e.kind, Kind::Component(_)) {
                 continue;
             }
-            let (x, y) = (instance.component(a.0, i), instance.component(b.0, tb.by_name[&e.name]));
+            let (x, y) = (instance.builder().component(a.0, i), instance.builder().component(b.0, tb.by_name[&e.name]));
             if let (Some(x), Some(y)) = (x, y) {
                 self.join(instance, (x, a.1), (y, b.1), at);
             }
@@ -355,7 +355,7 @@ fn choose<'a>(
     view: View,
 ) -> Option<&'a [Equation]> {
     for (condition, body) in branches {
-        if instance.constant_boolean(condition, view)? {
+        if instance.evaluator().constant_boolean(condition, view)? {
             return Some(body);
         }
     }
@@ -372,9 +372,9 @@ fn end<'a>(instance: &mut Instance<'a, '_>, e: &'a Expr, view: View) -> Option<O
         );
         return None;
     };
-    let Some(Found::Component(scope, index)) = instance.lookup(view, r.parts[0].name.name) else {
+    let Some(Found::Component(scope, index)) = instance.names().lookup(view, r.parts[0].name.name) else {
         // The general evaluation knows how to say what is wrong.
-        instance.eval(e, view);
+        instance.evaluator().eval(e, view);
         if !instance.diagnostics.iter().any(Diagnostic::is_error) {
             instance
                 .diagnostics
@@ -383,7 +383,7 @@ fn end<'a>(instance: &mut Instance<'a, '_>, e: &'a Expr, view: View) -> Option<O
         return None;
     };
     let outside = is_connector(instance, scope, index, view);
-    let Some(selection) = instance.port_selection(r, scope, index, view)? else { return Some(None) };
+    let Some(selection) = instance.evaluator().port_selection(r, scope, index, view)? else { return Some(None) };
     Some(Some(End { selection, outside }))
 }
 
@@ -417,7 +417,7 @@ fn port_names(instance: &mut Instance<'_, '_>, scope: ScopeId) -> Vec<String> {
     let mut names = Vec::new();
     for (i, e) in (0u32..).zip(&template.elements) {
         let public = matches!(e.kind, Kind::Component(_)) && !e.protected;
-        if let Some(node) = public.then(|| instance.component(scope, i)).flatten()
+        if let Some(node) = public.then(|| instance.builder().component(scope, i)).flatten()
             && is_port(instance, node)
         {
             names.push(format!("`{}`", e.name));
@@ -451,9 +451,9 @@ fn declared_as_connector(instance: &mut Instance<'_, '_>, scope: ScopeId, name: 
     let Some(&index) = template.by_name.get(&last) else { return false };
     let element = &template.elements[index as usize];
     let Kind::Component(c) = element.kind else { return false };
-    match instance.lookup_path(View { scope, base: element.base }, &c.class) {
+    match instance.names().lookup_path(View { scope, base: element.base }, &c.class) {
         Ok(Found::Class(class)) => {
-            let t = instance.template(class.class, class.parent);
+            let t = instance.names().template(class.class, class.parent);
             matches!(t.kind, ClassKind::Connector { .. })
                 || matches!(instance.library.class(class.class).kind, ClassKind::Connector { .. })
         }
@@ -472,9 +472,9 @@ fn is_connector(instance: &mut Instance<'_, '_>, scope: ScopeId, index: u32, vie
     if c.prefixes.outer {
         return false;
     }
-    match instance.lookup_path(View { scope, base: element.base }, &c.class) {
+    match instance.names().lookup_path(View { scope, base: element.base }, &c.class) {
         Ok(Found::Class(class)) => {
-            let t = instance.template(class.class, class.parent);
+            let t = instance.names().template(class.class, class.parent);
             matches!(t.kind, ClassKind::Connector { .. })
         }
         _ => c.prefix.causality.is_some(),
@@ -508,7 +508,7 @@ fn different_units(instance: &mut Instance<'_, '_>, a: u32, b: u32, at: &Place) 
     if instance.variables[a as usize].ty != Type::Real {
         return false;
     }
-    let units = [a, b].map(|i| instance.text_attribute(i, "unit").filter(|u| !u.is_empty()));
+    let units = [a, b].map(|i| instance.parameters().text_attribute(i, "unit").filter(|u| !u.is_empty()));
     let [Some(ua), Some(ub)] = units else { return false };
     if ua == ub {
         return false;

@@ -87,7 +87,8 @@ impl Forest {
                 return;
             }
         };
-        let nodes: Option<Vec<NodeId>> = named.into_iter().map(|e| instance.overconstrained_node(e, view)).collect();
+        let nodes: Option<Vec<NodeId>> =
+            named.into_iter().map(|e| instance.builder().overconstrained_node(e, view)).collect();
         let Some(nodes) = nodes else { return };
         let numbers: Vec<usize> = nodes.into_iter().map(|n| self.number(n)).collect();
         match (what, numbers.as_slice()) {
@@ -96,7 +97,7 @@ impl Forest {
             (_, &[node]) => {
                 let priority = match args.get(1) {
                     None => Some(0.0),
-                    Some(e) => instance.constant(e, view).and_then(|v| v.as_number(&instance.exprs)),
+                    Some(e) => instance.evaluator().constant(e, view).and_then(|v| v.as_number(&instance.exprs)),
                 };
                 self.offers.extend(priority.map(|priority| Offer { node, priority }));
             }

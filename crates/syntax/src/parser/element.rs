@@ -1,7 +1,7 @@
 //! Elements of a class: imports, `extends`, components.
 
 use super::modification::Place;
-use super::{Parse, Parser, is_class_keyword};
+use super::{Parse, Parser, class, expr, is_class_keyword, modification};
 use crate::ast::{
     Causality, Component, Constraint, Element, ElementKind, Extends, Ident, Import, Modification, Path, Prefixes,
     Subscript, TypePrefix, Variability,
@@ -18,212 +18,210 @@ struct Clause {
     subscripts: Vec<Subscript>,
 }
 
-impl Parser<'_> {
-    /// One element, without its semicolon; a clause with several components gives several.
-    pub(super) fn element(&mut self, protected: bool, elements: &mut Vec<Element>) -> Parse<()> {
-        let start = self.span();
-        let kind = match self.kind() {
-            TokenKind::Import => ElementKind::Import(self.import()?),
-            TokenKind::Extends => ElementKind::Extends(self.extends()?),
-            _ => {
-                let prefixes = self.prefixes();
-                if !is_class_keyword(self.kind()) {
-                    return self.component_clause(start, prefixes, protected, elements);
-                }
-                ElementKind::Class(self.replaceable_class(start, prefixes)?)
+/// One element, without its semicolon; a clause with several components gives several.
+pub(super) fn element(p: &mut Parser<'_>, protected: bool, elements: &mut Vec<Element>) -> Parse<()> {
+    let start = p.span();
+    let kind = match p.kind() {
+        TokenKind::Import => ElementKind::Import(import(p)?),
+        TokenKind::Extends => ElementKind::Extends(extends(p)?),
+        _ => {
+            let prefixes = prefixes(p);
+            if !is_class_keyword(p.kind()) {
+                return component_clause(p, start, prefixes, protected, elements);
             }
+            ElementKind::Class(class::replaceable_class(p, start, prefixes)?)
+        }
+    };
+    elements.push(Element { protected, kind, span: p.since(start) });
+    Ok(())
+}
+
+// Imports and extends.
+
+fn import(p: &mut Parser<'_>) -> Parse<Import> {
+    p.bump();
+    if p.at(TokenKind::Ident) && p.peek_kind(1) == TokenKind::Equal {
+        let alias = Some(p.ident("a name")?);
+        p.bump();
+        let import = Import::Single { alias, path: p.path("the name of a class")? };
+        modification::comment(p)?;
+        return Ok(import);
+    }
+    let path = p.path("the name of a class or package")?;
+    let import = match p.kind() {
+        TokenKind::DotStar => {
+            p.bump();
+            Import::All(path)
+        }
+        TokenKind::Dot if p.peek_kind(1) == TokenKind::Star => {
+            p.bump();
+            p.bump();
+            Import::All(path)
+        }
+        TokenKind::Dot if p.peek_kind(1) == TokenKind::LeftBrace => {
+            p.bump();
+            Import::Some(path, import_list(p)?)
+        }
+        TokenKind::Dot => {
+            p.bump();
+            return Err(p.unexpected("a name, `*` or `{`"));
+        }
+        _ => Import::Single { alias: None, path },
+    };
+    modification::comment(p)?;
+    Ok(import)
+}
+
+fn import_list(p: &mut Parser<'_>) -> Parse<Vec<Ident>> {
+    let opened = p.span();
+    p.bump();
+    let mut names = vec![p.ident("a name")?];
+    while p.eat(TokenKind::Comma) {
+        names.push(p.ident("a name")?);
+    }
+    p.close(TokenKind::RightBrace, opened, "`,` or `}`")?;
+    Ok(names)
+}
+
+fn extends(p: &mut Parser<'_>) -> Parse<Extends> {
+    p.bump();
+    let base = p.path("the name of a class")?;
+    let modification = modification::optional_class_modification(p, Place::Extends)?;
+    modification::annotation(p)?;
+    Ok(Extends { base, modification })
+}
+
+// Prefixes.
+
+/// `redeclare final inner outer replaceable`, which have this order.
+fn prefixes(p: &mut Parser<'_>) -> Prefixes {
+    let mut prefixes = Prefixes::default();
+    let mut last = 0;
+    loop {
+        let (rank, flag) = match p.kind() {
+            TokenKind::Redeclare => (1, &mut prefixes.redeclare),
+            TokenKind::Final => (2, &mut prefixes.final_),
+            TokenKind::Inner => (3, &mut prefixes.inner),
+            TokenKind::Outer => (4, &mut prefixes.outer),
+            TokenKind::Replaceable => (5, &mut prefixes.replaceable),
+            _ => return prefixes,
         };
-        elements.push(Element { protected, kind, span: self.since(start) });
-        Ok(())
+        *flag = true;
+        check_order(p, rank, last);
+        last = rank;
+        p.bump();
     }
+}
 
-    // Imports and extends.
-
-    fn import(&mut self) -> Parse<Import> {
-        self.bump();
-        if self.at(TokenKind::Ident) && self.peek_kind(1) == TokenKind::Equal {
-            let alias = Some(self.ident("a name")?);
-            self.bump();
-            let import = Import::Single { alias, path: self.path("the name of a class")? };
-            self.comment()?;
-            return Ok(import);
-        }
-        let path = self.path("the name of a class or package")?;
-        let import = match self.kind() {
-            TokenKind::DotStar => {
-                self.bump();
-                Import::All(path)
-            }
-            TokenKind::Dot if self.peek_kind(1) == TokenKind::Star => {
-                self.bump();
-                self.bump();
-                Import::All(path)
-            }
-            TokenKind::Dot if self.peek_kind(1) == TokenKind::LeftBrace => {
-                self.bump();
-                Import::Some(path, self.import_list()?)
-            }
-            TokenKind::Dot => {
-                self.bump();
-                return Err(self.unexpected("a name, `*` or `{`"));
-            }
-            _ => Import::Single { alias: None, path },
+/// `flow parameter input` and the like, which have this order.
+pub(super) fn type_prefix(p: &mut Parser<'_>) -> TypePrefix {
+    let mut prefix = TypePrefix::default();
+    let mut last = 0;
+    loop {
+        let rank = match p.kind() {
+            TokenKind::Flow | TokenKind::Stream => 1,
+            TokenKind::Discrete | TokenKind::Parameter | TokenKind::Constant => 2,
+            TokenKind::Input | TokenKind::Output => 3,
+            _ => return prefix,
         };
-        self.comment()?;
-        Ok(import)
+        set_prefix(&mut prefix, p.kind());
+        check_order(p, rank, last);
+        last = rank;
+        p.bump();
     }
+}
 
-    fn import_list(&mut self) -> Parse<Vec<Ident>> {
-        let opened = self.span();
-        self.bump();
-        let mut names = vec![self.ident("a name")?];
-        while self.eat(TokenKind::Comma) {
-            names.push(self.ident("a name")?);
-        }
-        self.close(TokenKind::RightBrace, opened, "`,` or `}`")?;
-        Ok(names)
+fn check_order(p: &mut Parser<'_>, rank: u8, last: u8) {
+    if rank > last {
+        return;
     }
-
-    fn extends(&mut self) -> Parse<Extends> {
-        self.bump();
-        let base = self.path("the name of a class")?;
-        let modification = self.optional_class_modification(Place::Extends)?;
-        self.annotation()?;
-        Ok(Extends { base, modification })
+    let (word, before) = (p.word(p.token()), p.word(p.previous()));
+    if rank == last {
+        let message = format!("`{word}` cannot follow `{before}`");
+        p.slip(message, "only one of them", format!("leave out `{word}` or `{before}`"));
+    } else {
+        let message = format!("`{word}` stands before `{before}`");
+        p.slip(message, "in the wrong order", format!("write `{word} {before}`"));
     }
+}
 
-    // Prefixes.
+// Components.
 
-    /// `redeclare final inner outer replaceable`, which have this order.
-    fn prefixes(&mut self) -> Prefixes {
-        let mut prefixes = Prefixes::default();
-        let mut last = 0;
-        loop {
-            let (rank, flag) = match self.kind() {
-                TokenKind::Redeclare => (1, &mut prefixes.redeclare),
-                TokenKind::Final => (2, &mut prefixes.final_),
-                TokenKind::Inner => (3, &mut prefixes.inner),
-                TokenKind::Outer => (4, &mut prefixes.outer),
-                TokenKind::Replaceable => (5, &mut prefixes.replaceable),
-                _ => return prefixes,
-            };
-            *flag = true;
-            self.check_order(rank, last);
-            last = rank;
-            self.bump();
-        }
-    }
-
-    /// `flow parameter input` and the like, which have this order.
-    pub(super) fn type_prefix(&mut self) -> TypePrefix {
-        let mut prefix = TypePrefix::default();
-        let mut last = 0;
-        loop {
-            let rank = match self.kind() {
-                TokenKind::Flow | TokenKind::Stream => 1,
-                TokenKind::Discrete | TokenKind::Parameter | TokenKind::Constant => 2,
-                TokenKind::Input | TokenKind::Output => 3,
-                _ => return prefix,
-            };
-            set_prefix(&mut prefix, self.kind());
-            self.check_order(rank, last);
-            last = rank;
-            self.bump();
+fn component_clause(
+    p: &mut Parser<'_>,
+    start: Span,
+    prefixes: Prefixes,
+    protected: bool,
+    elements: &mut Vec<Element>,
+) -> Parse<()> {
+    let prefix = type_prefix(p);
+    check_late_prefix(p);
+    let class = p.path("a type or a keyword such as `parameter`, `model`, `equation`")?;
+    let subscripts = optional_subscripts(p)?;
+    let clause = Clause { start, prefixes, prefix, class, subscripts };
+    let first = elements.len();
+    loop {
+        let start = if elements.len() == first { clause.start } else { p.span() };
+        let component = component(p, &clause)?;
+        let kind = ElementKind::Component(Box::new(component));
+        elements.push(Element { protected, kind, span: p.since(start) });
+        if !p.eat(TokenKind::Comma) {
+            break;
         }
     }
-
-    fn check_order(&mut self, rank: u8, last: u8) {
-        if rank > last {
-            return;
-        }
-        let (word, before) = (self.word(self.token()), self.word(self.previous()));
-        if rank == last {
-            let message = format!("`{word}` cannot follow `{before}`");
-            self.slip(message, "only one of them", format!("leave out `{word}` or `{before}`"));
-        } else {
-            let message = format!("`{word}` stands before `{before}`");
-            self.slip(message, "in the wrong order", format!("write `{word} {before}`"));
-        }
+    if let Some(constraint) = modification::constraint(p)? {
+        let (description, annotation) = modification::comment(p)?;
+        constrain(&mut elements[first..], &constraint, description.as_deref(), annotation.as_ref());
     }
+    Ok(())
+}
 
-    // Components.
-
-    fn component_clause(
-        &mut self,
-        start: Span,
-        prefixes: Prefixes,
-        protected: bool,
-        elements: &mut Vec<Element>,
-    ) -> Parse<()> {
-        let prefix = self.type_prefix();
-        self.check_late_prefix();
-        let class = self.path("a type or a keyword such as `parameter`, `model`, `equation`")?;
-        let subscripts = self.optional_subscripts()?;
-        let clause = Clause { start, prefixes, prefix, class, subscripts };
-        let first = elements.len();
-        loop {
-            let start = if elements.len() == first { clause.start } else { self.span() };
-            let component = self.component(&clause)?;
-            let kind = ElementKind::Component(Box::new(component));
-            elements.push(Element { protected, kind, span: self.since(start) });
-            if !self.eat(TokenKind::Comma) {
-                break;
-            }
-        }
-        if let Some(constraint) = self.constraint()? {
-            let (description, annotation) = self.comment()?;
-            constrain(&mut elements[first..], &constraint, description.as_deref(), annotation.as_ref());
-        }
-        Ok(())
+/// Reports `parameter final Real`, where `final` comes too late.
+fn check_late_prefix(p: &mut Parser<'_>) {
+    use TokenKind::{Final, Inner, Outer, Redeclare, Replaceable};
+    while matches!(p.kind(), Final | Inner | Outer | Redeclare | Replaceable) {
+        let (word, before) = (p.word(p.token()), p.word(p.previous()));
+        let message = format!("`{word}` stands before `{before}`");
+        p.slip(message, "in the wrong order", format!("write `{word} {before}`"));
+        p.bump();
     }
+}
 
-    /// Reports `parameter final Real`, where `final` comes too late.
-    fn check_late_prefix(&mut self) {
-        use TokenKind::{Final, Inner, Outer, Redeclare, Replaceable};
-        while matches!(self.kind(), Final | Inner | Outer | Redeclare | Replaceable) {
-            let (word, before) = (self.word(self.token()), self.word(self.previous()));
-            let message = format!("`{word}` stands before `{before}`");
-            self.slip(message, "in the wrong order", format!("write `{word} {before}`"));
-            self.bump();
-        }
-    }
+fn component(p: &mut Parser<'_>, clause: &Clause) -> Parse<Component> {
+    let name = component_name(p)?;
+    let mut subscripts = optional_subscripts(p)?;
+    subscripts.extend(clause.subscripts.iter().cloned());
+    let modification = modification::modification(p)?;
+    let condition = if p.eat(TokenKind::If) { Some(expr::expression(p)?) } else { None };
+    let (description, annotation) = modification::comment(p)?;
+    Ok(Component {
+        name,
+        prefixes: clause.prefixes,
+        prefix: clause.prefix,
+        class: clause.class.clone(),
+        subscripts,
+        modification,
+        condition,
+        constraint: None,
+        description,
+        annotation,
+    })
+}
 
-    fn component(&mut self, clause: &Clause) -> Parse<Component> {
-        let name = self.component_name()?;
-        let mut subscripts = self.optional_subscripts()?;
-        subscripts.extend(clause.subscripts.iter().cloned());
-        let modification = self.modification()?;
-        let condition = if self.eat(TokenKind::If) { Some(self.expression()?) } else { None };
-        let (description, annotation) = self.comment()?;
-        Ok(Component {
-            name,
-            prefixes: clause.prefixes,
-            prefix: clause.prefix,
-            class: clause.class.clone(),
-            subscripts,
-            modification,
-            condition,
-            constraint: None,
-            description,
-            annotation,
-        })
+fn component_name(p: &mut Parser<'_>) -> Parse<Ident> {
+    if matches!(p.kind(), TokenKind::Equal | TokenKind::LeftParen | TokenKind::Dot) {
+        let help = "equations stand after the keyword `equation`";
+        return Err(p.unexpected_in_item("the name of a component", Some(help)));
     }
+    if p.at(TokenKind::Semicolon) {
+        return Err(p.unexpected_in_item("the name of a component", None));
+    }
+    p.ident("the name of a component")
+}
 
-    fn component_name(&mut self) -> Parse<Ident> {
-        if matches!(self.kind(), TokenKind::Equal | TokenKind::LeftParen | TokenKind::Dot) {
-            let help = "equations stand after the keyword `equation`";
-            return Err(self.unexpected_in_item("the name of a component", Some(help)));
-        }
-        if self.at(TokenKind::Semicolon) {
-            return Err(self.unexpected_in_item("the name of a component", None));
-        }
-        self.ident("the name of a component")
-    }
-
-    /// `[3, :]`, if there.
-    pub(super) fn optional_subscripts(&mut self) -> Parse<Vec<Subscript>> {
-        if self.at(TokenKind::LeftBracket) { self.subscripts() } else { Ok(Vec::new()) }
-    }
+/// `[3, :]`, if there.
+pub(super) fn optional_subscripts(p: &mut Parser<'_>) -> Parse<Vec<Subscript>> {
+    if p.at(TokenKind::LeftBracket) { expr::subscripts(p) } else { Ok(Vec::new()) }
 }
 
 fn set_prefix(prefix: &mut TypePrefix, kind: TokenKind) {

@@ -4,10 +4,10 @@
 //! and arguments catch it, skip to where the next item may begin, and go on.
 
 mod body;
-mod class;
+pub(super) mod class;
 mod element;
 mod equation;
-mod expr;
+pub(super) mod expr;
 mod modification;
 mod operator;
 mod report;
@@ -402,6 +402,6 @@ pub(super) fn whole_path(file: FileId, text: &str) -> Option<Path> {
 /// The whole of a reference such as `a.b[2].c`, or nothing if the text is anything else.
 pub(super) fn whole_reference(file: FileId, text: &str) -> Option<Reference> {
     let mut parser = Parser::new(file, text);
-    let reference = parser.reference("a name").ok()?;
+    let reference = expr::reference(&mut parser, "a name").ok()?;
     (parser.at(TokenKind::Eof) && parser.diagnostics.is_empty()).then_some(reference)
 }

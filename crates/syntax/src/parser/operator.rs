@@ -3,7 +3,7 @@
 //! Operators wait on a stack of the parser's own instead of the call stack, which deep brackets would exhaust.
 
 use super::report::shortened;
-use super::{MAX_HEIGHT, Parse, Parser, Stop};
+use super::{MAX_HEIGHT, Parse, Parser, Stop, expr};
 use crate::ast::{BinaryOp, Expr, ExprKind, UnaryOp};
 use crate::diag::Span;
 use crate::token::TokenKind;
@@ -32,128 +32,126 @@ pub(super) enum Pending {
 /// An operand with the height of its tree.
 pub(super) type Operand = (Expr, u32);
 
-impl Parser<'_> {
-    /// Operands and operators as far as they go.
-    pub(super) fn operators(&mut self) -> Parse<Expr> {
-        let (pending, operands) = (self.pending.len(), self.operands.len());
-        let result = self.operators_above(pending);
-        if result.is_err() {
-            self.pending.truncate(pending);
-            self.operands.truncate(operands);
-        }
-        result
+/// Operands and operators as far as they go.
+pub(super) fn operators(p: &mut Parser<'_>) -> Parse<Expr> {
+    let (pending, operands) = (p.pending.len(), p.operands.len());
+    let result = operators_above(p, pending);
+    if result.is_err() {
+        p.pending.truncate(pending);
+        p.operands.truncate(operands);
     }
+    result
+}
 
-    fn operators_above(&mut self, base: usize) -> Parse<Expr> {
-        loop {
-            self.prefixes_of_operand(base);
-            let operand = self.primary()?;
-            self.operands.push((operand, self.height));
-            let Some((op, strength)) = infix(self.kind()) else { break };
-            self.check_foreign();
-            self.reduce(base, strength)?;
-            self.pending.push(Pending::Infix(op, strength));
-            self.bump();
-        }
-        self.reduce(base, 0)?;
-        let (expr, height) = self.operands.pop().ok_or(Stop)?;
-        self.height = height;
-        Ok(expr)
+fn operators_above(p: &mut Parser<'_>, base: usize) -> Parse<Expr> {
+    loop {
+        prefixes_of_operand(p, base);
+        let operand = expr::primary(p)?;
+        p.operands.push((operand, p.height));
+        let Some((op, strength)) = infix(p.kind()) else { break };
+        check_foreign(p);
+        reduce(p, base, strength)?;
+        p.pending.push(Pending::Infix(op, strength));
+        p.bump();
     }
+    reduce(p, base, 0)?;
+    let (expr, height) = p.operands.pop().ok_or(Stop)?;
+    p.height = height;
+    Ok(expr)
+}
 
-    fn prefixes_of_operand(&mut self, base: usize) {
-        while let Some(op) = prefix(self.kind()) {
-            if self.at(TokenKind::Bang) {
-                self.slip("expected `not`, found `!`", "not a Modelica operator", "write `not`");
-            }
-            let limit = if op == UnaryOp::Not { NOT } else { SUM };
-            let least = self.pending[base..].last().map_or(OR, Pending::least);
-            let after = (least > limit).then(|| self.span_of(self.previous()));
-            self.pending.push(Pending::Prefix { op, sign: self.span(), after });
-            self.bump();
+fn prefixes_of_operand(p: &mut Parser<'_>, base: usize) {
+    while let Some(op) = prefix(p.kind()) {
+        if p.at(TokenKind::Bang) {
+            p.slip("expected `not`, found `!`", "not a Modelica operator", "write `not`");
         }
+        let limit = if op == UnaryOp::Not { NOT } else { SUM };
+        let least = p.pending[base..].last().map_or(OR, Pending::least);
+        let after = (least > limit).then(|| p.span_of(p.previous()));
+        p.pending.push(Pending::Prefix { op, sign: p.span(), after });
+        p.bump();
     }
+}
 
-    /// Completes the waiting operators that bind at least as strongly as the one that comes.
-    fn reduce(&mut self, base: usize, strength: u8) -> Parse<()> {
-        while self.pending.len() > base
-            && let Some(&top) = self.pending.last()
-            && top.strength() >= strength
-        {
-            self.pending.pop();
-            match top {
-                Pending::Prefix { op, sign, after } => self.complete_prefix(op, sign, after)?,
-                Pending::Infix(op, own) => {
-                    if own == strength && matches!(own, RELATION | POWER) {
-                        self.blame_chain();
-                    }
-                    self.complete_infix(op)?;
+/// Completes the waiting operators that bind at least as strongly as the one that comes.
+fn reduce(p: &mut Parser<'_>, base: usize, strength: u8) -> Parse<()> {
+    while p.pending.len() > base
+        && let Some(&top) = p.pending.last()
+        && top.strength() >= strength
+    {
+        p.pending.pop();
+        match top {
+            Pending::Prefix { op, sign, after } => complete_prefix(p, op, sign, after)?,
+            Pending::Infix(op, own) => {
+                if own == strength && matches!(own, RELATION | POWER) {
+                    blame_chain(p);
                 }
+                complete_infix(p, op)?;
             }
         }
-        Ok(())
     }
+    Ok(())
+}
 
-    fn complete_prefix(&mut self, op: UnaryOp, sign: Span, after: Option<Span>) -> Parse<()> {
-        let (operand, height) = self.operands.pop().ok_or(Stop)?;
-        if let Some(after) = after {
-            self.blame_prefix(after, sign, operand.span);
-        }
-        let span = sign.to(operand.span);
-        self.push_operand(ExprKind::Unary(op, Box::new(operand)), span, height)
+fn complete_prefix(p: &mut Parser<'_>, op: UnaryOp, sign: Span, after: Option<Span>) -> Parse<()> {
+    let (operand, height) = p.operands.pop().ok_or(Stop)?;
+    if let Some(after) = after {
+        blame_prefix(p, after, sign, operand.span);
     }
+    let span = sign.to(operand.span);
+    push_operand(p, ExprKind::Unary(op, Box::new(operand)), span, height)
+}
 
-    fn complete_infix(&mut self, op: BinaryOp) -> Parse<()> {
-        let (right, right_height) = self.operands.pop().ok_or(Stop)?;
-        let (left, left_height) = self.operands.pop().ok_or(Stop)?;
-        let span = left.span.to(right.span);
-        let kind = ExprKind::Binary(op, Box::new(left), Box::new(right));
-        self.push_operand(kind, span, left_height.max(right_height))
+fn complete_infix(p: &mut Parser<'_>, op: BinaryOp) -> Parse<()> {
+    let (right, right_height) = p.operands.pop().ok_or(Stop)?;
+    let (left, left_height) = p.operands.pop().ok_or(Stop)?;
+    let span = left.span.to(right.span);
+    let kind = ExprKind::Binary(op, Box::new(left), Box::new(right));
+    push_operand(p, kind, span, left_height.max(right_height))
+}
+
+fn push_operand(p: &mut Parser<'_>, kind: ExprKind, span: Span, height: u32) -> Parse<()> {
+    if height >= MAX_HEIGHT {
+        return Err(p.too_deep(&format!("an expression with more than {MAX_HEIGHT} operators in a row")));
     }
+    p.operands.push((Expr { kind, span }, height + 1));
+    Ok(())
+}
 
-    fn push_operand(&mut self, kind: ExprKind, span: Span, height: u32) -> Parse<()> {
-        if height >= MAX_HEIGHT {
-            return Err(self.too_deep(&format!("an expression with more than {MAX_HEIGHT} operators in a row")));
-        }
-        self.operands.push((Expr { kind, span }, height + 1));
-        Ok(())
+// Slips.
+
+/// Reports an operator of other languages.
+fn check_foreign(p: &mut Parser<'_>) {
+    let right = match p.kind() {
+        TokenKind::AndAnd => "and",
+        TokenKind::OrOr => "or",
+        TokenKind::BangEqual => "<>",
+        TokenKind::StarStar => "^",
+        _ => return,
+    };
+    let message = format!("expected `{right}`, found `{}`", p.word(p.token()));
+    p.slip(message, "not a Modelica operator", format!("write `{right}`"));
+}
+
+/// Reports a second operator of a kind that does not chain.
+fn blame_chain(p: &mut Parser<'_>) {
+    let word = p.word(p.token());
+    if matches!(p.kind(), TokenKind::Caret | TokenKind::DotCaret | TokenKind::StarStar) {
+        let help = "write `(a^b)^c` or `a^(b^c)`";
+        p.slip(format!("a second `{word}` needs brackets"), "no order is defined here", help);
+    } else {
+        let help = "join two comparisons by `and`: `a < b and b < c`";
+        p.slip(format!("a comparison cannot be compared by `{word}`"), "second comparison", help);
     }
+}
 
-    // Slips.
-
-    /// Reports an operator of other languages.
-    fn check_foreign(&mut self) {
-        let right = match self.kind() {
-            TokenKind::AndAnd => "and",
-            TokenKind::OrOr => "or",
-            TokenKind::BangEqual => "<>",
-            TokenKind::StarStar => "^",
-            _ => return,
-        };
-        let message = format!("expected `{right}`, found `{}`", self.word(self.token()));
-        self.slip(message, "not a Modelica operator", format!("write `{right}`"));
-    }
-
-    /// Reports a second operator of a kind that does not chain.
-    fn blame_chain(&mut self) {
-        let word = self.word(self.token());
-        if matches!(self.kind(), TokenKind::Caret | TokenKind::DotCaret | TokenKind::StarStar) {
-            let help = "write `(a^b)^c` or `a^(b^c)`";
-            self.slip(format!("a second `{word}` needs brackets"), "no order is defined here", help);
-        } else {
-            let help = "join two comparisons by `and`: `a < b and b < c`";
-            self.slip(format!("a comparison cannot be compared by `{word}`"), "second comparison", help);
-        }
-    }
-
-    /// Reports a sign or `not` directly after an operator that binds more strongly.
-    fn blame_prefix(&mut self, before: Span, sign: Span, operand: Span) {
-        let words = |from: Span, to: Span| self.text.get(from.start as usize..to.end as usize).unwrap_or("");
-        let (before, sign_word) = (words(before, before), words(sign, sign));
-        let message = format!("`{sign_word}` directly after `{before}` needs brackets");
-        let help = format!("write `{before} ({})`", shortened(words(sign, operand)));
-        self.slip_at(sign, message, "brackets are needed here", help);
-    }
+/// Reports a sign or `not` directly after an operator that binds more strongly.
+fn blame_prefix(p: &mut Parser<'_>, before: Span, sign: Span, operand: Span) {
+    let words = |from: Span, to: Span| p.text.get(from.start as usize..to.end as usize).unwrap_or("");
+    let (before, sign_word) = (words(before, before), words(sign, sign));
+    let message = format!("`{sign_word}` directly after `{before}` needs brackets");
+    let help = format!("write `{before} ({})`", shortened(words(sign, operand)));
+    p.slip_at(sign, message, "brackets are needed here", help);
 }
 
 impl Pending {

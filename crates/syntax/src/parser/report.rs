@@ -1,6 +1,6 @@
 //! The messages of the parser: what was expected, what was found, and the slip it probably is.
 
-use super::{Open, OpenKind, Parse, Parser, Stop};
+use super::{Open, OpenKind, Parse, Parser, Stop, expr};
 use crate::diag::{Code, Diagnostic, Span, nearest};
 use crate::token::{Token, TokenKind};
 
@@ -223,7 +223,7 @@ impl Parser<'_> {
     fn ends_brackets(&self) -> bool {
         use TokenKind as T;
         let closing = matches!(self.kind(), T::Semicolon | T::RightParen | T::RightBracket | T::RightBrace);
-        closing || self.is_boundary() || self.looks_like_equation() || matches!(self.kind(), T::Then | T::Loop)
+        closing || self.is_boundary() || expr::looks_like_equation(self) || matches!(self.kind(), T::Then | T::Loop)
     }
 
     /// Reports a class or block whose `end` is missing at the current token.

@@ -5,7 +5,9 @@ use crate::instance::evaluation::ranges::Extent;
 use crate::instance::lookup::{Builtin, Found, STATE_SELECT, predefined_enumerations};
 use crate::instance::modifiers::{Access, Arg, ArgKind, At, Binding, Reached, extended, indexed};
 use crate::instance::template::{Kind, Template, What};
-use crate::instance::{ClassRef, ElementState, Inherited, Instance, Node, NodeId, ROOT, ScopeId, VarData, View, state};
+use crate::instance::{
+    ClassRef, ComponentBuilder, ElementState, Inherited, Instance, Node, NodeId, ROOT, ScopeId, VarData, View, state,
+};
 use crate::resolve::{ClassId, Library};
 use bramah_expr::types::{StateSelect, Type, Variability};
 use bramah_expr::{Exprs, VarId};
@@ -75,31 +77,32 @@ pub fn instantiate<'a, 'l>(library: &'l mut Library<'a>, request: &ModelRequest)
         given_elements: Vec::new(),
         eval: state::State::default(),
     };
-    instance.build_model(request);
+    instance.builder().build_model(request);
     instance
 }
 
-impl<'a> Instance<'a, '_> {
+impl<'a> ComponentBuilder<'_, 'a, '_> {
     fn build_model(&mut self, request: &ModelRequest) {
-        let class = self.library.class(request.class);
-        let name = self.library.full_name(request.class);
+        let class = self.instance.library.class(request.class);
+        let name = self.instance.library.full_name(request.class);
         let nothing = Rc::new(Template::empty(request.class, ClassKind::Class));
-        self.new_scope(nothing.clone(), String::new(), Rc::from([]), None, class.name.span);
+        self.instance.names().new_scope(nothing.clone(), String::new(), Rc::from([]), None, class.name.span);
         let parent = self.surroundings(request.class);
         // The model's scope is number 1, so that `Instance::root` is known before it is built.
-        let root = self.scopes.len();
+        let root = self.instance.scopes.len();
         if root != 1 {
-            self.root = ScopeId(u32::try_from(root).expect("small"));
+            self.instance.root = ScopeId(u32::try_from(root).expect("small"));
         }
-        self.root = self.new_scope(nothing, String::new(), Rc::from([]), None, class.name.span);
+        self.instance.root =
+            self.instance.names().new_scope(nothing, String::new(), Rc::from([]), None, class.name.span);
         if !self.can_run(class, &name) {
             return;
         }
-        let template = self.template(request.class, parent);
+        let template = self.instance.names().template(request.class, parent);
         let args = self.override_args(request);
         let elements = vec![ElementState::Unknown; template.elements.len()];
-        let root = self.root;
-        let scope = self.scope_mut(root);
+        let root = self.instance.root;
+        let scope = self.instance.scope_mut(root);
         (scope.template, scope.args, scope.elements, scope.component) = (template, args, elements, true);
         self.build_elements(root, 0);
         self.expand_connectors();
@@ -110,23 +113,25 @@ impl<'a> Instance<'a, '_> {
 
     /// A stream belongs to a connector with one flow (MLS 15.1).
     fn check_streams(&mut self) {
-        for i in 0..u32::try_from(self.variables.len()).expect("limited above") {
-            if !self.variables[i as usize].stream || self.stream_flow(i).is_some() {
+        for i in 0..u32::try_from(self.instance.variables.len()).expect("limited above") {
+            if !self.instance.variables[i as usize].stream || self.instance.stream_flow(i).is_some() {
                 continue;
             }
-            let (name, at) = (self.variables[i as usize].name.clone(), self.variables[i as usize].span);
+            let (name, at) =
+                (self.instance.variables[i as usize].name.clone(), self.instance.variables[i as usize].span);
             let d = Diagnostic::new(Code::Restricted, format!("`{name}` is a stream without a flow"));
             let d = d.at(at, "no connector with one `flow` variable around it").instance(name);
-            self.report(d.note("Modelica 3.6, 15.1").help("declare it in a connector that has a `flow` variable"));
+            self.instance
+                .report(d.note("Modelica 3.6, 15.1").help("declare it in a connector that has a `flow` variable"));
         }
     }
 
     /// The view from which a class given by its full name sees its surroundings.
     fn surroundings(&mut self, class: ClassId) -> View {
-        let Some(parent) = self.library.parent(class) else { return ROOT };
+        let Some(parent) = self.instance.library.parent(class) else { return ROOT };
         let around = self.surroundings(parent);
         let found = ClassRef { class: parent, parent: around, args: Rc::from([]) };
-        View { scope: self.package(&found), base: 0 }
+        View { scope: self.instance.names().package(&found), base: 0 }
     }
 
     fn can_run(&mut self, class: &'a ast::Class, name: &str) -> bool {
@@ -140,7 +145,7 @@ impl<'a> Instance<'a, '_> {
             ClassKind::Operator => Some("operator"),
         };
         if let Some(kind) = kind {
-            self.report(
+            self.instance.report(
                 Diagnostic::new(Code::BadModel, format!("`{name}` is a {kind}, not a model"))
                     .at(class.name.span, "only a model or block can be run")
                     .help("name a model with `--model CLASS`"),
@@ -148,7 +153,7 @@ impl<'a> Instance<'a, '_> {
             return false;
         }
         if class.prefixes.partial {
-            self.report(
+            self.instance.report(
                 Diagnostic::new(Code::Partial, format!("`{name}` is partial and cannot be run"))
                     .at(class.name.span, "declared `partial`")
                     .help("run a class that extends it"),
@@ -160,7 +165,7 @@ impl<'a> Instance<'a, '_> {
 
     /// Builds all components of an instance.
     fn build_elements(&mut self, scope: ScopeId, depth: usize) {
-        let template = self.scope(scope).template.clone();
+        let template = self.instance.scope(scope).template.clone();
         self.check_targets(scope, &template);
         if depth > DEEPEST {
             self.too_deep(scope);
@@ -174,10 +179,10 @@ impl<'a> Instance<'a, '_> {
     }
 
     fn too_deep(&mut self, scope: ScopeId) {
-        let s = self.scope(scope);
+        let s = self.instance.scope(scope);
         let (span, class) = (s.span, s.template.class);
-        let class = self.library.full_name(class);
-        self.report(
+        let class = self.instance.library.full_name(class);
+        self.instance.report(
             Diagnostic::new(Code::Recursion, format!("components of `{class}` are nested without end"))
                 .at(span, "this component contains itself")
                 .class(class)
@@ -190,7 +195,7 @@ impl<'a> Instance<'a, '_> {
         if template.broken {
             return;
         }
-        let args = self.scope(scope).args.clone();
+        let args = self.instance.scope(scope).args.clone();
         for arg in args.iter() {
             let name = match arg.kind {
                 ArgKind::Modify(path, _) => path[0],
@@ -203,22 +208,23 @@ impl<'a> Instance<'a, '_> {
                 }
                 continue;
             }
-            let class = self.library.full_name(template.class);
+            let class = self.instance.library.full_name(template.class);
             let names: Vec<Symbol> = template.elements.iter().filter(|e| !e.protected).map(|e| e.name).collect();
-            let reported = self.diagnostics.iter().any(|d| d.labels.first().is_some_and(|l| l.span == name.span));
+            let reported =
+                self.instance.diagnostics.iter().any(|d| d.labels.first().is_some_and(|l| l.span == name.span));
             if !reported {
-                self.unknown_modifier(name, &class, &names);
+                self.instance.unknown_modifier(name, &class, &names);
             }
         }
     }
 
     /// A component cannot change what its class keeps to itself; a class that extends it can (MLS 4.1, 7.2).
     fn protected_modifier(&mut self, name: ast::Ident, template: &Template<'a>) {
-        if self.diagnostics.iter().any(|d| d.labels.first().is_some_and(|l| l.span == name.span)) {
+        if self.instance.diagnostics.iter().any(|d| d.labels.first().is_some_and(|l| l.span == name.span)) {
             return;
         }
-        let class = self.library.full_name(template.class);
-        self.report(
+        let class = self.instance.library.full_name(template.class);
+        self.instance.report(
             Diagnostic::new(Code::UnknownModifier, format!("`{}` of `{class}` is protected", name.name))
                 .at(name.span, "cannot be modified from outside")
                 .class(class)
@@ -232,26 +238,26 @@ impl<'a> Instance<'a, '_> {
     }
 
     fn component_at(&mut self, scope: ScopeId, index: u32, depth: usize) -> Option<NodeId> {
-        match &self.scope(scope).elements[index as usize] {
+        match &self.instance.scope(scope).elements[index as usize] {
             ElementState::Node(node) => return Some(*node),
             ElementState::Unknown => {}
             ElementState::Busy | ElementState::Absent | ElementState::Class(_) => return None,
         }
-        self.scope_mut(scope).elements[index as usize] = ElementState::Busy;
-        let mark = self.diagnostics.len();
+        self.instance.scope_mut(scope).elements[index as usize] = ElementState::Busy;
+        let mark = self.instance.diagnostics.len();
         let node = self.build_component(scope, index, depth);
-        if scope == self.root && self.diagnostics.len() > mark {
-            let element = &self.scope(scope).template.elements[index as usize];
+        if scope == self.instance.root && self.instance.diagnostics.len() > mark {
+            let element = &self.instance.scope(scope).template.elements[index as usize];
             let (name, span) = (element.name.as_str().to_owned(), element.span);
-            self.point_at(mark, &name, span);
+            self.instance.point_at(mark, &name, span);
         }
         let state = node.map_or(ElementState::Absent, ElementState::Node);
-        self.scope_mut(scope).elements[index as usize] = state;
+        self.instance.scope_mut(scope).elements[index as usize] = state;
         node
     }
 
     fn build_component(&mut self, scope: ScopeId, index: u32, depth: usize) -> Option<NodeId> {
-        let template = self.scope(scope).template.clone();
+        let template = self.instance.scope(scope).template.clone();
         let element = &template.elements[index as usize];
         let Kind::Component(declared) = element.kind else { return None };
         let own = View { scope, base: element.base };
@@ -259,9 +265,9 @@ impl<'a> Instance<'a, '_> {
             self.check_outer_unmodified(scope, declared);
             return self.outer_component(scope, declared, own);
         }
-        let reached = self.reached(scope, index);
+        let reached = self.instance.names().reached(scope, index);
         if let Some(condition) = &declared.condition
-            && !self.constant_boolean(condition, own)?
+            && !self.instance.evaluator().constant_boolean(condition, own)?
         {
             return None;
         }
@@ -269,13 +275,13 @@ impl<'a> Instance<'a, '_> {
             Some((ArgKind::Component(c), view, ..)) => (c, view),
             _ => (declared, own),
         };
-        let found = self.class_at(view, &component.class)?;
+        let found = self.instance.names().class_at(view, &component.class)?;
         #[cfg(feature = "fmi")]
         let found = self.with_unit(found, &reached.args, declared.name.span)?;
         self.check_redeclaration(declared, own, component, &found);
         self.check_chain(declared, own, &reached.redeclarations, &found);
         let plan = Plan {
-            name: joined(&self.scope(scope).name, element.name),
+            name: joined(&self.instance.scope(scope).name, element.name),
             scope,
             index: Some(index),
             declared,
@@ -296,7 +302,7 @@ impl<'a> Instance<'a, '_> {
         component: &ast::Component,
         declared: &ast::Component,
     ) -> Inherited {
-        let outer = self.scope(scope).prefix;
+        let outer = self.instance.scope(scope).prefix;
         let prefix = if component.prefix.variability.is_some() { component.prefix } else { declared.prefix };
         let stricter = match (outer.variability, prefix.variability) {
             (Some(a), Some(b)) => Some(a.min(b)),
@@ -330,25 +336,26 @@ impl<'a> Instance<'a, '_> {
             let before = own.and_then(|name| own_size(s, name)).and_then(|k| dims.get(k.checked_sub(1)?));
             let extent = match s {
                 Subscript::Expr(_) if before.is_some() => before.copied()?,
-                Subscript::Expr(e) => self.extent(e, view)?,
+                Subscript::Expr(e) => self.instance.evaluator().extent(e, view)?,
                 Subscript::All(span) => {
                     let Some(b) = binding else {
-                        self.report(
+                        self.instance.report(
                             Diagnostic::new(Code::NoValue, "the size `:` needs a value to be taken from")
                                 .at(*span, "no binding gives this size")
                                 .help("write a size, or bind the array to a value"),
                         );
                         return None;
                     };
-                    let known = if b.access.is_empty() { self.shape(b.expr, b.view) } else { None };
+                    let known =
+                        if b.access.is_empty() { self.instance.evaluator().shape(b.expr, b.view) } else { None };
                     let sizes = match known {
                         Some(sizes) => sizes,
-                        None => self.binding_value(b, true)?.dims().to_vec(),
+                        None => self.instance.evaluator().binding_value(b, true)?.dims().to_vec(),
                     };
                     match sizes.get(skip + i) {
                         Some(&size) => Extent { size, by: Type::Integer },
                         None => {
-                            self.report(
+                            self.instance.report(
                                 Diagnostic::new(Code::SizeMismatch, "the value has fewer dimensions than the array")
                                     .at(b.expr.span, "this value")
                                     .at(*span, "should give this size"),
@@ -374,7 +381,7 @@ impl<'a> Instance<'a, '_> {
         let mut all = dims.to_vec();
         let template = match found {
             Found::Class(class) => {
-                let t = self.template(class.class, class.parent);
+                let t = self.instance.names().template(class.class, class.parent);
                 for (subscripts, base) in t.dims.iter().rev() {
                     let view = t.bases[*base as usize].parent;
                     all.extend(self.dimensions(None, subscripts, view, reached.binding.as_ref(), dims.len())?);
@@ -384,8 +391,8 @@ impl<'a> Instance<'a, '_> {
             _ => None,
         };
         let count = all.iter().try_fold(1usize, |n, d| n.checked_mul(d.size));
-        if count.is_none_or(|n| n + self.variables.len() > MOST_VARIABLES) {
-            self.report(
+        if count.is_none_or(|n| n + self.instance.variables.len() > MOST_VARIABLES) {
+            self.instance.report(
                 Diagnostic::new(
                     Code::TooLarge,
                     format!("`{}` would have more than {MOST_VARIABLES} elements", plan.name),
@@ -441,7 +448,11 @@ impl<'a> Instance<'a, '_> {
             let own = &index[declared..];
             elements.push(self.build_one(plan, (&name, own), found, template, args, part)?);
         }
-        Some(self.add_node(Node::Array { dims, by: extents.iter().map(|e| e.by).collect(), elements: elements.into() }))
+        Some(self.instance.add_node(Node::Array {
+            dims,
+            by: extents.iter().map(|e| e.by).collect(),
+            elements: elements.into(),
+        }))
     }
 
     fn build_one(
@@ -493,23 +504,24 @@ impl<'a> Instance<'a, '_> {
             return None;
         }
         self.check_prefixes(plan.declared, template);
-        let owner = self.scope(plan.scope).template.kind;
+        let owner = self.instance.scope(plan.scope).template.kind;
         if matches!((owner, template.kind), (ClassKind::Block, ClassKind::Connector { .. })) && !plan.prefix.hidden {
             self.check_block_port(plan.declared, template);
         }
-        let scope = self.new_scope(template.clone(), name.to_string(), args, Some(plan.scope), plan.span);
+        let scope =
+            self.instance.names().new_scope(template.clone(), name.to_string(), args, Some(plan.scope), plan.span);
         let mut prefix = plan.prefix;
         prefix.causality = plan.prefix.causality.or(template.prefix.causality);
         prefix.nested = prefix.nested || !matches!(template.kind, ClassKind::Connector { .. });
         // a connector may be a record, as `connector ComplexOutput = output Complex` is
         let record = template.bases.iter().any(|b| matches!(b.ast.kind, ClassKind::Record { .. }));
-        let s = self.scope_mut(scope);
+        let s = self.instance.scope_mut(scope);
         (s.prefix, s.component) = (prefix, true);
         match part.binding {
             Some(b) if record => s.binding = Some(b),
             Some(b) => {
-                let class = self.library.full_name(template.class);
-                self.report(
+                let class = self.instance.library.full_name(template.class);
+                self.instance.report(
                     Diagnostic::new(Code::TypeMismatch, format!("`{name}` is a component and cannot have a value"))
                         .at(b.expr.span, format!("`{class}` is not a type with values"))
                         .help("modify its elements in brackets instead"),
@@ -517,10 +529,10 @@ impl<'a> Instance<'a, '_> {
             }
             None => {}
         }
-        let node = self.add_node(Node::Object(scope));
+        let node = self.instance.add_node(Node::Object(scope));
         if let Some(index) = plan.index.filter(|_| name == plan.name) {
             // a modifier may ask for sizes of the component that it modifies: its elements are built when asked for
-            self.scope_mut(plan.scope).elements[index as usize] = ElementState::Node(node);
+            self.instance.scope_mut(plan.scope).elements[index as usize] = ElementState::Node(node);
         }
         self.build_elements(scope, plan.depth + 1);
         Some(node)
@@ -528,7 +540,7 @@ impl<'a> Instance<'a, '_> {
 
     fn can_be_component(&mut self, plan: &Plan<'a>, template: &Template<'a>) -> bool {
         let ast = template.bases[0].ast;
-        let class = || self.library.full_name(template.class);
+        let class = || self.instance.library.full_name(template.class);
         let d = match template.kind {
             ClassKind::Package => Diagnostic::new(Code::WrongClassKind, format!("`{}` is a package", class())),
             ClassKind::Function { .. } => Diagnostic::new(Code::WrongClassKind, format!("`{}` is a function", class())),
@@ -538,7 +550,7 @@ impl<'a> Instance<'a, '_> {
             }
             _ => return true,
         };
-        self.report(d.at(plan.span, format!("`{}` is declared here", plan.name)).instance(plan.name.clone()));
+        self.instance.report(d.at(plan.span, format!("`{}` is declared here", plan.name)).instance(plan.name.clone()));
         false
     }
 
@@ -568,12 +580,12 @@ impl<'a> Instance<'a, '_> {
         };
         let mut attributes = self.attributes(args.iter().chain(chain), builtin);
         let mut binding = part.binding;
-        if !self.given_elements.is_empty() {
+        if !self.instance.given_elements.is_empty() {
             if variability <= Variability::Parameter && !plan.prefix.hidden {
                 let given = self.given_element(name);
                 if given.is_some() && part.final_ {
                     let d = Diagnostic::new(Code::BadSet, format!("`{name}` is final and cannot be set"));
-                    self.report(d.at(plan.span, "declared here").help("set what it is made of"));
+                    self.instance.report(d.at(plan.span, "declared here").help("set what it is made of"));
                 }
                 binding = given.or(binding);
             }
@@ -608,11 +620,11 @@ impl<'a> Instance<'a, '_> {
             busy: false,
             id: VarId(u32::MAX),
         };
-        self.variables.push(data);
-        let index = u32::try_from(self.variables.len() - 1).expect("limited above");
+        self.instance.variables.push(data);
+        let index = u32::try_from(self.instance.variables.len() - 1).expect("limited above");
         let state_select = self.state_select(index);
-        self.variables[index as usize].state_select = state_select;
-        self.add_node(Node::Var(index))
+        self.instance.variables[index as usize].state_select = state_select;
+        self.instance.add_node(Node::Var(index))
     }
 
     fn attributes<'x>(
@@ -628,13 +640,13 @@ impl<'a> Instance<'a, '_> {
             let ArgKind::Modify(path, modification) = arg.kind else { continue };
             let attribute = path[0].name;
             if !attributes_of(builtin).contains(&attribute.as_str()) || path.len() > 1 {
-                self.unknown_attribute(attribute, path[0].span, builtin);
+                self.instance.unknown_attribute(attribute, path[0].span, builtin);
                 continue;
             }
             let Some(expr) = modification.and_then(|m| m.value.as_ref()) else { continue };
             if let Some((_, given)) = attributes.iter().find(|(a, _)| *a == attribute) {
                 let outer = given.expr.span;
-                self.check_final(arg.final_, Some(outer), arg.span, attribute);
+                self.instance.names().check_final(arg.final_, Some(outer), arg.span, attribute);
                 continue;
             }
             let binding = Binding { expr, view: arg.view, access: arg.access.clone(), final_: arg.final_ };
@@ -644,11 +656,11 @@ impl<'a> Instance<'a, '_> {
     }
 
     fn state_select(&mut self, i: u32) -> StateSelect {
-        let attributes = &self.variables[i as usize].attributes;
+        let attributes = &self.instance.variables[i as usize].attributes;
         let Some((name, b)) = attributes.iter().find(|(n, _)| *n == "stateSelect").cloned() else {
             return StateSelect::Default;
         };
-        match self.known_attribute(i, name, &b, Type::Enumeration(STATE_SELECT)) {
+        match self.instance.parameters().known_attribute(i, name, &b, Type::Enumeration(STATE_SELECT)) {
             Some(1.0) => StateSelect::Never,
             Some(2.0) => StateSelect::Avoid,
             Some(4.0) => StateSelect::Prefer,

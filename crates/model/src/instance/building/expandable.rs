@@ -6,7 +6,7 @@ use crate::instance::deduce::Body;
 use crate::instance::lookup::{Builtin, Found};
 use crate::instance::modifiers::Reached;
 use crate::instance::template::{Element, Kind};
-use crate::instance::{ClassRef, ElementState, Inherited, Instance, Node, NodeId, ScopeId, View};
+use crate::instance::{ClassRef, ComponentBuilder, ElementState, Inherited, Node, NodeId, ScopeId, View};
 use bramah_expr::types::Type;
 use bramah_syntax::ast::{self, ClassBody, Equation, EquationKind, Expr, ExprKind};
 use bramah_syntax::symbol::Symbol;
@@ -25,24 +25,24 @@ enum Side {
     Port(NodeId),
 }
 
-impl<'a> Instance<'a, '_> {
+impl<'a> ComponentBuilder<'_, 'a, '_> {
     /// Gives all buses the members that connections ask for.
     pub(in crate::instance) fn expand_connectors(&mut self) {
-        if !self.scopes.iter().any(|s| s.component && s.template.is_expandable()) {
+        if !self.instance.scopes.iter().any(|s| s.component && s.template.is_expandable()) {
             return;
         }
         for _ in 0..ROUNDS {
-            let before = self.nodes.len();
-            let scopes = (0u32..).zip(&self.scopes).filter(|(_, s)| s.component).map(|(i, _)| ScopeId(i));
+            let before = self.instance.nodes.len();
+            let scopes = (0u32..).zip(&self.instance.scopes).filter(|(_, s)| s.component).map(|(i, _)| ScopeId(i));
             for scope in scopes.collect::<Vec<_>>() {
-                let template = self.scope(scope).template.clone();
+                let template = self.instance.scope(scope).template.clone();
                 for (base, i) in template.bases.iter().zip(0u32..) {
                     if let ClassBody::Long(body) = &base.ast.body {
                         self.expand_by(&body.equations, View { scope, base: i });
                     }
                 }
             }
-            if self.nodes.len() == before {
+            if self.instance.nodes.len() == before {
                 return;
             }
         }
@@ -57,13 +57,15 @@ impl<'a> Instance<'a, '_> {
                     }
                 }
                 EquationKind::For { iterators, body } => {
-                    self.for_each(iterators, Body::Equations(body), view, &mut |s| s.expand_by(body, view));
+                    self.instance
+                        .statements()
+                        .for_each(iterators, Body::Equations(body), view, &mut |s| s.builder().expand_by(body, view));
                 }
                 EquationKind::If { branches, otherwise } => {
-                    let mark = self.diagnostics.len();
+                    let mark = self.instance.diagnostics.len();
                     let mut chosen = Some(otherwise.as_slice());
                     for (condition, body) in branches {
-                        match self.constant_boolean(condition, view) {
+                        match self.instance.evaluator().constant_boolean(condition, view) {
                             Some(true) => chosen = Some(body),
                             Some(false) => continue,
                             None => chosen = None,
@@ -71,7 +73,7 @@ impl<'a> Instance<'a, '_> {
                         break;
                     }
                     // what cannot be told before the run has no connections, or its message comes with the network
-                    self.diagnostics.truncate(mark);
+                    self.instance.diagnostics.truncate(mark);
                     if let Some(body) = chosen {
                         self.expand_by(body, view);
                     }
@@ -84,13 +86,15 @@ impl<'a> Instance<'a, '_> {
     /// What a side of a connection names; `None` where the network has to say what is wrong, or nothing is there.
     fn side(&mut self, e: &'a Expr, view: View) -> Option<Side> {
         let ExprKind::Reference(r) = &e.kind else { return None };
-        let Found::Component(scope, index) = self.lookup(view, r.parts[0].name.name)? else { return None };
+        let Found::Component(scope, index) = self.instance.names().lookup(view, r.parts[0].name.name)? else {
+            return None;
+        };
         let mut node = self.component(scope, index)?;
         let last = r.parts.len() - 1;
         for (i, part) in r.parts.iter().enumerate() {
             if i > 0 {
-                let Node::Object(s) = *self.node(node) else { return None };
-                let template = self.scope(s).template.clone();
+                let Node::Object(s) = *self.instance.node(node) else { return None };
+                let template = self.instance.scope(s).template.clone();
                 match template.by_name.get(&part.name.name) {
                     Some(&k) => node = self.component(s, k)?,
                     None if template.is_expandable() && i == last && part.subscripts.is_empty() => {
@@ -100,14 +104,14 @@ impl<'a> Instance<'a, '_> {
                 }
             }
             if !part.subscripts.is_empty() {
-                let at = self.selection(node);
-                let picked = self.subscript_selection(&at, part, view, r.span)?.ok()?;
+                let at = self.instance.evaluator().selection(node);
+                let picked = self.instance.evaluator().subscript_selection(&at, part, view, r.span)?.ok()?;
                 let [one] = picked.nodes[..] else { return None };
                 node = one;
             }
         }
-        match self.node(node) {
-            Node::Object(s) if self.scope(*s).template.is_expandable() => Some(Side::Bus(*s)),
+        match self.instance.node(node) {
+            Node::Object(s) if self.instance.scope(*s).template.is_expandable() => Some(Side::Bus(*s)),
             _ => Some(Side::Port(node)),
         }
     }
@@ -125,9 +129,9 @@ impl<'a> Instance<'a, '_> {
             }
             (Side::Bus(x), Side::Bus(y)) => {
                 for (from, to) in [(*x, *y), (*y, *x)] {
-                    let template = self.scope(from).template.clone();
+                    let template = self.instance.scope(from).template.clone();
                     for (i, element) in (0u32..).zip(&template.elements) {
-                        let known = self.scope(to).template.by_name.contains_key(&element.name);
+                        let known = self.instance.scope(to).template.by_name.contains_key(&element.name);
                         if !known && let Some(node) = self.component(from, i) {
                             self.add_member(to, element.name, node);
                         }
@@ -139,14 +143,14 @@ impl<'a> Instance<'a, '_> {
     }
 
     fn node_of(&self, scope: ScopeId) -> Option<NodeId> {
-        let at = self.nodes.iter().position(|n| matches!(n, Node::Object(s) if *s == scope))?;
+        let at = self.instance.nodes.iter().position(|n| matches!(n, Node::Object(s) if *s == scope))?;
         Some(NodeId(u32::try_from(at).expect("fewer than 2^32 components")))
     }
 
     /// A new member of a bus, like the port that is connected to it, but with no direction of its own.
     fn add_member(&mut self, bus: ScopeId, name: Symbol, like: NodeId) {
         let Some((declared, found, dims)) = self.declaration_of(like) else { return };
-        let around = self.scope(bus);
+        let around = self.instance.scope(bus);
         let full = if around.name.is_empty() { name.as_str().to_owned() } else { format!("{}.{name}", around.name) };
         let (span, hidden) = (around.span, around.prefix.hidden);
         let plan = Plan {
@@ -160,7 +164,7 @@ impl<'a> Instance<'a, '_> {
         };
         let Some(node) = self.build_like(&plan, &found, &dims) else { return };
         self.take_attributes(node, like);
-        let mut template = (*self.scope(bus).template).clone();
+        let mut template = (*self.instance.scope(bus).template).clone();
         let index = u32::try_from(template.elements.len()).expect("fewer than 2^32 elements");
         template.by_name.insert(name, index);
         template.bases[0].names.insert(name);
@@ -172,20 +176,20 @@ impl<'a> Instance<'a, '_> {
             protected: false,
             span,
         });
-        let s = self.scope_mut(bus);
+        let s = self.instance.scope_mut(bus);
         s.template = Rc::new(template);
         s.elements.push(ElementState::Node(node));
     }
 
     /// The declaration, class and sizes of a port.
     fn declaration_of(&mut self, node: NodeId) -> Option<(&'a ast::Component, Found<'a>, Vec<usize>)> {
-        let (dims, one) = match self.node(node) {
+        let (dims, one) = match self.instance.node(node) {
             Node::Array { dims, elements, .. } => (dims.clone(), *elements.first()?),
             _ => (Vec::new(), node),
         };
-        let (owner, name, found) = match self.node(one) {
+        let (owner, name, found) = match self.instance.node(one) {
             Node::Var(i) => {
-                let data = &self.variables[*i as usize];
+                let data = &self.instance.variables[*i as usize];
                 let builtin = match data.ty {
                     Type::Real => Builtin::Real,
                     Type::Integer => Builtin::Integer,
@@ -195,7 +199,7 @@ impl<'a> Instance<'a, '_> {
                 (data.scope, data.name.clone(), Found::Builtin(builtin))
             }
             Node::Object(s) => {
-                let s = self.scope(*s);
+                let s = self.instance.scope(*s);
                 let base = &s.template.bases[0];
                 let class = ClassRef { class: base.class, parent: base.parent, args: s.args.clone() };
                 (s.owner?, s.name.clone(), Found::Class(class))
@@ -204,7 +208,7 @@ impl<'a> Instance<'a, '_> {
         };
         let last = name.rsplit('.').next().unwrap_or(&name);
         let last = Symbol::new(last.split('[').next().unwrap_or(last));
-        let template = &self.scope(owner).template;
+        let template = &self.instance.scope(owner).template;
         let Kind::Component(declared) = template.elements[*template.by_name.get(&last)? as usize].kind else {
             return None;
         };
@@ -219,10 +223,10 @@ impl<'a> Instance<'a, '_> {
 
     /// Units and bounds of the port hold for the member, too.
     fn take_attributes(&mut self, to: NodeId, from: NodeId) {
-        match (self.node(to).clone(), self.node(from).clone()) {
+        match (self.instance.node(to).clone(), self.instance.node(from).clone()) {
             (Node::Var(a), Node::Var(b)) => {
-                self.variables[a as usize].attributes = self.variables[b as usize].attributes.clone();
-                self.variables[a as usize].causality = None;
+                self.instance.variables[a as usize].attributes = self.instance.variables[b as usize].attributes.clone();
+                self.instance.variables[a as usize].causality = None;
             }
             (Node::Array { elements: a, .. }, Node::Array { elements: b, .. }) => {
                 for (a, b) in a.iter().zip(b.iter()) {

@@ -2,14 +2,14 @@
 
 use crate::instance::building::components::ModelRequest;
 use crate::instance::modifiers::{Access, Arg, Binding};
-use crate::instance::{Instance, VarData, View};
+use crate::instance::{ComponentBuilder, VarData, View};
 use bramah_expr::types::Variability;
 use bramah_syntax::ast::{self};
 use bramah_syntax::diag::FileId;
 use bramah_syntax::diag::{Code, Diagnostic, nearest};
 use std::rc::Rc;
 
-impl<'a> Instance<'a, '_> {
+impl<'a> ComponentBuilder<'_, 'a, '_> {
     /// Values from outside become one modification of the model, in a text of their own that messages can show.
     pub(in crate::instance) fn override_args(&mut self, request: &ModelRequest) -> Rc<[Arg<'a>]> {
         if request.overrides.is_empty() {
@@ -18,32 +18,32 @@ impl<'a> Instance<'a, '_> {
         let (whole, elements): (Vec<&Override>, Vec<&Override>) =
             request.overrides.iter().partition(|o| element_name(&o.name).is_none());
         let list: Vec<String> = whole.iter().map(|o| format!("{} = {}", o.name, override_text(&o.value))).collect();
-        self.eval.texts = request.overrides.iter().map(|o| (o.name.clone(), o.value.clone())).collect();
+        self.instance.eval.texts = request.overrides.iter().map(|o| (o.name.clone(), o.value.clone())).collect();
         // A modification names whole arrays: values for single elements stand beside it until their variables are built.
         let beside: Vec<String> =
             (1..).zip(&elements).map(|(k, o)| format!("  Real element_{k} = {};\n", override_text(&o.value))).collect();
         let list = if list.is_empty() { String::new() } else { format!("(\n    {}\n  )", list.join(",\n    ")) };
         let text = format!("model Set\n  extends Model{list};\n{}end Set;\n", beside.concat());
-        let before = self.library.diagnostics.len();
-        let own = self.library.own.len();
-        let ids = self.library.add_text(GIVEN, &text);
-        self.library.own.truncate(own);
-        let bad = self.library.diagnostics.split_off(before);
-        self.eval.override_file = ids.first().map(|&id| self.library.class(id).name.span.file);
+        let before = self.instance.library.diagnostics.len();
+        let own = self.instance.library.own.len();
+        let ids = self.instance.library.add_text(GIVEN, &text);
+        self.instance.library.own.truncate(own);
+        let bad = self.instance.library.diagnostics.split_off(before);
+        self.instance.eval.override_file = ids.first().map(|&id| self.instance.library.class(id).name.span.file);
         if !bad.is_empty() {
             let names: Vec<_> = request.overrides.iter().map(|o| format!("`{}={}`", o.name, o.value)).collect();
-            self.report(
+            self.instance.report(
                 Diagnostic::new(Code::BadSet, format!("cannot read {}", names.join(", "))).help(
                     "a value is NAME=VALUE with a dotted name and a Modelica expression, or a number with a unit",
                 ),
             );
             return Rc::from([]);
         }
-        let Some(ast::ClassBody::Long(body)) = ids.first().map(|&id| &self.library.class(id).body) else {
+        let Some(ast::ClassBody::Long(body)) = ids.first().map(|&id| &self.instance.library.class(id).body) else {
             return Rc::from([]);
         };
         let Some(ast::ElementKind::Extends(e)) = body.elements.first().map(|e| &e.kind) else { return Rc::from([]) };
-        let view = View { scope: self.root, base: 0 };
+        let view = View { scope: self.instance.root, base: 0 };
         let none: Rc<[Access]> = Rc::from([]);
         let values = body.elements[1..].iter().filter_map(|e| match &e.kind {
             ast::ElementKind::Component(c) => c.modification.as_ref()?.value.as_ref(),
@@ -51,9 +51,9 @@ impl<'a> Instance<'a, '_> {
         });
         for (o, expr) in elements.iter().zip(values) {
             let name = element_name(&o.name).unwrap_or_default();
-            self.eval.texts.insert(name.clone(), o.value.clone());
+            self.instance.eval.texts.insert(name.clone(), o.value.clone());
             let binding = Binding { expr, view, access: none.clone(), final_: false };
-            self.given_elements.push(GivenElement { name, binding, met: false });
+            self.instance.given_elements.push(GivenElement { name, binding, met: false });
         }
         let arguments = e.modification.iter().flat_map(|m| &m.arguments);
         arguments.filter_map(|a| Arg::new(a, view, &none, true)).collect()
@@ -62,7 +62,7 @@ impl<'a> Instance<'a, '_> {
     /// The value given from outside for one element of an array.
     pub(in crate::instance) fn given_element(&mut self, name: &str) -> Option<Binding<'a>> {
         let mut found = None;
-        for given in self.given_elements.iter_mut().filter(|g| g.name == name) {
+        for given in self.instance.given_elements.iter_mut().filter(|g| g.name == name) {
             given.met = true;
             found = Some(given.binding.clone());
         }
@@ -71,35 +71,38 @@ impl<'a> Instance<'a, '_> {
 
     /// Every value given for an element must have met one.
     pub(in crate::instance) fn elements_not_met(&mut self) {
-        let open: Vec<String> = self.given_elements.iter().filter(|g| !g.met).map(|g| g.name.clone()).collect();
-        if self.diagnostics.iter().any(Diagnostic::is_error) {
+        let open: Vec<String> =
+            self.instance.given_elements.iter().filter(|g| !g.met).map(|g| g.name.clone()).collect();
+        if self.instance.diagnostics.iter().any(Diagnostic::is_error) {
             // what was not built could not meet anything
             return;
         }
         for name in open {
-            if self.variables.iter().any(|v| v.name == name) {
+            if self.instance.variables.iter().any(|v| v.name == name) {
                 let d = Diagnostic::new(Code::BadSet, format!("`{name}` is no parameter that can be set"));
                 let help = format!("it varies during runs: its start value is `{name}.start`");
-                self.report(d.note("it was given from outside").help(help));
+                self.instance.report(d.note("it was given from outside").help(help));
                 continue;
             }
             let array = name.rsplit_once('[').map_or("", |(array, _)| array);
             let known = |i: &&VarData<'_>| i.variability <= Variability::Parameter && !i.hidden;
             let of_array = |v: &&VarData<'_>| v.name.rsplit_once('[').is_some_and(|(a, _)| a == array);
-            let mut elements = self.variables.iter().filter(known).filter(of_array).map(|v| v.name.as_str());
+            let mut elements = self.instance.variables.iter().filter(known).filter(of_array).map(|v| v.name.as_str());
             let help = match (elements.next(), elements.next_back()) {
                 (Some(first), Some(last)) => format!("its elements are `{first}` to `{last}`"),
                 (Some(only), None) => format!("its only element is `{only}`"),
-                (None, _) if self.variables.iter().any(|v| v.name == array) => {
+                (None, _) if self.instance.variables.iter().any(|v| v.name == array) => {
                     format!("`{array}` is no array: `{array}=VALUE` sets it")
                 }
-                (None, _) => match nearest(&name, self.variables.iter().filter(known).map(|v| v.name.as_str())) {
-                    Some(near) => format!("did you mean `{near}`?"),
-                    None => "`bramah check FILE --emit flat` lists all parameters".to_string(),
-                },
+                (None, _) => {
+                    match nearest(&name, self.instance.variables.iter().filter(known).map(|v| v.name.as_str())) {
+                        Some(near) => format!("did you mean `{near}`?"),
+                        None => "`bramah check FILE --emit flat` lists all parameters".to_string(),
+                    }
+                }
             };
             let text = format!("the model has no parameter `{name}`");
-            self.report(Diagnostic::new(Code::BadSet, text).note("it was given from outside").help(help));
+            self.instance.report(Diagnostic::new(Code::BadSet, text).note("it was given from outside").help(help));
         }
     }
 }

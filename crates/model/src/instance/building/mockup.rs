@@ -4,7 +4,7 @@ use crate::instance::files::Place;
 use crate::instance::lookup::Found;
 use crate::instance::modifiers::{Arg, ArgKind};
 use crate::instance::value::Val;
-use crate::instance::{ClassRef, Instance};
+use crate::instance::{ClassRef, ComponentBuilder, Instance};
 use crate::resolve::ClassId;
 use bramah_external::mockup::MockUp;
 use bramah_external::{Given, Object};
@@ -22,7 +22,7 @@ pub(in crate::instance) struct Opened {
     class: ClassId,
 }
 
-impl<'a> Instance<'a, '_> {
+impl<'a> ComponentBuilder<'_, 'a, '_> {
     /// What a component's class is: for one of `FMU` that of its unit.
     pub(in crate::instance) fn with_unit(
         &mut self,
@@ -39,14 +39,15 @@ impl<'a> Instance<'a, '_> {
     }
 
     fn stands_for_units(&self, class: ClassId) -> bool {
-        let name = self.library.class(class).name;
-        name.name.as_str() == NAME && self.library.sources.get(name.span.file).path == FILE
+        let name = self.instance.library.class(class).name;
+        name.name.as_str() == NAME && self.instance.library.sources.get(name.span.file).path == FILE
     }
 
     fn class_of_unit(&mut self, found: &ClassRef<'a>, args: &[Arg<'a>], declared: Span) -> Option<ClassRef<'a>> {
         let Some((file, at)) = self.text_given(args, "file")? else {
             let d = Diagnostic::new(Code::NoValue, "a component of class `FMU` needs the file of its unit");
-            self.report(d.at(declared, "declared here").help("name it: `FMU controller(file = \"controller.fmu\")`"));
+            self.instance
+                .report(d.at(declared, "declared here").help("name it: `FMU controller(file = \"controller.fmu\")`"));
             return None;
         };
         let kind = self.text_given(args, "kind")?.map_or_else(|| "auto".to_owned(), |(kind, _)| kind);
@@ -61,24 +62,24 @@ impl<'a> Instance<'a, '_> {
             _ => None,
         };
         let Some((expr, view)): Option<(&'a Expr, _)> = args.iter().find_map(value) else { return Some(None) };
-        let value = self.constant(expr, view)?;
-        match value.as_text(&self.exprs) {
+        let value = self.instance.evaluator().constant(expr, view)?;
+        match value.as_text(&self.instance.exprs) {
             Some(text) => Some(Some((text, expr.span))),
-            None => self.wrong_type("a text that is known before the run", &value, expr.span),
+            None => self.instance.evaluator().wrong_type("a text that is known before the run", &value, expr.span),
         }
     }
 
     /// A unit by the name of its file and its kind, read and loaded at its first use.
     pub(in crate::instance) fn opened(&mut self, file: &str, kind: &str, at: Span) -> Option<&Opened> {
         let key = (file.to_owned(), kind.to_owned());
-        if !self.units.contains_key(&key) {
-            let bytes = match self.library.bytes(file) {
+        if !self.instance.units.contains_key(&key) {
+            let bytes = match self.instance.library.bytes(file) {
                 Ok(bytes) => bytes,
                 Err(why) => {
                     let d = Diagnostic::new(Code::FileAccess, format!("cannot read `{file}`: {why}"));
                     let help =
                         "a relative path begins at the folder of the model's file, or else where the command runs";
-                    self.report(d.at(at, "the unit is named here").help(help));
+                    self.instance.report(d.at(at, "the unit is named here").help(help));
                     return None;
                 }
             };
@@ -86,20 +87,20 @@ impl<'a> Instance<'a, '_> {
                 Ok(unit) => Arc::new(unit),
                 Err(why) => {
                     let d = Diagnostic::new(Code::BadMockUp, format!("the unit `{file}` cannot be used: {why}"));
-                    self.report(d.at(at, "the unit is named here"));
+                    self.instance.report(d.at(at, "the unit is named here"));
                     return None;
                 }
             };
-            let class = self.library.generated(file, &unit.class())?;
-            self.units.insert(key.clone(), Opened { unit, class });
+            let class = self.instance.library.generated(file, &unit.class())?;
+            self.instance.units.insert(key.clone(), Opened { unit, class });
         }
-        self.units.get(&key)
+        self.instance.units.get(&key)
     }
 
     /// The object behind the equations of a component: its unit with the values of its texts.
     pub(in crate::instance) fn mock_up(&mut self, given: &[Given], place: Place) -> Option<Val> {
         let [Given::Text(file), Given::Text(kind), Given::Text(texts)] = given else {
-            return self.fail(Code::NotConstant, "texts of a unit must be known before the run", place.call);
+            return self.instance.fail(Code::NotConstant, "texts of a unit must be known before the run", place.call);
         };
         let unit = self.opened(file, kind, place.call)?.unit.clone();
         Some(Val::Object(Object::MockUp(Arc::new(unit.pool(texts)))))

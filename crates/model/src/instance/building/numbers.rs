@@ -1,32 +1,34 @@
 //! Numbers of variables in the flat model, in declaration order.
 
 use crate::instance::template::Kind;
-use crate::instance::{ElementState, Instance, Node, NodeId, ScopeId};
+use crate::instance::{ComponentBuilder, ElementState, Node, NodeId, ScopeId};
 use bramah_expr::VarId;
 
-impl<'a> Instance<'a, '_> {
+impl<'a> ComponentBuilder<'_, 'a, '_> {
     /// Gives every variable its number: declaration order, depth first.
     pub(in crate::instance) fn number_variables(&mut self) {
-        let mut order = Vec::with_capacity(self.variables.len());
-        self.number_scope(self.root, &mut order);
-        for i in 0..u32::try_from(self.variables.len()).expect("limited above") {
+        let mut order = Vec::with_capacity(self.instance.variables.len());
+        self.number_scope(self.instance.root, &mut order);
+        for i in 0..u32::try_from(self.instance.variables.len()).expect("limited above") {
             // Automatic `inner` components come last; constants of packages stand by their values.
-            if self.variables[i as usize].id.0 == u32::MAX && self.is_in_model(self.variables[i as usize].scope) {
+            if self.instance.variables[i as usize].id.0 == u32::MAX
+                && self.is_in_model(self.instance.variables[i as usize].scope)
+            {
                 self.number_variable(i, &mut order);
             }
         }
-        self.order = order;
+        self.instance.order = order;
     }
 
     pub(in crate::instance) fn is_in_model(&self, mut scope: ScopeId) -> bool {
-        while let Some(owner) = self.scope(scope).owner {
+        while let Some(owner) = self.instance.scope(scope).owner {
             scope = owner;
         }
-        scope == self.root
+        scope == self.instance.root
     }
 
     pub(in crate::instance) fn number_variable(&mut self, i: u32, order: &mut Vec<u32>) {
-        let data = &mut self.variables[i as usize];
+        let data = &mut self.instance.variables[i as usize];
         if data.id.0 == u32::MAX && !data.string && !data.object {
             data.id = VarId(u32::try_from(order.len()).expect("limited above"));
             order.push(i);
@@ -34,8 +36,8 @@ impl<'a> Instance<'a, '_> {
     }
 
     pub(in crate::instance) fn number_scope(&mut self, scope: ScopeId, order: &mut Vec<u32>) {
-        for i in 0..self.scope(scope).elements.len() {
-            let s = self.scope(scope);
+        for i in 0..self.instance.scope(scope).elements.len() {
+            let s = self.instance.scope(scope);
             let outer = matches!(s.template.elements[i].kind, Kind::Component(c) if c.prefixes.outer);
             if let (ElementState::Node(node), false) = (&s.elements[i], outer) {
                 self.number_node(*node, order);
@@ -44,7 +46,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     pub(in crate::instance) fn number_node(&mut self, node: NodeId, order: &mut Vec<u32>) {
-        match self.node(node) {
+        match self.instance.node(node) {
             Node::Var(i) => self.number_variable(*i, order),
             Node::Object(scope) => self.number_scope(*scope, order),
             Node::Array { elements, .. } => {

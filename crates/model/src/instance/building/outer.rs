@@ -4,14 +4,14 @@ use crate::instance::building::components::Plan;
 use crate::instance::lookup::{Builtin, Found};
 use crate::instance::modifiers::Reached;
 use crate::instance::template::Kind;
-use crate::instance::{Inherited, Instance, Node, NodeId, ScopeId, View};
+use crate::instance::{ComponentBuilder, Inherited, Node, NodeId, ScopeId, View};
 use crate::resolve::ClassId;
 use bramah_expr::types::Type;
 use bramah_syntax::ast::{self};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 use bramah_syntax::symbol::Symbol;
 
-impl<'a> Instance<'a, '_> {
+impl<'a> ComponentBuilder<'_, 'a, '_> {
     pub(in crate::instance) fn outer_component(
         &mut self,
         scope: ScopeId,
@@ -19,31 +19,31 @@ impl<'a> Instance<'a, '_> {
         view: View,
     ) -> Option<NodeId> {
         let name = declared.name.name;
-        if let Some(node) = self.inner_of(scope, name) {
+        if let Some(node) = self.instance.names().inner_of(scope, name) {
             return self.fits_outer(node, declared, view).then_some(node);
         }
-        let found = self.class_at(view, &declared.class)?;
+        let found = self.instance.names().class_at(view, &declared.class)?;
         let no_inner = |instance: String, help: String| {
             Diagnostic::new(Code::NoInner, format!("`outer {name}` finds no `inner {name}`"))
                 .at(declared.name.span, "needs an `inner` component of this name further up")
                 .instance(instance)
                 .help(help)
         };
-        let instance = self.scope(scope).name.clone();
+        let instance = self.instance.scope(scope).name.clone();
         let Found::Class(class) = &found else {
             let ty = declared.class.dotted();
-            self.report(no_inner(instance, format!("add `inner {ty} {name} = ...;` to the model")));
+            self.instance.report(no_inner(instance, format!("add `inner {ty} {name} = ...;` to the model")));
             return None;
         };
-        let full = self.library.full_name(class.class);
-        if self.library.class(class.class).prefixes.partial {
+        let full = self.instance.library.full_name(class.class);
+        if self.instance.library.class(class.class).prefixes.partial {
             let help = format!("add `inner SomeClass {name};` to the model, with a class that extends `{full}`");
-            self.report(no_inner(instance, help));
+            self.instance.report(no_inner(instance, help));
             return None;
         }
         if let Some(meant) = self.meant_as_inner(scope, name, class.class) {
-            if self.diagnostics.iter().all(|d| d.message != meant.message) {
-                self.report(meant);
+            if self.instance.diagnostics.iter().all(|d| d.message != meant.message) {
+                self.instance.report(meant);
             }
             return None;
         }
@@ -51,11 +51,11 @@ impl<'a> Instance<'a, '_> {
             .at(declared.name.span, format!("`outer {name}` has no `inner` above it"))
             .help(format!("write `inner {full} {name};` in the model to choose its parameters"));
         let first = self.first_element_of_model();
-        self.report(match first {
+        self.instance.report(match first {
             Some(place) => made.fix(place, format!("inner {full} {name};\n  ")),
             None => made,
         });
-        let root = self.root;
+        let root = self.instance.root;
         let plan = Plan {
             name: name.as_str().to_string(),
             scope: root,
@@ -66,21 +66,21 @@ impl<'a> Instance<'a, '_> {
             depth: 0,
         };
         let node = self.build_shaped(&plan, &found, &[], Reached::default())?;
-        self.inner_declared.insert((root, name), node);
+        self.instance.inner_declared.insert((root, name), node);
         Some(node)
     }
 
     /// A component further up that was meant for an `outer` one and is not found by it, because it is not `inner` or has
     /// another name: all would go on with a default that was added instead.
     fn meant_as_inner(&mut self, scope: ScopeId, name: Symbol, wanted: ClassId) -> Option<Diagnostic> {
-        let mut at = self.scope(scope).owner;
+        let mut at = self.instance.scope(scope).owner;
         while let Some(owner) = at {
-            let template = self.scope(owner).template.clone();
+            let template = self.instance.scope(owner).template.clone();
             for element in &template.elements {
                 let Kind::Component(c) = element.kind else { continue };
                 let view = View { scope: owner, base: element.base };
-                let Ok(Found::Class(class)) = self.lookup_path(view, &c.class) else { continue };
-                let template = self.template(class.class, class.parent);
+                let Ok(Found::Class(class)) = self.instance.names().lookup_path(view, &c.class) else { continue };
+                let template = self.instance.names().template(class.class, class.parent);
                 if c.prefixes.outer || template.bases.iter().all(|b| b.class != wanted) {
                     continue;
                 }
@@ -95,14 +95,14 @@ impl<'a> Instance<'a, '_> {
                 let made = made.note(format!("with a default `{name}` in its place nothing would use its parameters"));
                 return Some(made.help(format!("write `inner {ty} {name}`")));
             }
-            at = self.scope(owner).owner;
+            at = self.instance.scope(owner).owner;
         }
         None
     }
 
     /// An empty place before the first element of the model.
     fn first_element_of_model(&self) -> Option<Span> {
-        let class = self.library.class(self.scope(self.root).template.class);
+        let class = self.instance.library.class(self.instance.scope(self.instance.root).template.class);
         let first = crate::resolve::names::body(class)?.elements.first()?.span;
         Some(Span { end: first.start, ..first })
     }
@@ -110,10 +110,10 @@ impl<'a> Instance<'a, '_> {
     /// An `outer` element is somebody else's and cannot be modified (MLS 5.4).
     pub(in crate::instance) fn check_outer_unmodified(&mut self, scope: ScopeId, declared: &'a ast::Component) {
         let name = declared.name.name;
-        let given = self.scope(scope).args.iter().find(|a| a.target() == name).map(|a| a.span);
+        let given = self.instance.scope(scope).args.iter().find(|a| a.target() == name).map(|a| a.span);
         let own = declared.modification.as_ref().and_then(|m| m.value.as_ref()).map(|e| e.span);
         let Some(at) = given.or(own) else { return };
-        self.report(
+        self.instance.report(
             Diagnostic::new(Code::UnknownModifier, format!("`outer {name}` cannot be modified"))
                 .at(at, "modified here")
                 .at(declared.name.span, "it means a component declared elsewhere")
@@ -131,18 +131,18 @@ impl<'a> Instance<'a, '_> {
     ) -> bool {
         let Some(dims) = self.dimensions(None, &declared.subscripts, view, None, 0) else { return false };
         let dims: Vec<usize> = dims.iter().map(|d| d.size).collect();
-        let (have, first) = match self.node(node) {
+        let (have, first) = match self.instance.node(node) {
             Node::Array { dims, elements, .. } => (dims.clone(), elements.first().copied()),
             _ => (Vec::new(), Some(node)),
         };
-        let Some(Node::Var(i)) = first.map(|n| self.node(n).clone()) else { return true };
-        let found = self.lookup_path(view, &declared.class).ok();
+        let Some(Node::Var(i)) = first.map(|n| self.instance.node(n).clone()) else { return true };
+        let found = self.instance.names().lookup_path(view, &declared.class).ok();
         let builtin = match &found {
             Some(Found::Builtin(b)) => Some(*b),
-            Some(Found::Class(c)) => self.template(c.class, c.parent).builtin,
+            Some(Found::Class(c)) => self.instance.names().template(c.class, c.parent).builtin,
             _ => None,
         };
-        let data = &self.variables[i as usize];
+        let data = &self.instance.variables[i as usize];
         let same_type = match builtin {
             Some(Builtin::Real) => data.ty == Type::Real,
             Some(Builtin::Integer) => data.ty == Type::Integer,
@@ -150,7 +150,7 @@ impl<'a> Instance<'a, '_> {
             Some(Builtin::Enumeration(e)) => data.ty == Type::Enumeration(e),
             _ => true,
         };
-        let shaped = matches!(&found, Some(Found::Class(c)) if !self.template(c.class, c.parent).dims.is_empty());
+        let shaped = matches!(&found, Some(Found::Class(c)) if !self.instance.names().template(c.class, c.parent).dims.is_empty());
         if same_type && (shaped || have == dims) {
             return true;
         }
@@ -160,8 +160,8 @@ impl<'a> Instance<'a, '_> {
         } else {
             format!("`inner {name}` and `outer {name}` are of different types")
         };
-        let at = self.variables[i as usize].span;
-        self.report(
+        let at = self.instance.variables[i as usize].span;
+        self.instance.report(
             Diagnostic::new(Code::NoInner, what)
                 .at(declared.name.span, "needed here")
                 .at(at, "declared here")
@@ -172,22 +172,24 @@ impl<'a> Instance<'a, '_> {
 
     /// Whether an `inner` component has what the class of the `outer` one promises (MLS 5.4).
     pub(in crate::instance) fn fits_outer(&mut self, node: NodeId, declared: &'a ast::Component, view: View) -> bool {
-        let Node::Object(inner) = *self.node(node) else { return self.fits_outer_shape(node, declared, view) };
+        let Node::Object(inner) = *self.instance.node(node) else { return self.fits_outer_shape(node, declared, view) };
         let key = (node, std::ptr::from_ref(declared));
-        if let Some(&known) = self.outer_checked.get(&key) {
+        if let Some(&known) = self.instance.outer_checked.get(&key) {
             return known;
         }
         let mut fits = true;
-        if let Ok(Found::Class(want)) = self.lookup_path(view, &declared.class) {
-            let (want, have) = (self.template(want.class, want.parent), self.scope(inner).template.clone());
+        if let Ok(Found::Class(want)) = self.instance.names().lookup_path(view, &declared.class) {
+            let (want, have) =
+                (self.instance.names().template(want.class, want.parent), self.instance.scope(inner).template.clone());
             let missing = want.elements.iter().find(|e| !e.protected && !have.by_name.contains_key(&e.name));
             if let Some(missing) = missing.filter(|_| !want.broken && !have.broken) {
                 fits = false;
                 let name = declared.name.name;
-                let (want, have) = (self.library.full_name(want.class), self.library.full_name(have.class));
+                let (want, have) =
+                    (self.instance.library.full_name(want.class), self.instance.library.full_name(have.class));
                 let message = format!("`inner {name}` is a `{have}`, but `outer {name}` needs a `{want}`");
-                let at = self.scope(inner).span;
-                self.report(
+                let at = self.instance.scope(inner).span;
+                self.instance.report(
                     Diagnostic::new(Code::NoInner, message)
                         .at(at, format!("`{have}` has no `{}`", missing.name))
                         .at(declared.name.span, "needed here")
@@ -195,7 +197,7 @@ impl<'a> Instance<'a, '_> {
                 );
             }
         }
-        self.outer_checked.insert(key, fits);
+        self.instance.outer_checked.insert(key, fits);
         fits
     }
 }

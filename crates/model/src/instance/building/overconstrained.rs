@@ -6,7 +6,7 @@ use crate::instance::call::Callee;
 use crate::instance::lookup::Found;
 use crate::instance::template::{Kind, Template};
 use crate::instance::value::Val;
-use crate::instance::{ClassRef, ElementState, Instance, Node, NodeId, View};
+use crate::instance::{ClassRef, ComponentBuilder, ElementState, Node, NodeId, View};
 use bramah_expr::types::Type;
 use bramah_expr::{ExprId, Exprs};
 use bramah_syntax::ast::{self, Expr, ExprKind};
@@ -49,7 +49,7 @@ impl Default for Overconstrained<'_> {
     }
 }
 
-impl<'a> Instance<'a, '_> {
+impl<'a> ComponentBuilder<'_, 'a, '_> {
     /// Remembers a component of a type with a constraint, or all of an array of such records.
     pub(in crate::instance) fn note_constraints(
         &mut self,
@@ -58,7 +58,7 @@ impl<'a> Instance<'a, '_> {
         found: &Found<'a>,
         template: &Template<'a>,
     ) {
-        let at = template.by_name.get(&self.overconstrained.name);
+        let at = template.by_name.get(&self.instance.overconstrained.name);
         if !at.is_some_and(|&i| matches!(template.elements[i as usize].kind, Kind::Class(_))) {
             return;
         }
@@ -66,28 +66,28 @@ impl<'a> Instance<'a, '_> {
             Found::Class(class) => template.builtin.map(|_| class.clone()),
             _ => None,
         };
-        let nodes = match self.node(node) {
+        let nodes = match self.instance.node(node) {
             Node::Array { elements, .. } if !one => elements.to_vec(),
             _ => vec![node],
         };
         for node in nodes {
-            self.overconstrained.nodes.insert(node, class.clone());
+            self.instance.overconstrained.nodes.insert(node, class.clone());
         }
     }
 
     /// Whether a component is overconstrained.
     pub fn is_overconstrained(&self, node: NodeId) -> bool {
-        self.overconstrained.nodes.contains_key(&node)
+        self.instance.overconstrained.nodes.contains_key(&node)
     }
 
     /// The constraint function of a component.
     fn constraint_of(&mut self, node: NodeId) -> Option<ClassRef<'a>> {
-        let name = self.overconstrained.name;
-        let found = match *self.node(node) {
-            Node::Object(scope) => self.lookup(View { scope, base: 0 }, name),
+        let name = self.instance.overconstrained.name;
+        let found = match *self.instance.node(node) {
+            Node::Object(scope) => self.instance.names().lookup(View { scope, base: 0 }, name),
             _ => {
-                let class = self.overconstrained.nodes.get(&node)?.clone()?;
-                self.member(&Found::Class(class), name)
+                let class = self.instance.overconstrained.nodes.get(&node)?.clone()?;
+                self.instance.names().member(&Found::Class(class), name)
             }
         };
         match found {
@@ -99,13 +99,16 @@ impl<'a> Instance<'a, '_> {
     /// What holds where two overconstrained components are equal; `None` after a message.
     pub fn constraint_residue(&mut self, a: NodeId, b: NodeId, span: Span) -> Option<Residue> {
         let function = self.constraint_of(a)?;
-        let values = vec![self.node_value(a, span)?, self.node_value(b, span)?];
-        let template = self.template(function.class, function.parent);
-        let name = self.library.full_name(function.class);
-        let callee = Callee { scope: self.package(&function), template, name };
-        let mark = self.eval.calls.len();
-        let value = self.in_mode(|m| m.keep_asserts = true, |s| s.call_function(&callee, values, Vec::new(), span));
-        let asserts = self.eval.calls.split_off(mark);
+        let values =
+            vec![self.instance.evaluator().node_value(a, span)?, self.instance.evaluator().node_value(b, span)?];
+        let template = self.instance.names().template(function.class, function.parent);
+        let name = self.instance.library.full_name(function.class);
+        let callee = Callee { scope: self.instance.names().package(&function), template, name };
+        let mark = self.instance.eval.calls.len();
+        let value = self
+            .instance
+            .in_mode(|m| m.keep_asserts = true, |s| s.calls().call_function(&callee, values, Vec::new(), span));
+        let asserts = self.instance.eval.calls.split_off(mark);
         let mut values = Vec::new();
         value?.scalars(&mut values);
         Some(Residue { values, asserts })
@@ -114,8 +117,8 @@ impl<'a> Instance<'a, '_> {
     /// The number of equations that equality of two such components means: the size of the function's output.
     fn constraint_size(&mut self, node: NodeId) -> Option<usize> {
         let function = self.constraint_of(node)?;
-        let template = self.template(function.class, function.parent);
-        let scope = self.package(&function);
+        let template = self.instance.names().template(function.class, function.parent);
+        let scope = self.instance.names().package(&function);
         let output = template.elements.iter().find_map(|e| match e.kind {
             Kind::Component(c) if c.prefix.causality == Some(ast::Causality::Output) => Some((c, e.base)),
             _ => None,
@@ -124,7 +127,7 @@ impl<'a> Instance<'a, '_> {
         let mut size = 1;
         for s in &output.subscripts {
             let ast::Subscript::Expr(e) = s else { return None };
-            size *= self.dimension(e, View { scope, base })?;
+            size *= self.instance.evaluator().dimension(e, View { scope, base })?;
         }
         Some(size)
     }
@@ -132,8 +135,8 @@ impl<'a> Instance<'a, '_> {
     /// The variables of all overconstrained components, each with the size of their constraint.
     pub fn constraint_sizes(&mut self) -> Vec<(Vec<u32>, usize)> {
         let mut found = Vec::new();
-        for k in 0..self.overconstrained.nodes.len() {
-            let (&node, _) = self.overconstrained.nodes.get_index(k).expect("counted");
+        for k in 0..self.instance.overconstrained.nodes.len() {
+            let (&node, _) = self.instance.overconstrained.nodes.get_index(k).expect("counted");
             let mut variables = Vec::new();
             self.variables_of(node, &mut variables);
             let size = self.constraint_size(node).unwrap_or(variables.len());
@@ -143,11 +146,11 @@ impl<'a> Instance<'a, '_> {
     }
 
     fn variables_of(&self, node: NodeId, found: &mut Vec<u32>) {
-        match self.node(node) {
+        match self.instance.node(node) {
             Node::Var(i) => found.push(*i),
             Node::Array { elements, .. } => elements.iter().for_each(|&e| self.variables_of(e, found)),
             Node::Object(s) => {
-                for e in &self.scope(*s).elements {
+                for e in &self.instance.scope(*s).elements {
                     if let ElementState::Node(n) = e {
                         self.variables_of(*n, found);
                     }
@@ -165,10 +168,10 @@ impl<'a> Instance<'a, '_> {
         span: Span,
     ) -> Option<Val> {
         let [arg] = args else {
-            return self.fail(Code::BadCall, &format!("`{name}` takes one overconstrained component"), span);
+            return self.instance.fail(Code::BadCall, &format!("`{name}` takes one overconstrained component"), span);
         };
         let node = self.overconstrained_node(arg, view)?;
-        let found = &self.overconstrained;
+        let found = &self.instance.overconstrained;
         let holds = if name == "isRoot" { found.roots.contains(&node) } else { found.rooted.contains(&node) };
         Some(Val::Scalar(if holds { Exprs::ONE } else { Exprs::ZERO }, Type::Boolean))
     }
@@ -176,12 +179,14 @@ impl<'a> Instance<'a, '_> {
     /// The overconstrained component that an argument names, or a message.
     pub fn overconstrained_node(&mut self, e: &'a Expr, view: View) -> Option<NodeId> {
         let node = match &e.kind {
-            ExprKind::Reference(r) => self.named_node(r, view).filter(|&n| self.is_overconstrained(n)),
+            ExprKind::Reference(r) => {
+                self.instance.evaluator().named_node(r, view).filter(|&n| self.is_overconstrained(n))
+            }
             _ => None,
         };
         if node.is_some() {
             return node;
         }
-        self.fail(Code::BadConnect, "this is no component of a type with an `equalityConstraint`", e.span)
+        self.instance.fail(Code::BadConnect, "this is no component of a type with an `equalityConstraint`", e.span)
     }
 }

@@ -2,11 +2,11 @@
 
 use crate::instance::lookup::Found;
 use crate::instance::modifiers::ArgKind;
-use crate::instance::{Instance, View};
+use crate::instance::{ComponentBuilder, View};
 use bramah_syntax::ast::{self};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 
-impl<'a> Instance<'a, '_> {
+impl<'a> ComponentBuilder<'_, 'a, '_> {
     /// A redeclared component must be of a class that fits the constraining one: here, it must offer its elements.
     pub(in crate::instance) fn check_redeclaration(
         &mut self,
@@ -22,7 +22,7 @@ impl<'a> Instance<'a, '_> {
             return;
         }
         if !declared.prefixes.replaceable {
-            self.report(
+            self.instance.report(
                 Diagnostic::new(Code::BadRedeclare, format!("`{}` is not replaceable", declared.name.name))
                     .at(component.name.span, "redeclared here")
                     .at(declared.name.span, "declared without `replaceable`")
@@ -31,7 +31,7 @@ impl<'a> Instance<'a, '_> {
             return;
         }
         if declared.prefix.variability == Some(ast::Variability::Constant) {
-            self.report(
+            self.instance.report(
                 Diagnostic::new(
                     Code::BadRedeclare,
                     format!("`{}` is constant and cannot be redeclared", declared.name.name),
@@ -44,7 +44,7 @@ impl<'a> Instance<'a, '_> {
             return;
         }
         let path = declared.constraint.as_ref().map_or(&declared.class, |c| &c.path);
-        let Ok(constraint) = self.lookup_path(own, path) else { return };
+        let Ok(constraint) = self.instance.names().lookup_path(own, path) else { return };
         self.check_subtype(&constraint, found, component.name.span, path.span);
     }
 
@@ -68,7 +68,7 @@ impl<'a> Instance<'a, '_> {
         for (k, &(step, view)) in steps.iter().enumerate() {
             if k > 0 && !step.prefixes.replaceable && !std::ptr::eq(step, declared) {
                 let outer = steps[k - 1].0;
-                self.report(
+                self.instance.report(
                     Diagnostic::new(Code::BadRedeclare, format!("`{}` is not replaceable any more", step.name.name))
                         .at(outer.name.span, "redeclared again here")
                         .at(step.name.span, "redeclared without `replaceable`")
@@ -78,15 +78,15 @@ impl<'a> Instance<'a, '_> {
                 return;
             }
             let Some(constraint) = &step.constraint else { continue };
-            let Ok(promised) = self.lookup_path(view, &constraint.path) else { continue };
+            let Ok(promised) = self.instance.names().lookup_path(view, &constraint.path) else { continue };
             let at = step.name.span;
             // what stands here itself, and what takes its place in the end
-            let own_class = self.lookup_path(view, &step.class).ok();
+            let own_class = self.instance.names().lookup_path(view, &step.class).ok();
             let fits = own_class.is_none_or(|c| self.check_subtype(&promised, &c, at, constraint.path.span))
                 && self.check_subtype(&promised, found, steps[0].0.name.span, constraint.path.span);
             let before = steps.get(k + 1).and_then(|(s, v)| {
                 let path = s.constraint.as_ref().map_or(&s.class, |c| &c.path);
-                Some((self.lookup_path(*v, path).ok()?, path.span))
+                Some((self.instance.names().lookup_path(*v, path).ok()?, path.span))
             });
             let keeps = before.is_none_or(|(wider, span)| !fits || self.check_subtype(&wider, &promised, at, span));
             if !fits || !keeps {
@@ -104,15 +104,15 @@ impl<'a> Instance<'a, '_> {
         constrained: Span,
     ) -> bool {
         let (Found::Class(want), Found::Class(have)) = (constraint, found) else { return true };
-        let want = self.template(want.class, want.parent);
-        let have = self.template(have.class, have.parent);
+        let want = self.instance.names().template(want.class, want.parent);
+        let have = self.instance.names().template(have.class, have.parent);
         if have.broken || want.broken {
             return true;
         }
         let missing = want.elements.iter().find(|e| !e.protected && !have.by_name.contains_key(&e.name));
         let Some(missing) = missing else { return true };
-        let (want, have) = (self.library.full_name(want.class), self.library.full_name(have.class));
-        self.report(
+        let (want, have) = (self.instance.library.full_name(want.class), self.instance.library.full_name(have.class));
+        self.instance.report(
             Diagnostic::new(Code::BadRedeclare, format!("`{have}` cannot take the place of `{want}`"))
                 .at(at, format!("`{have}` has no `{}`", missing.name))
                 .at(constrained, format!("`{want}` is required here"))

@@ -1,7 +1,7 @@
 //! What a class may hold and extend by its kind, and what may stand where in it (MLS 4.6, 7.1.3, 11): read off the text of
 //! each class once, when it is first used.
 
-use crate::instance::Instance;
+use crate::instance::ComponentBuilder;
 use crate::instance::lookup::Builtin;
 use crate::resolve::ClassId;
 use bramah_syntax::ast::{
@@ -23,13 +23,13 @@ fn breach(what: impl Into<String>, at: Span, label: impl Into<String>, rule: &'s
     Breach { what: what.into(), at, label: label.into(), rule }
 }
 
-impl<'a> Instance<'a, '_> {
+impl<'a> ComponentBuilder<'_, 'a, '_> {
     /// Refuses what the kind of a class does not allow in it.
     pub(in crate::instance) fn check_class(&mut self, class: ClassId) {
-        if !self.classes_checked.insert(class) {
+        if !self.instance.classes_checked.insert(class) {
             return;
         }
-        let ast = self.library.class(class);
+        let ast = self.instance.library.class(class);
         let mut found = Vec::new();
         names(ast, &mut found);
         match &ast.body {
@@ -52,6 +52,7 @@ impl<'a> Instance<'a, '_> {
 
     fn refuse(&mut self, b: Breach, class: Option<ClassId>) {
         if self
+            .instance
             .diagnostics
             .iter()
             .any(|d| d.code == Code::Restricted && d.labels.first().is_some_and(|l| l.span == b.at))
@@ -61,14 +62,14 @@ impl<'a> Instance<'a, '_> {
         let mut d =
             Diagnostic::new(Code::Restricted, b.what).at(b.at, b.label).note(format!("Modelica 3.6, {}", b.rule));
         if let Some(class) = class {
-            d = d.class(self.library.full_name(class));
+            d = d.class(self.instance.library.full_name(class));
         }
-        self.report(d);
+        self.instance.report(d);
     }
 
     /// A class of one kind may extend only some others (MLS 7.1.3).
     pub(in crate::instance) fn check_base(&mut self, class: ClassId, base: ClassId, at: Span) {
-        let (derived, base_class) = (self.library.class(class), self.library.class(base));
+        let (derived, base_class) = (self.instance.library.class(class), self.instance.library.class(base));
         if base_class.prefixes.replaceable
             && !base_class.prefixes.redeclare
             && !matches!(derived.body, ClassBody::Short { .. })
@@ -86,7 +87,7 @@ impl<'a> Instance<'a, '_> {
 
     /// Only types and connectors extend a predefined type.
     pub(in crate::instance) fn check_builtin_base(&mut self, class: ClassId, base: Builtin, at: Span) {
-        let kind = self.library.class(class).kind;
+        let kind = self.instance.library.class(class).kind;
         let fine =
             matches!(kind, ClassKind::Type | ClassKind::Connector { .. } | ClassKind::Class) || base == Builtin::Object;
         if !fine {

@@ -4,13 +4,13 @@ use crate::instance::call::{Callee, Formal};
 use crate::instance::lookup::{Builtin, Found};
 use crate::instance::template::Kind;
 use crate::instance::value::Val;
-use crate::instance::{ClassRef, Instance, View};
+use crate::instance::{ClassRef, FunctionCalls, Instance, View};
 use bramah_expr::types::Type;
 use bramah_syntax::ast::{self, Causality, ClassKind, Ident};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 use bramah_syntax::symbol::Symbol;
 
-impl<'a> Instance<'a, '_> {
+impl<'a> FunctionCalls<'_, 'a, '_> {
     /// Components of a function or record that pass a test.
     pub(in crate::instance) fn formals(
         &self,
@@ -34,10 +34,10 @@ impl<'a> Instance<'a, '_> {
         positional: Vec<Val>,
         named: Vec<(Ident, Val)>,
         span: Span,
-        f: impl FnOnce(&mut Self) -> Option<T>,
+        f: impl FnOnce(&mut Instance<'a, '_>) -> Option<T>,
     ) -> Option<T> {
         let inputs = self.formals(callee, is_input);
-        self.in_frame(|s| s.bind(callee, &inputs, positional, named, span).and_then(|()| f(s)))
+        self.instance.in_frame(|s| s.calls().bind(callee, &inputs, positional, named, span).and_then(|()| f(s)))
     }
 
     /// Binds arguments to inputs in a fresh frame; defaults may use inputs before them.
@@ -52,7 +52,7 @@ impl<'a> Instance<'a, '_> {
         if positional.len() > formals.len() {
             let message =
                 format!("`{}` takes {} arguments, and {} are given", callee.name, formals.len(), positional.len());
-            return self.fail(Code::BadCall, &message, span);
+            return self.instance.fail(Code::BadCall, &message, span);
         }
         if let Some((name, _)) = named.iter().find(|(n, _)| formals.iter().all(|f| f.name != n.name)) {
             let names: Vec<Symbol> = formals.iter().map(|f| f.name).collect();
@@ -62,7 +62,7 @@ impl<'a> Instance<'a, '_> {
                 Some(near) => d.meant(near),
                 None => d.help(crate::instance::errors::list_names("it takes", &names)),
             };
-            self.report(d);
+            self.instance.report(d);
             return None;
         }
         let mut positional = positional.into_iter();
@@ -80,32 +80,32 @@ impl<'a> Instance<'a, '_> {
                         let d = Diagnostic::new(Code::BadCall, message)
                             .at(span, "this call")
                             .at(f.component.name.span, "declared here without a default");
-                        self.report(d);
+                        self.instance.report(d);
                         return None;
                     }
                 },
             };
             let place = match given_here {
                 true => span,
-                false => self.reached(f.view.scope, f.index).binding.map_or(span, |b| b.expr.span),
+                false => self.instance.names().reached(f.view.scope, f.index).binding.map_or(span, |b| b.expr.span),
             };
             self.check_bounds(callee, f, &value, place);
-            self.eval.locals.push((f.name, value));
+            self.instance.eval.locals.push((f.name, value));
         }
         Some(())
     }
 
     /// A number given to an input must lie within the bounds of its declaration; reported once however often it is called.
     pub(in crate::instance) fn check_bounds(&mut self, callee: &Callee<'a>, f: &Formal<'a>, value: &Val, span: Span) {
-        let Some(x) = value.as_number(&self.exprs) else { return };
+        let Some(x) = value.as_number(&self.instance.exprs) else { return };
         let bound = match (declared_number(f.component, "min"), declared_number(f.component, "max")) {
             (Some(low), _) if x < low => format!("less than its `min`, {low}"),
             (_, Some(high)) if x > high => format!("more than its `max`, {high}"),
             _ => return,
         };
         let message = format!("the input `{}` of `{}` is {x}, {bound}", f.name, callee.name);
-        if self.diagnostics.iter().all(|d| d.message != message) {
-            self.report(
+        if self.instance.diagnostics.iter().all(|d| d.message != message) {
+            self.instance.report(
                 Diagnostic::new(Code::OutOfRange, message)
                     .at(span, "this value")
                     .at(f.component.name.span, "declared here")
@@ -122,10 +122,10 @@ impl<'a> Instance<'a, '_> {
         value: Val,
         span: Span,
     ) -> Option<Val> {
-        let wanted = match self.class_at(f.view, &f.component.class)? {
+        let wanted = match self.instance.names().class_at(f.view, &f.component.class)? {
             Found::Builtin(b) => Some(b),
             Found::Class(c) => {
-                let t = self.template(c.class, c.parent);
+                let t = self.instance.names().template(c.class, c.parent);
                 if matches!(t.kind, ClassKind::Function { .. }) {
                     let message = format!(
                         "input `{}` of `{}` is a function, and this is {}",
@@ -133,7 +133,7 @@ impl<'a> Instance<'a, '_> {
                         callee.name,
                         value.describe()
                     );
-                    return self.fail(Code::BadCall, &message, span);
+                    return self.instance.fail(Code::BadCall, &message, span);
                 }
                 if t.dims.is_empty() { t.builtin } else { None }
             }
@@ -149,7 +149,7 @@ impl<'a> Instance<'a, '_> {
                 if declared == 0 { "a single value".into() } else { format!("an array of {declared} dimensions") },
                 value.describe()
             );
-            return self.fail(Code::BadCall, &message, span);
+            return self.instance.fail(Code::BadCall, &message, span);
         }
         let fits = match (b, value.element_type()) {
             (Builtin::Real, Some(Type::Real | Type::Integer)) => true,
@@ -168,21 +168,25 @@ impl<'a> Instance<'a, '_> {
                 crate::instance::errors::builtin_name(b),
                 value.describe()
             );
-            return self.fail(Code::BadCall, &message, span);
+            return self.instance.fail(Code::BadCall, &message, span);
         }
         Some(if b == Builtin::Real { value.with_type(Type::Real) } else { value })
     }
 
     /// The declared default: `None` on failure, `Some(None)` when there is none.
     pub(in crate::instance) fn default_value(&mut self, f: &Formal<'a>) -> Option<Option<Val>> {
-        let reached = self.reached(f.view.scope, f.index);
+        let reached = self.instance.names().reached(f.view.scope, f.index);
         match reached.binding {
             Some(b) => {
                 // In the frame of the call, so that earlier inputs are seen.
-                let value = if b.access.is_empty() { self.eval(b.expr, b.view) } else { self.binding_value(&b, true) };
+                let value = if b.access.is_empty() {
+                    self.instance.evaluator().eval(b.expr, b.view)
+                } else {
+                    self.instance.evaluator().binding_value(&b, true)
+                };
                 value.map(Some)
             }
-            None => match self.class_at(f.view, &f.component.class)? {
+            None => match self.instance.names().class_at(f.view, &f.component.class)? {
                 // A record without a value takes its fields' defaults.
                 Found::Class(c) if f.component.subscripts.is_empty() => self.default_record(&c),
                 _ => Some(None),
@@ -191,18 +195,18 @@ impl<'a> Instance<'a, '_> {
     }
 
     pub(in crate::instance) fn default_record(&mut self, class: &ClassRef<'a>) -> Option<Option<Val>> {
-        let template = self.template(class.class, class.parent);
+        let template = self.instance.names().template(class.class, class.parent);
         if !matches!(template.kind, ClassKind::Record { .. }) {
             return Some(None);
         }
-        let scope = self.package(class);
-        let name = self.library.full_name(class.class);
+        let scope = self.instance.names().package(class);
+        let name = self.instance.library.full_name(class.class);
         let callee = Callee { scope, template, name };
-        let span = self.library.class(class.class).name.span;
-        let mark = self.diagnostics.len();
+        let span = self.instance.library.class(class.class).name.span;
+        let mark = self.instance.diagnostics.len();
         let value = self.construct(&callee, Vec::new(), Vec::new(), span);
         if value.is_none() {
-            self.diagnostics.truncate(mark);
+            self.instance.diagnostics.truncate(mark);
         }
         Some(value)
     }

@@ -1,7 +1,7 @@
 //! Built-in operators and functions (MLS 3.7, 10.3).
 
 use crate::instance::value::{Val, size_text, wider};
-use crate::instance::{Instance, View};
+use crate::instance::{BuiltinCalls, View};
 use bramah_expr::differentiate::Leaf;
 use bramah_expr::types::{MessagePart, Type, Variability};
 use bramah_expr::{Binary, ExprId, Exprs, Node, Rel, Unary};
@@ -61,7 +61,7 @@ fn count_of(name: &str) -> Option<std::ops::RangeInclusive<usize>> {
     })
 }
 
-impl<'a> Instance<'a, '_> {
+impl<'a> BuiltinCalls<'_, 'a, '_> {
     /// A built-in function; `None` if the name is not one, `Some(None)` after a message.
     pub(in crate::instance) fn builtin_call(
         &mut self,
@@ -73,7 +73,9 @@ impl<'a> Instance<'a, '_> {
     ) -> Option<Option<Val>> {
         if let [package, query] = function.parts.as_slice() {
             return match (package.name.name.as_str(), query.name.name.as_str()) {
-                ("Connections", name @ ("isRoot" | "rooted")) => Some(self.connection_query(name, args, view, span)),
+                ("Connections", name @ ("isRoot" | "rooted")) => {
+                    Some(self.instance.builder().connection_query(name, args, view, span))
+                }
                 ("Connections", name @ "inflow") => Some(self.stream(name, args, view, span)),
                 _ => None,
             };
@@ -83,12 +85,12 @@ impl<'a> Instance<'a, '_> {
         }
         let first = function.parts[0].name.name;
         // `.sin(u)`: a built-in function, unless a class of the top level bears its name
-        if function.global && self.library.top(first).is_some() {
+        if function.global && self.instance.library.top(first).is_some() {
             return None;
         }
         let name = first.as_str();
         if UNSUPPORTED.contains(&name) {
-            self.unsupported_function(span, name);
+            self.instance.unsupported_function(span, name);
             return Some(None);
         }
         if let Some(count) = count_of(name)
@@ -101,7 +103,11 @@ impl<'a> Instance<'a, '_> {
                 (low, usize::MAX) => format!("{low} arguments or more"),
                 (_, high) => format!("{high} arguments"),
             };
-            return Some(self.fail(Code::BadCall, &format!("`{name}` takes {wanted}, not {}", args.len()), span));
+            return Some(self.instance.fail(
+                Code::BadCall,
+                &format!("`{name}` takes {wanted}, not {}", args.len()),
+                span,
+            ));
         }
         let value = self.builtin_value(function, args, named, view, span)?;
         let takes = named_arguments(name);
@@ -109,7 +115,7 @@ impl<'a> Instance<'a, '_> {
             Some((unknown, _)) if value.is_some() => {
                 let message = format!("`{name}` has no argument `{}`", unknown.name);
                 let d = Diagnostic::new(Code::BadCall, message).at(unknown.span, "not an argument");
-                self.report(match takes {
+                self.instance.report(match takes {
                     [] => d.help(format!("`{name}` takes its arguments by their place")),
                     _ => d.help(format!("by name it takes `{}`", takes.join("`, `"))),
                 });
@@ -134,7 +140,7 @@ impl<'a> Instance<'a, '_> {
             "noEvent" => self.without_events(args.first(), name, view, span),
             "smooth" => self.without_events(args.get(1), name, view, span),
             "pre" => {
-                let value = self.in_mode(|m| m.before = true, |s| s.one(name, args, view, span));
+                let value = self.instance.in_mode(|m| m.before = true, |s| s.builtins().one(name, args, view, span));
                 value.and_then(|v| self.pre(&v, span))
             }
             "edge" | "change" => self.one(name, args, view, span).and_then(|v| self.changes(name, &v, span)),
@@ -191,7 +197,7 @@ impl<'a> Instance<'a, '_> {
         match mathematical(name) {
             Some(op) => self.one(name, args, view, span).and_then(|v| self.mathematics(op, &v, span)),
             None => {
-                self.unsupported(span, &format!("the external function `{name}`"));
+                self.instance.unsupported(span, &format!("the external function `{name}`"));
                 None
             }
         }
@@ -200,52 +206,56 @@ impl<'a> Instance<'a, '_> {
     /// `cardinality(c)`: the number of connections of a port (MLS 3.7.4.3).
     fn cardinality(&mut self, args: &'a [Expr], view: View, span: Span) -> Option<Val> {
         let node = match args {
-            [Expr { kind: ExprKind::Reference(r), .. }] => self.named_node(r, view),
+            [Expr { kind: ExprKind::Reference(r), .. }] => self.instance.evaluator().named_node(r, view),
             _ => None,
         };
-        let Some(node) = node else { return self.fail(Code::BadCall, "`cardinality` takes one port", span) };
-        let count = self.connected.get(&node).copied().unwrap_or(0);
-        Some(self.integer(f64::from(count)))
+        let Some(node) = node else { return self.instance.fail(Code::BadCall, "`cardinality` takes one port", span) };
+        let count = self.instance.connected.get(&node).copied().unwrap_or(0);
+        Some(self.instance.evaluator().integer(f64::from(count)))
     }
 
     fn one(&mut self, name: &str, args: &'a [Expr], view: View, span: Span) -> Option<Val> {
         match args {
-            [a] => self.eval(a, view),
-            _ => self.fail(Code::BadCall, &format!("`{name}` takes one argument, not {}", args.len()), span),
+            [a] => self.instance.evaluator().eval(a, view),
+            _ => self.instance.fail(Code::BadCall, &format!("`{name}` takes one argument, not {}", args.len()), span),
         }
     }
 
     fn two(&mut self, name: &str, args: &'a [Expr], view: View, span: Span) -> Option<(Val, Val)> {
         match args {
             [a, b] => {
-                let (a, b) = (self.eval(a, view), self.eval(b, view));
+                let (a, b) = (self.instance.evaluator().eval(a, view), self.instance.evaluator().eval(b, view));
                 Some((a?, b?))
             }
-            _ => self.fail(Code::BadCall, &format!("`{name}` takes two arguments, not {}", args.len()), span),
+            _ => self.instance.fail(Code::BadCall, &format!("`{name}` takes two arguments, not {}", args.len()), span),
         }
     }
 
     fn without_events(&mut self, arg: Option<&'a Expr>, name: &str, view: View, span: Span) -> Option<Val> {
         let Some(arg) = arg else {
-            return self.fail(Code::BadCall, &format!("`{name}` needs an expression"), span);
+            return self.instance.fail(Code::BadCall, &format!("`{name}` needs an expression"), span);
         };
-        self.in_mode(|m| m.no_event = true, |s| s.eval(arg, view))
+        self.instance.in_mode(|m| m.no_event = true, |s| s.evaluator().eval(arg, view))
     }
 
     fn moment(&mut self, node: Node, span: Span) -> Option<Val> {
-        if self.eval.mode.constant {
-            return self.fail(Code::NotConstant, "this is not known before the run", span);
+        if self.instance.eval.mode.constant {
+            return self.instance.fail(Code::NotConstant, "this is not known before the run", span);
         }
-        Some(Val::Scalar(self.exprs.intern(node), Type::Boolean))
+        Some(Val::Scalar(self.instance.exprs.intern(node), Type::Boolean))
     }
 
     /// `der` of any expression, by the chain rule where it is not a plain variable.
     fn der(&mut self, v: &Val, span: Span) -> Option<Val> {
-        if self.eval.mode.constant {
-            return self.fail(Code::NotConstant, "a derivative is not known before the run", span);
+        if self.instance.eval.mode.constant {
+            return self.instance.fail(Code::NotConstant, "a derivative is not known before the run", span);
         }
         if matches!(v.element_type(), Some(ty) if ty != Type::Real) {
-            return self.fail(Code::TypeMismatch, "only a Real has a derivative, and this has no derivative", span);
+            return self.instance.fail(
+                Code::TypeMismatch,
+                "only a Real has a derivative, and this has no derivative",
+                span,
+            );
         }
         let mut failed = false;
         let value = v.map(&mut |e, _| match self.der_scalar(e) {
@@ -256,31 +266,31 @@ impl<'a> Instance<'a, '_> {
             }
         });
         if failed {
-            return self.fail(Code::TypeMismatch, "this changes at events only and has no derivative", span);
+            return self.instance.fail(Code::TypeMismatch, "this changes at events only and has no derivative", span);
         }
         Some(value.with_type(Type::Real))
     }
 
     fn der_scalar(&mut self, e: ExprId) -> Option<ExprId> {
         // Variabilities are read before the pool is borrowed for the derivative.
-        self.variability(e);
-        let mut pool = std::mem::take(&mut self.exprs);
+        self.instance.variability(e);
+        let mut pool = std::mem::take(&mut self.instance.exprs);
         let result = pool.time_derivative(e, &mut |pool, leaf| match leaf {
-            Leaf::Var(v) => match self.leaf_variability(v) {
+            Leaf::Var(v) => match self.instance.leaf_variability(v) {
                 Variability::Continuous => Some(pool.der(v)),
                 Variability::Discrete => None,
                 _ => Some(Exprs::ZERO),
             },
             Leaf::Der(_) => None,
         });
-        self.exprs = pool;
+        self.instance.exprs = pool;
         result.ok()
     }
 
     fn pre(&mut self, v: &Val, span: Span) -> Option<Val> {
-        let mut failed = self.eval.mode.constant;
-        let value = v.map(&mut |e, _| match self.exprs.node(e) {
-            Node::Var(var) => self.exprs.pre(var),
+        let mut failed = self.instance.eval.mode.constant;
+        let value = v.map(&mut |e, _| match self.instance.exprs.node(e) {
+            Node::Var(var) => self.instance.exprs.pre(var),
             Node::Num(_) => e,
             _ => {
                 failed = true;
@@ -288,7 +298,7 @@ impl<'a> Instance<'a, '_> {
             }
         });
         if failed {
-            return self.fail(Code::TypeMismatch, "`pre` needs a variable", span);
+            return self.instance.fail(Code::TypeMismatch, "`pre` needs a variable", span);
         }
         Some(value)
     }
@@ -297,11 +307,11 @@ impl<'a> Instance<'a, '_> {
         let before = self.pre(v, span)?;
         let value = if name == "edge" {
             v.zip(&before, &mut |now, pre, _| {
-                let was_not = self.exprs.not(pre);
-                self.exprs.and(now, was_not)
+                let was_not = self.instance.exprs.not(pre);
+                self.instance.exprs.and(now, was_not)
             })
         } else {
-            v.zip(&before, &mut |now, pre, _| self.exprs.rel(Rel::Ne, now, pre))
+            v.zip(&before, &mut |now, pre, _| self.instance.exprs.rel(Rel::Ne, now, pre))
         };
         value.map(|v| retyped(&v, Type::Boolean))
     }
@@ -309,24 +319,28 @@ impl<'a> Instance<'a, '_> {
     fn sample(&mut self, args: &'a [Expr], view: View, span: Span) -> Option<Val> {
         let (start, interval) = self.two("sample", args, view, span)?;
         let (Some((s, _)), Some((i, _))) = (start.scalar(), interval.scalar()) else {
-            return self.wrong_type("a number", &start, span);
+            return self.instance.evaluator().wrong_type("a number", &start, span);
         };
-        if self.variability(s).max(self.variability(i)) > Variability::Parameter {
-            return self.fail(Code::NotConstant, "start and interval of `sample` must be known before the run", span);
+        if self.instance.variability(s).max(self.instance.variability(i)) > Variability::Parameter {
+            return self.instance.fail(
+                Code::NotConstant,
+                "start and interval of `sample` must be known before the run",
+                span,
+            );
         }
-        if self.exprs.as_num(i).is_some_and(|x| x <= 0.0) {
-            return self.fail(Code::OutOfRange, "the interval of `sample` must be positive", span);
+        if self.instance.exprs.as_num(i).is_some_and(|x| x <= 0.0) {
+            return self.instance.fail(Code::OutOfRange, "the interval of `sample` must be positive", span);
         }
-        if self.eval.mode.constant {
-            return self.fail(Code::NotConstant, "`sample` is not known before the run", span);
+        if self.instance.eval.mode.constant {
+            return self.instance.fail(Code::NotConstant, "`sample` is not known before the run", span);
         }
-        Some(Val::Scalar(self.exprs.sample(s, i), Type::Boolean))
+        Some(Val::Scalar(self.instance.exprs.sample(s, i), Type::Boolean))
     }
 
     /// The simple name of the model that runs, and the components from it to the place of the call (MLS 3.7.4.3).
     fn instance_name(&self, view: View) -> String {
-        let model = self.library.class(self.scope(self.root).template.class).name.name;
-        match self.scope(view.scope).name.as_str() {
+        let model = self.instance.library.class(self.instance.scope(self.instance.root).template.class).name.name;
+        match self.instance.scope(view.scope).name.as_str() {
             "" => model.to_string(),
             path => format!("{model}.{path}"),
         }
@@ -335,25 +349,31 @@ impl<'a> Instance<'a, '_> {
     /// `inStream(h)`, `actualStream(h)`, `Connections.inflow(h)`.
     fn stream(&mut self, name: &str, args: &'a [Expr], view: View, span: Span) -> Option<Val> {
         let value = self.one(name, args, view, span)?;
-        if self.eval.mode.constant {
-            return self.fail(Code::NotConstant, "this is not known before the run", span);
+        if self.instance.eval.mode.constant {
+            return self.instance.fail(Code::NotConstant, "this is not known before the run", span);
         }
         let mut scalars = Vec::new();
         value.scalars(&mut scalars);
         let mut results = Vec::with_capacity(scalars.len());
         for e in scalars {
-            let found = match self.exprs.node(e) {
-                Node::Var(v) => self.order.get(v.index()).copied(),
+            let found = match self.instance.exprs.node(e) {
+                Node::Var(v) => self.instance.order.get(v.index()).copied(),
                 _ => None,
             };
-            let flow = found.filter(|i| self.variables[*i as usize].stream).and_then(|i| self.stream_flow(i));
+            let flow = found
+                .filter(|i| self.instance.variables[*i as usize].stream)
+                .and_then(|i| self.instance.stream_flow(i));
             let (Some(i), Some(flow)) = (found, flow) else {
-                return self.fail(Code::BadCall, &format!("`{name}` needs a stream variable of a connector"), span);
+                return self.instance.fail(
+                    Code::BadCall,
+                    &format!("`{name}` needs a stream variable of a connector"),
+                    span,
+                );
             };
             results.push(match name {
-                "inStream" => self.in_stream(i),
-                "inflow" => self.inflow(i, flow),
-                _ => self.actual_stream(i, flow),
+                "inStream" => self.instance.mixing().in_stream(i),
+                "inflow" => self.instance.mixing().inflow(i, flow),
+                _ => self.instance.mixing().actual_stream(i, flow),
             });
         }
         let mut results = results.into_iter();
@@ -363,28 +383,31 @@ impl<'a> Instance<'a, '_> {
     /// `delay(expression, time)`; the largest time as a third argument says nothing that a fixed time does not.
     fn delay(&mut self, args: &'a [Expr], view: View, span: Span) -> Option<Val> {
         let ([delayed, time] | [delayed, time, _]) = args else {
-            return self.fail(Code::BadCall, "`delay` takes an expression and a time", span);
+            return self.instance.fail(Code::BadCall, "`delay` takes an expression and a time", span);
         };
-        if self.eval.mode.constant {
-            return self.fail(Code::NotConstant, "`delay` is not known before the run", span);
+        if self.instance.eval.mode.constant {
+            return self.instance.fail(Code::NotConstant, "`delay` is not known before the run", span);
         }
-        let longest = args.get(2).map(|e| self.constant(e, view).and_then(|v| v.as_number(&self.exprs)));
-        let (delayed, time) = (self.eval(delayed, view)?, self.eval(time, view)?);
-        let Some((time, _)) = time.scalar() else { return self.wrong_type("a time", &time, span) };
-        if self.variability(time) > Variability::Parameter {
-            self.unsupported(span, "a `delay` whose time changes during the run");
+        let longest = args
+            .get(2)
+            .map(|e| self.instance.evaluator().constant(e, view).and_then(|v| v.as_number(&self.instance.exprs)));
+        let (delayed, time) =
+            (self.instance.evaluator().eval(delayed, view)?, self.instance.evaluator().eval(time, view)?);
+        let Some((time, _)) = time.scalar() else { return self.instance.evaluator().wrong_type("a time", &time, span) };
+        if self.instance.variability(time) > Variability::Parameter {
+            self.instance.unsupported(span, "a `delay` whose time changes during the run");
             return None;
         }
-        if let (Some(Some(longest)), Some(t)) = (longest, self.exprs.as_num(time))
+        if let (Some(Some(longest)), Some(t)) = (longest, self.instance.exprs.as_num(time))
             && t > longest
         {
             let message = format!("the time of `delay` is {t} s, and its largest is {longest} s");
-            return self.fail(Code::OutOfRange, &message, span);
+            return self.instance.fail(Code::OutOfRange, &message, span);
         }
-        if self.exprs.as_num(time).is_some_and(|t| t <= 0.0) {
-            return self.fail(Code::OutOfRange, "the time of `delay` must be positive", span);
+        if self.instance.exprs.as_num(time).is_some_and(|t| t <= 0.0) {
+            return self.instance.fail(Code::OutOfRange, "the time of `delay` must be positive", span);
         }
-        Some(delayed.map(&mut |e, _| self.exprs.delay(e, time)).with_type(Type::Real))
+        Some(delayed.map(&mut |e, _| self.instance.exprs.delay(e, time)).with_type(Type::Real))
     }
 
     fn homotopy_call(&mut self, args: &'a [Expr], named: &'a [(Ident, Expr)], view: View, span: Span) -> Option<Val> {
@@ -392,43 +415,48 @@ impl<'a> Instance<'a, '_> {
         let actual = args.first().or_else(|| by_name("actual"));
         let simplified = args.get(1).or_else(|| by_name("simplified"));
         let (Some(a), Some(s)) = (actual, simplified) else {
-            return self.fail(Code::BadCall, "`homotopy` needs `actual` and `simplified`", span);
+            return self.instance.fail(Code::BadCall, "`homotopy` needs `actual` and `simplified`", span);
         };
-        let (a, s) = (self.eval(a, view)?, self.eval(s, view)?);
-        let value = a.zip(&s, &mut |x, y, _| self.exprs.homotopy(x, y));
-        value.or_else(|| self.sizes_differ(&a, &s, span))
+        let (a, s) = (self.instance.evaluator().eval(a, view)?, self.instance.evaluator().eval(s, view)?);
+        let value = a.zip(&s, &mut |x, y, _| self.instance.exprs.homotopy(x, y));
+        value.or_else(|| self.instance.operators().sizes_differ(&a, &s, span))
     }
 
     /// `semiLinear(x, k+, k-) = if x >= 0 then k+*x else k-*x`
     fn semi_linear(&mut self, args: &'a [Expr], view: View, span: Span) -> Option<Val> {
-        let values: Option<Vec<ExprId>> =
-            args.iter().map(|a| self.eval(a, view).and_then(|v| v.scalar()).map(|(e, _)| e)).collect();
+        let values: Option<Vec<ExprId>> = args
+            .iter()
+            .map(|a| self.instance.evaluator().eval(a, view).and_then(|v| v.scalar()).map(|(e, _)| e))
+            .collect();
         let Ok([x, up, down]) = <[ExprId; 3]>::try_from(values?) else {
-            return self.fail(Code::BadCall, "`semiLinear` takes three numbers", span);
+            return self.instance.fail(Code::BadCall, "`semiLinear` takes three numbers", span);
         };
-        let quiet = self.eval.mode.no_event || self.variability(x) <= Variability::Discrete;
-        let c =
-            if quiet { self.exprs.rel(Rel::Ge, x, Exprs::ZERO) } else { self.exprs.event_rel(Rel::Ge, x, Exprs::ZERO) };
-        let (a, b) = (self.exprs.mul(up, x), self.exprs.mul(down, x));
-        let value = self.exprs.if_(c, a, b);
+        let quiet = self.instance.eval.mode.no_event || self.instance.variability(x) <= Variability::Discrete;
+        let c = if quiet {
+            self.instance.exprs.rel(Rel::Ge, x, Exprs::ZERO)
+        } else {
+            self.instance.exprs.event_rel(Rel::Ge, x, Exprs::ZERO)
+        };
+        let (a, b) = (self.instance.exprs.mul(up, x), self.instance.exprs.mul(down, x));
+        let value = self.instance.exprs.if_(c, a, b);
         // where nothing flows the slopes of unknowns are equal (MLS 3.7.4.5): a flow far below others says so
-        let fixed = [up, down].iter().all(|&e| self.variability(e) <= Variability::Discrete);
+        let fixed = [up, down].iter().all(|&e| self.instance.variability(e) <= Variability::Discrete);
         if fixed {
             return Some(Val::Scalar(value, Type::Real));
         }
-        let (difference, least) = (self.exprs.sub(up, down), self.exprs.num(LEAST_FLOW));
-        let exchange = self.exprs.mul(least, difference);
-        Some(Val::Scalar(self.exprs.add(value, exchange), Type::Real))
+        let (difference, least) = (self.instance.exprs.sub(up, down), self.instance.exprs.num(LEAST_FLOW));
+        let exchange = self.instance.exprs.mul(least, difference);
+        Some(Val::Scalar(self.instance.exprs.add(value, exchange), Type::Real))
     }
 
     fn mathematics(&mut self, op: Unary, v: &Val, span: Span) -> Option<Val> {
         match v.element_type() {
             Some(Type::Real | Type::Integer) => {}
             None if v.elements().is_empty() => {}
-            _ => return self.wrong_type("a number", v, span),
+            _ => return self.instance.evaluator().wrong_type("a number", v, span),
         }
         let keeps = matches!(op, Unary::Abs | Unary::Sign);
-        let value = v.map(&mut |e, _| self.exprs.unary(op, e));
+        let value = v.map(&mut |e, _| self.instance.exprs.unary(op, e));
         Some(match op {
             Unary::Sign => retyped(&value, Type::Integer),
             _ if keeps => value,
@@ -437,28 +465,31 @@ impl<'a> Instance<'a, '_> {
     }
 
     fn real_pair(&mut self, op: Binary, a: &Val, b: &Val, span: Span) -> Option<Val> {
-        let value = a.zip(b, &mut |x, y, _| self.exprs.binary(op, x, y));
-        value.map(|v| v.with_type(Type::Real)).or_else(|| self.sizes_differ(a, b, span))
+        let value = a.zip(b, &mut |x, y, _| self.instance.exprs.binary(op, x, y));
+        value.map(|v| v.with_type(Type::Real)).or_else(|| self.instance.operators().sizes_differ(a, b, span))
     }
 
     /// Whole part of a quotient with the events that Modelica asks for (MLS 3.7.2).
     fn whole(&mut self, e: ExprId) -> ExprId {
-        if self.eval.mode.no_event || self.eval.mode.procedure || self.variability(e) <= Variability::Discrete {
-            self.exprs.floor(e)
+        if self.instance.eval.mode.no_event
+            || self.instance.eval.mode.procedure
+            || self.instance.variability(e) <= Variability::Discrete
+        {
+            self.instance.exprs.floor(e)
         } else {
-            self.exprs.event_floor(e)
+            self.instance.exprs.event_floor(e)
         }
     }
 
     fn rounding(&mut self, name: &str, v: &Val, span: Span) -> Option<Val> {
         if !matches!(v.element_type(), Some(Type::Real | Type::Integer)) {
-            return self.wrong_type("a number", v, span);
+            return self.instance.evaluator().wrong_type("a number", v, span);
         }
         let value = v.map(&mut |e, _| {
             if name == "ceil" {
-                let turned = self.exprs.neg(e);
+                let turned = self.instance.exprs.neg(e);
                 let floor = self.whole(turned);
-                self.exprs.neg(floor)
+                self.instance.exprs.neg(floor)
             } else {
                 self.whole(e)
             }
@@ -468,43 +499,48 @@ impl<'a> Instance<'a, '_> {
 
     fn division(&mut self, name: &str, a: &Val, b: &Val, span: Span) -> Option<Val> {
         let value = a.zip(b, &mut |x, y, _| {
-            let quotient = self.exprs.div(x, y);
+            let quotient = self.instance.exprs.div(x, y);
             let part = if name == "mod" { self.whole(quotient) } else { self.truncated(quotient) };
             if name == "div" {
                 return part;
             }
-            let taken = self.exprs.mul(part, y);
-            self.exprs.sub(x, taken)
+            let taken = self.instance.exprs.mul(part, y);
+            self.instance.exprs.sub(x, taken)
         });
-        value.or_else(|| self.sizes_differ(a, b, span))
+        value.or_else(|| self.instance.operators().sizes_differ(a, b, span))
     }
 
     /// Towards zero.
     fn truncated(&mut self, e: ExprId) -> ExprId {
-        let turned = self.exprs.neg(e);
+        let turned = self.instance.exprs.neg(e);
         let (down, up) = (self.whole(e), self.whole(turned));
-        let up = self.exprs.neg(up);
-        let quiet = self.eval.mode.no_event || self.eval.mode.procedure || self.variability(e) <= Variability::Discrete;
-        let positive =
-            if quiet { self.exprs.rel(Rel::Ge, e, Exprs::ZERO) } else { self.exprs.event_rel(Rel::Ge, e, Exprs::ZERO) };
-        self.exprs.if_(positive, down, up)
+        let up = self.instance.exprs.neg(up);
+        let quiet = self.instance.eval.mode.no_event
+            || self.instance.eval.mode.procedure
+            || self.instance.variability(e) <= Variability::Discrete;
+        let positive = if quiet {
+            self.instance.exprs.rel(Rel::Ge, e, Exprs::ZERO)
+        } else {
+            self.instance.exprs.event_rel(Rel::Ge, e, Exprs::ZERO)
+        };
+        self.instance.exprs.if_(positive, down, up)
     }
 
     fn extremum(&mut self, function: &'a Reference, args: &'a [Expr], view: View, span: Span) -> Option<Val> {
         let name = function.parts[0].name.name.as_str();
         match args {
             [a] => {
-                let v = self.eval(a, view)?;
+                let v = self.instance.evaluator().eval(a, view)?;
                 let values = v.elements().to_vec();
                 self.reduction(function, values, span)
             }
             [a, b] => {
-                let (a, b) = (self.eval(a, view)?, self.eval(b, view)?);
+                let (a, b) = (self.instance.evaluator().eval(a, view)?, self.instance.evaluator().eval(b, view)?);
                 let op = if name == "min" { Binary::Min } else { Binary::Max };
-                let value = a.zip(&b, &mut |x, y, _| self.exprs.binary(op, x, y));
-                value.or_else(|| self.sizes_differ(&a, &b, span))
+                let value = a.zip(&b, &mut |x, y, _| self.instance.exprs.binary(op, x, y));
+                value.or_else(|| self.instance.operators().sizes_differ(&a, &b, span))
             }
-            _ => self.fail(Code::BadCall, &format!("`{name}` takes one array or two numbers"), span),
+            _ => self.instance.fail(Code::BadCall, &format!("`{name}` takes one array or two numbers"), span),
         }
     }
 
@@ -521,10 +557,10 @@ impl<'a> Instance<'a, '_> {
             "product" => Binary::Mul,
             "min" => Binary::Min,
             "max" => Binary::Max,
-            "array" => return self.stacked(values, span),
+            "array" => return self.instance.evaluator().stacked(values, span),
             _ => {
                 let message = format!("`{name}` cannot run over iterators; `sum`, `product`, `min` and `max` can");
-                return self.fail(Code::UnknownFunction, &message, span);
+                return self.instance.fail(Code::UnknownFunction, &message, span);
             }
         };
         let Some(mut result) = values.first().cloned() else {
@@ -532,16 +568,16 @@ impl<'a> Instance<'a, '_> {
                 match op {
                     Binary::Add => Exprs::ZERO,
                     Binary::Mul => Exprs::ONE,
-                    Binary::Min => self.exprs.num(f64::MAX),
-                    _ => self.exprs.num(-f64::MAX),
+                    Binary::Min => self.instance.exprs.num(f64::MAX),
+                    _ => self.instance.exprs.num(-f64::MAX),
                 },
                 Type::Real,
             ));
         };
         for v in &values[1..] {
-            match result.zip(v, &mut |x, y, _| self.exprs.binary(op, x, y)) {
+            match result.zip(v, &mut |x, y, _| self.instance.exprs.binary(op, x, y)) {
                 Some(next) => result = next,
-                None => return self.sizes_differ(&result, v, span),
+                None => return self.instance.operators().sizes_differ(&result, v, span),
             }
         }
         Some(result)
@@ -553,7 +589,7 @@ impl<'a> Instance<'a, '_> {
                 let dims: Option<Vec<usize>> = args.iter().map(|a| self.dimension_in(a, view)).collect();
                 let dims = dims?;
                 if name == "identity" {
-                    return Some(self.identity(dims.first().copied().unwrap_or(0)));
+                    return Some(self.instance.operators().identity(dims.first().copied().unwrap_or(0)));
                 }
                 let e = if name == "zeros" { Exprs::ZERO } else { Exprs::ONE };
                 let count = dims.iter().product();
@@ -561,7 +597,7 @@ impl<'a> Instance<'a, '_> {
             }
             "fill" => {
                 let (first, rest) = args.split_first()?;
-                let value = self.eval(first, view)?;
+                let value = self.instance.evaluator().eval(first, view)?;
                 let dims: Option<Vec<usize>> = rest.iter().map(|a| self.dimension_in(a, view)).collect();
                 let dims = dims?;
                 let count: usize = dims.iter().product();
@@ -572,23 +608,23 @@ impl<'a> Instance<'a, '_> {
             _ => {}
         }
         if let ("size" | "ndims", Some(of)) = (name, args.first())
-            && let Some(dims) = self.declared_dims(of, view)
+            && let Some(dims) = self.instance.evaluator().declared_dims(of, view)
         {
             return self.sizes(name, &dims, args.get(1), view, span);
         }
-        let values: Option<Vec<Val>> = args.iter().map(|a| self.eval(a, view)).collect();
+        let values: Option<Vec<Val>> = args.iter().map(|a| self.instance.evaluator().eval(a, view)).collect();
         let values = values?;
         let Some(first) = values.first() else {
-            return self.fail(Code::BadCall, &format!("`{name}` needs an argument"), span);
+            return self.instance.fail(Code::BadCall, &format!("`{name}` needs an argument"), span);
         };
         match (name, values.len()) {
-            ("array", _) => self.stacked(values, span),
+            ("array", _) => self.instance.evaluator().stacked(values, span),
             ("ndims", 1) | ("size", 1 | 2) => self.sizes(name, first.dims(), args.get(1), view, span),
             ("scalar", 1) if first.elements().len() == 1 => Some(first.elements()[0].clone()),
             ("vector", 1) => Some(Val::array(vec![first.elements().len()], first.elements().to_vec())),
             ("matrix", 1) => self.promote(first, 2, span),
             ("promote", 2) => {
-                let n = values[1].as_number(&self.exprs).unwrap_or(0.0) as usize;
+                let n = values[1].as_number(&self.instance.exprs).unwrap_or(0.0) as usize;
                 self.promote(first, n, span)
             }
             ("linspace", 3) => {
@@ -596,8 +632,8 @@ impl<'a> Instance<'a, '_> {
                 self.linspace(&values, Some(count as f64), span)
             }
             ("cat", _) => {
-                let k = first.as_number(&self.exprs).unwrap_or(0.0) as usize;
-                self.concatenate(k, values[1..].to_vec(), span)
+                let k = first.as_number(&self.instance.exprs).unwrap_or(0.0) as usize;
+                self.instance.evaluator().concatenate(k, values[1..].to_vec(), span)
             }
             ("transpose", 1) if first.dims().len() == 2 => Some(transposed(first)),
             ("symmetric", 1) if first.dims().len() == 2 => {
@@ -620,47 +656,47 @@ impl<'a> Instance<'a, '_> {
                 let mut elements = Vec::with_capacity(n * m);
                 for a in first.elements() {
                     for b in values[1].elements() {
-                        let product = a.zip(b, &mut |x, y, _| self.exprs.mul(x, y));
-                        elements.push(product.or_else(|| self.sizes_differ(a, b, span))?);
+                        let product = a.zip(b, &mut |x, y, _| self.instance.exprs.mul(x, y));
+                        elements.push(product.or_else(|| self.instance.operators().sizes_differ(a, b, span))?);
                     }
                 }
                 Some(Val::array(vec![n, m], elements))
             }
             ("cross", 2) if first.dims() == [3] && values[1].dims() == [3] => self.cross(first, &values[1]),
             ("skew", 1) if first.dims() == [3] => self.skew(first),
-            _ => self.fail(Code::BadCall, &format!("these arguments do not fit `{name}`"), span),
+            _ => self.instance.fail(Code::BadCall, &format!("these arguments do not fit `{name}`"), span),
         }
     }
 
     /// `ndims(a)`, `size(a)` or `size(a, k)` of sizes that are known.
     fn sizes(&mut self, name: &str, dims: &[usize], along: Option<&'a Expr>, view: View, span: Span) -> Option<Val> {
         if name == "ndims" {
-            return Some(self.integer(dims.len() as f64));
+            return Some(self.instance.evaluator().integer(dims.len() as f64));
         }
         let Some(along) = along else {
-            let elements = dims.iter().map(|&n| self.integer(n as f64)).collect();
+            let elements = dims.iter().map(|&n| self.instance.evaluator().integer(n as f64)).collect();
             return Some(Val::array(vec![dims.len()], elements));
         };
-        let k = self.eval(along, view)?.as_number(&self.exprs).unwrap_or(0.0);
+        let k = self.instance.evaluator().eval(along, view)?.as_number(&self.instance.exprs).unwrap_or(0.0);
         match dims.get((k as usize).wrapping_sub(1)) {
-            Some(&n) => Some(self.integer(n as f64)),
+            Some(&n) => Some(self.instance.evaluator().integer(n as f64)),
             None => {
                 let what = if dims.is_empty() {
                     "a single value".into()
                 } else {
                     format!("an array of size {}", size_text(dims))
                 };
-                self.fail(Code::BadIndex, &format!("{what} has no dimension {k}"), span)
+                self.instance.fail(Code::BadIndex, &format!("{what} has no dimension {k}"), span)
             }
         }
     }
 
     /// A size: known before the run, or known inside the function being evaluated.
     fn dimension_in(&mut self, e: &'a Expr, view: View) -> Option<usize> {
-        if self.eval.frame == 0 && !self.eval.mode.procedure {
-            return self.dimension(e, view);
+        if self.instance.eval.frame == 0 && !self.instance.eval.mode.procedure {
+            return self.instance.evaluator().dimension(e, view);
         }
-        let (x, _) = self.known_number(e, view)?;
+        let (x, _) = self.instance.evaluator().known_number(e, view)?;
         Some(x.max(0.0) as usize)
     }
 
@@ -673,7 +709,7 @@ impl<'a> Instance<'a, '_> {
             dims.push(1);
         }
         if dims.iter().product::<usize>() != v.elements().len() || dims.len() != n {
-            return self.fail(Code::SizeMismatch, &format!("{} has too many dimensions", v.describe()), span);
+            return self.instance.fail(Code::SizeMismatch, &format!("{} has too many dimensions", v.describe()), span);
         }
         Some(Val::array(dims, v.elements().to_vec()))
     }
@@ -681,15 +717,19 @@ impl<'a> Instance<'a, '_> {
     fn linspace(&mut self, values: &[Val], count: Option<f64>, span: Span) -> Option<Val> {
         let n = count.filter(|n| *n >= 2.0);
         let (Some((a, _)), Some((b, _)), Some(n)) = (values[0].scalar(), values[1].scalar(), n) else {
-            return self.fail(Code::BadCall, "`linspace(from, to, n)` needs two numbers and n of at least 2", span);
+            return self.instance.fail(
+                Code::BadCall,
+                "`linspace(from, to, n)` needs two numbers and n of at least 2",
+                span,
+            );
         };
         let n = n as usize;
-        let distance = self.exprs.sub(b, a);
+        let distance = self.instance.exprs.sub(b, a);
         let elements = (0..n)
             .map(|i| {
-                let share = self.exprs.num(i as f64 / (n - 1) as f64);
-                let part = self.exprs.mul(distance, share);
-                Val::Scalar(self.exprs.add(a, part), Type::Real)
+                let share = self.instance.exprs.num(i as f64 / (n - 1) as f64);
+                let part = self.instance.exprs.mul(distance, share);
+                Val::Scalar(self.instance.exprs.add(a, part), Type::Real)
             })
             .collect();
         Some(Val::array(vec![n], elements))
@@ -700,9 +740,9 @@ impl<'a> Instance<'a, '_> {
         let ty = wider(a.element_type()?, b.element_type()?)?;
         let mut elements = Vec::new();
         for (i, j) in [(1, 2), (2, 0), (0, 1)] {
-            let p = self.exprs.mul(s(a, i), s(b, j));
-            let q = self.exprs.mul(s(a, j), s(b, i));
-            elements.push(Val::Scalar(self.exprs.sub(p, q), ty));
+            let p = self.instance.exprs.mul(s(a, i), s(b, j));
+            let q = self.instance.exprs.mul(s(a, j), s(b, i));
+            elements.push(Val::Scalar(self.instance.exprs.sub(p, q), ty));
         }
         Some(Val::array(vec![3], elements))
     }
@@ -711,21 +751,21 @@ impl<'a> Instance<'a, '_> {
         let ty = v.element_type()?;
         let s = |i: usize| v.elements()[i].scalar().map_or(Exprs::ZERO, |(e, _)| e);
         let z = Exprs::ZERO;
-        let (n0, n1, n2) = (self.exprs.neg(s(0)), self.exprs.neg(s(1)), self.exprs.neg(s(2)));
+        let (n0, n1, n2) =
+            (self.instance.exprs.neg(s(0)), self.instance.exprs.neg(s(1)), self.instance.exprs.neg(s(2)));
         let entries = [z, n2, s(1), s(2), z, n0, n1, s(0), z];
         Some(Val::array(vec![3, 3], entries.into_iter().map(|e| Val::Scalar(e, ty)).collect()))
     }
 
     fn string(&mut self, args: &'a [Expr], view: View, span: Span) -> Option<Val> {
         let Some(first) = args.first() else {
-            return self.fail(Code::BadCall, "`String` needs a value", span);
+            return self.instance.fail(Code::BadCall, "`String` needs a value", span);
         };
-        match self.eval(first, view)? {
+        match self.instance.evaluator().eval(first, view)? {
             Val::Scalar(e, Type::Enumeration(i)) => {
-                let known = self
-                    .exprs
-                    .as_num(e)
-                    .and_then(|x| self.enumerations[i as usize].literals.get(x as usize - 1).map(|l| l.as_str()));
+                let known = self.instance.exprs.as_num(e).and_then(|x| {
+                    self.instance.enumerations[i as usize].literals.get(x as usize - 1).map(|l| l.as_str())
+                });
                 Some(match known {
                     Some(name) => Val::text(name),
                     None => Val::Text(Rc::new(vec![MessagePart::Value(e, Type::Enumeration(i))])),
@@ -733,7 +773,7 @@ impl<'a> Instance<'a, '_> {
             }
             Val::Scalar(e, ty) => Some(Val::Text(Rc::new(vec![MessagePart::Value(e, ty)]))),
             other @ Val::Text(_) => Some(other),
-            other => self.wrong_type("a single value", &other, span),
+            other => self.instance.evaluator().wrong_type("a single value", &other, span),
         }
     }
 
@@ -757,7 +797,7 @@ impl<'a> Instance<'a, '_> {
         } else if let Some(near) = crate::instance::errors::nearest(&name, KNOWN) {
             d = d.meant(near);
         }
-        self.report(d);
+        self.instance.report(d);
     }
 }
 

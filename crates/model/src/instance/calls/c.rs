@@ -1,7 +1,7 @@
 //! Calls of a user's own C functions, where he has allowed them: their signatures by the declarations in Modelica
 //! (MLS 12.9.1), and what their annotations name (MLS 12.9.4).
 
-use crate::instance::Instance;
+use crate::instance::ExternalCalls;
 use crate::instance::call::Callee;
 use crate::instance::calls::external::{Argument, CCall, external_text};
 use crate::instance::value::Val;
@@ -16,7 +16,7 @@ use std::sync::Arc;
 /// Where libraries for this machine lie below those for all (MLS 12.9.4).
 const MACHINE: &str = "linux64";
 
-impl<'a> Instance<'a, '_> {
+impl<'a> ExternalCalls<'_, 'a, '_> {
     pub(in crate::instance) fn call_c(
         &mut self,
         callee: &Callee<'a>,
@@ -24,27 +24,28 @@ impl<'a> Instance<'a, '_> {
         named: Vec<(Ident, Val)>,
         span: Span,
     ) -> Option<Val> {
-        if !self.library.calls_c() {
-            self.report(
+        if !self.instance.library.calls_c() {
+            self.instance.report(
                 Diagnostic::new(Code::Unsupported, format!("the external function `{}` is not supported", callee.name))
                     .at(span, "C code is not called unasked")
                     .help("allow it: --external FILE for a C source or a shared library, --external annotations for what the function's annotations name"),
             );
             return None;
         }
-        self.with_inputs(callee, positional, named, span, |s| s.carry_out_c(callee, span))
+        self.instance.calls().with_inputs(callee, positional, named, span, |s| s.externals().carry_out_c(callee, span))
     }
 
     fn carry_out_c(&mut self, callee: &Callee<'a>, span: Span) -> Option<Val> {
         let is_c = !external_text(callee)?.trim_start().starts_with("\"FORTRAN");
         let Some(call) = self.c_call(callee).filter(|_| is_c) else {
-            self.unsupported(span, &format!("the language or the call of the external function `{}`", callee.name));
+            self.instance
+                .unsupported(span, &format!("the language or the call of the external function `{}`", callee.name));
             return None;
         };
         self.prepare_locals(callee)?;
         let signature = self.signature(&call, callee, span)?;
         let wrapper = signature.wrapper();
-        let function = match self.compiled_c.get(&wrapper) {
+        let function = match self.instance.compiled_c.get(&wrapper) {
             Some(known) => known.clone(),
             None => self.compiled(&signature, &wrapper, callee, span)?,
         };
@@ -69,18 +70,19 @@ impl<'a> Instance<'a, '_> {
         span: Span,
     ) -> Option<Arc<dyn External>> {
         let arguments = self.compiler_arguments(callee);
-        let compiled = self.library.compile_c(wrapper, c::UTILITIES, arguments);
+        let compiled = self.instance.library.compile_c(wrapper, c::UTILITIES, arguments);
         let ran = compiled.as_ref().map(|c| c.command.clone()).unwrap_or_default();
         match compiled.and_then(|compiled| c::bind(compiled, signature)) {
             Ok(function) => {
                 let said = format!("`{}` is C code, which runs unguarded", callee.name);
-                self.report(Diagnostic::new(Code::RunsC, said).at(span, "this call").note(format!("ran: {ran}")));
-                self.compiled_c.insert(wrapper.to_owned(), function.clone());
+                self.instance
+                    .report(Diagnostic::new(Code::RunsC, said).at(span, "this call").note(format!("ran: {ran}")));
+                self.instance.compiled_c.insert(wrapper.to_owned(), function.clone());
                 Some(function)
             }
             Err(why) => {
                 let said = format!("the external function `{}` cannot be called: {why}", callee.name);
-                self.report(
+                self.instance.report(
                     Diagnostic::new(Code::BadCall, said)
                         .at(span, "this call")
                         .help("give every C source and library that it takes with --external"),
@@ -91,12 +93,16 @@ impl<'a> Instance<'a, '_> {
     }
 
     fn is_output(&mut self, callee: &Callee<'a>, name: bramah_syntax::symbol::Symbol) -> bool {
-        self.formals(callee, |c, _| c.prefix.causality == Some(Causality::Output)).iter().any(|f| f.name == name)
+        self.instance
+            .calls()
+            .formals(callee, |c, _| c.prefix.causality == Some(Causality::Output))
+            .iter()
+            .any(|f| f.name == name)
     }
 
     /// The types in C of a call's arguments.
     fn signature(&mut self, call: &CCall, callee: &Callee<'a>, span: Span) -> Option<Signature> {
-        let outputs = self.formals(callee, |c, _| c.prefix.causality == Some(Causality::Output));
+        let outputs = self.instance.calls().formals(callee, |c, _| c.prefix.causality == Some(Causality::Output));
         let mut arguments = Vec::new();
         for argument in &call.arguments {
             let made = match argument {
@@ -108,24 +114,25 @@ impl<'a> Instance<'a, '_> {
                 }
                 Argument::Name(name) => match outputs.iter().find(|f| f.name == *name) {
                     Some(formal) => {
-                        let blank = self.declared_local(formal)?;
+                        let blank = self.instance.calls().declared_local(formal)?;
                         number(&blank).map(|(kind, n)| c::Argument::Output(kind, n))
                     }
                     None => match self.input_of_c(argument)? {
-                        text @ Val::Text(_) => text.as_text(&self.exprs).map(c::Argument::Text),
+                        text @ Val::Text(_) => text.as_text(&self.instance.exprs).map(c::Argument::Text),
                         value => number(&value).map(|(kind, n)| c::Argument::Input(kind, n)),
                     },
                 },
                 Argument::Other => None,
             };
             let Some(made) = made else {
-                self.unsupported(span, &format!("an argument of `{}` in the C call of `{}`", call.name, callee.name));
+                self.instance
+                    .unsupported(span, &format!("an argument of `{}` in the C call of `{}`", call.name, callee.name));
                 return None;
             };
             arguments.push(made);
         }
         let result = match call.result.and_then(|name| outputs.iter().find(|f| f.name == name)) {
-            Some(formal) => Some(number(&self.declared_local(formal)?)?.0),
+            Some(formal) => Some(number(&self.instance.calls().declared_local(formal)?)?.0),
             None => None,
         };
         let include = annotation_texts(external_text(callee)?, "Include").join("\n");
@@ -140,7 +147,7 @@ impl<'a> Instance<'a, '_> {
             let named = annotation_texts(text, key);
             let usual = vec![format!("modelica://{package}/Resources/{usual}")];
             let addresses = if named.is_empty() { usual } else { named };
-            addresses.iter().filter_map(|address| self.library.resource(address)).collect::<Vec<_>>()
+            addresses.iter().filter_map(|address| self.instance.library.resource(address)).collect::<Vec<_>>()
         };
         let (headers, sources) = (folder("IncludeDirectory", "Include"), folder("SourceDirectory", "Source"));
         let libraries = folder("LibraryDirectory", "Library");

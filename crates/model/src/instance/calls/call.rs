@@ -10,7 +10,7 @@ use crate::instance::lookup::{Builtin, Found};
 use crate::instance::template::{Kind, Template};
 use crate::instance::value::Val;
 use crate::instance::vectorised::Given;
-use crate::instance::{ClassRef, Instance, ScopeId, View};
+use crate::instance::{ClassRef, FunctionCalls, ScopeId, View};
 use bramah_expr::ExprId;
 use bramah_expr::types::{Type, Variability};
 use bramah_syntax::ast::{self, Causality, ClassKind, Expr, Ident, Reference};
@@ -42,7 +42,7 @@ pub(in crate::instance) struct Formal<'a> {
     pub view: View,
 }
 
-impl<'a> Instance<'a, '_> {
+impl<'a> FunctionCalls<'_, 'a, '_> {
     pub(in crate::instance) fn call(
         &mut self,
         function: &'a Reference,
@@ -55,7 +55,7 @@ impl<'a> Instance<'a, '_> {
             return self.call_bound(class, args, named, &bound, view, span);
         }
         if !self.is_redefined(function, view)
-            && let Some(v) = self.builtin_call(function, args, named, view, span)
+            && let Some(v) = self.instance.builtins().builtin_call(function, args, named, view, span)
         {
             return v;
         }
@@ -64,13 +64,13 @@ impl<'a> Instance<'a, '_> {
             parts: function.parts.iter().map(|p| p.name).collect(),
             span: function.span,
         };
-        match self.lookup_path(view, &path) {
+        match self.instance.names().lookup_path(view, &path) {
             Ok(Found::Class(class)) => self.call_bound(class, args, named, &[], view, span),
             Ok(Found::Builtin(Builtin::Enumeration(i))) => self.enumeration_of(i, args, view, span),
             _ => match self.instance_function(function, view) {
                 Some(class) => self.call_class(class, args, named, &[], view, span),
                 None => {
-                    self.unknown_function(function);
+                    self.instance.builtins().unknown_function(function);
                     None
                 }
             },
@@ -81,7 +81,7 @@ impl<'a> Instance<'a, '_> {
     /// `import Modelica.ComplexMath.abs`: it is nearer (MLS 5.3.1).
     fn is_redefined(&mut self, function: &Reference, view: View) -> bool {
         let [part] = function.parts.as_slice() else { return false };
-        !function.global && matches!(self.lookup_nested(view, part.name.name), Some(Found::Class(_)))
+        !function.global && matches!(self.instance.names().lookup_nested(view, part.name.name), Some(Found::Class(_)))
     }
 
     /// Calls a function some of whose inputs were given before.
@@ -95,14 +95,14 @@ impl<'a> Instance<'a, '_> {
         span: Span,
     ) -> Option<Val> {
         match self.external_builtin(&class) {
-            Some(name) => self.named_mathematics(&name, args, named, view, span),
+            Some(name) => self.instance.builtins().named_mathematics(&name, args, named, view, span),
             None => self.call_class(class, args, named, bound, view, span),
         }
     }
 
     /// The built-in function that `external "builtin" y = sin(u)` stands for.
     fn external_builtin(&self, class: &ClassRef<'a>) -> Option<String> {
-        let ast::ClassBody::Long(body) = &self.library.class(class.class).body else { return None };
+        let ast::ClassBody::Long(body) = &self.instance.library.class(class.class).body else { return None };
         let called = body.external_text.as_deref()?.trim_start().strip_prefix("\"builtin\"")?;
         let called = called.split_once('=').map_or(called, |(_, right)| right);
         Some(called.split('(').next()?.trim().to_string())
@@ -110,24 +110,26 @@ impl<'a> Instance<'a, '_> {
 
     /// A function named through a component, as in `oil.density(p)`.
     fn instance_function(&mut self, function: &Reference, view: View) -> Option<ClassRef<'a>> {
-        let Found::Component(scope, index) = self.lookup(view, function.parts[0].name.name)? else { return None };
-        let mut node = self.component(scope, index)?;
+        let Found::Component(scope, index) = self.instance.names().lookup(view, function.parts[0].name.name)? else {
+            return None;
+        };
+        let mut node = self.instance.builder().component(scope, index)?;
         let (last, middle) = function.parts[1..].split_last()?;
         for (k, part) in middle.iter().enumerate() {
-            let crate::instance::Node::Object(s) = *self.node(node) else { return None };
-            let &i = self.scope(s).template.by_name.get(&part.name.name)?;
-            if matches!(self.scope(s).template.elements[i as usize].kind, Kind::Class(_)) {
-                let mut found = self.lookup(View { scope: s, base: 0 }, part.name.name)?;
+            let crate::instance::Node::Object(s) = *self.instance.node(node) else { return None };
+            let &i = self.instance.scope(s).template.by_name.get(&part.name.name)?;
+            if matches!(self.instance.scope(s).template.elements[i as usize].kind, Kind::Class(_)) {
+                let mut found = self.instance.names().lookup(View { scope: s, base: 0 }, part.name.name)?;
                 for next in middle[k + 1..].iter().chain([last]) {
-                    found = self.member(&found, next.name.name)?;
+                    found = self.instance.names().member(&found, next.name.name)?;
                 }
                 let Found::Class(class) = found else { return None };
                 return Some(class);
             }
-            node = self.component(s, i)?;
+            node = self.instance.builder().component(s, i)?;
         }
-        let crate::instance::Node::Object(s) = *self.node(node) else { return None };
-        match self.lookup(View { scope: s, base: 0 }, last.name.name)? {
+        let crate::instance::Node::Object(s) = *self.instance.node(node) else { return None };
+        match self.instance.names().lookup(View { scope: s, base: 0 }, last.name.name)? {
             Found::Class(class) => Some(class),
             _ => None,
         }
@@ -142,7 +144,7 @@ impl<'a> Instance<'a, '_> {
         view: View,
         span: Span,
     ) -> Option<Val> {
-        let template = self.template(class.class, class.parent);
+        let template = self.instance.names().template(class.class, class.parent);
         if let Some(Builtin::Enumeration(i)) = template.builtin {
             return self.enumeration_of(i, args, view, span);
         }
@@ -168,29 +170,29 @@ impl<'a> Instance<'a, '_> {
         by_name.extend_from_slice(bound);
         if template.builtin == Some(Builtin::Object) {
             let place = Place { call: span, given: None };
-            return self.construct_object(&class, Given { positional, named: by_name }, place);
+            return self.instance.externals().construct_object(&class, Given { positional, named: by_name }, place);
         }
         if matches!(template.kind, ClassKind::Record { operator: true }) {
             let given = Given { positional: positional.clone(), named: by_name.clone() };
-            if let Some(made) = self.overloaded_constructor(&class, &given, span) {
+            if let Some(made) = self.instance.operators().overloaded_constructor(&class, &given, span) {
                 return made;
             }
         }
-        let scope = self.package(&class);
-        let name = self.library.full_name(class.class);
+        let scope = self.instance.names().package(&class);
+        let name = self.instance.library.full_name(class.class);
         let callee = Callee { scope, template, name };
         match callee.template.kind {
             ClassKind::Record { .. } => self.construct(&callee, positional, by_name, span),
-            ClassKind::Function { .. } => match self.file_function(&callee) {
+            ClassKind::Function { .. } => match self.instance.externals().file_function(&callee) {
                 Some(function) => {
-                    let place = self.file_place(args.first(), view, span);
-                    self.call_file_function(function, &callee, positional, by_name, place)
+                    let place = self.instance.externals().file_place(args.first(), view, span);
+                    self.instance.externals().call_file_function(function, &callee, positional, by_name, place)
                 }
                 None => self.call_elementwise(&callee, Given { positional, named: by_name }, span),
             },
             _ => {
                 let message = format!("`{}` is not a function", callee.name);
-                self.fail(Code::UnknownFunction, &message, span)
+                self.instance.fail(Code::UnknownFunction, &message, span)
             }
         }
     }
@@ -198,26 +200,27 @@ impl<'a> Instance<'a, '_> {
     /// An argument; whole numbers that parameters give are taken by value, for sizes and loops depend on them, and
     /// whatever a text depends on.
     fn argument(&mut self, e: &'a Expr, text: bool, view: View) -> Option<Val> {
-        let value = self.eval(e, view)?;
-        if text && !value.dims().is_empty() && self.eval.frame == 0 && !self.eval.mode.procedure {
+        let value = self.instance.evaluator().eval(e, view)?;
+        if text && !value.dims().is_empty() && self.instance.eval.frame == 0 && !self.instance.eval.mode.procedure {
             let mut scalars = Vec::new();
             value.scalars(&mut scalars);
-            let fixed = scalars.iter().all(|e| self.variability(*e) <= Variability::Parameter);
+            let fixed = scalars.iter().all(|e| self.instance.variability(*e) <= Variability::Parameter);
             if fixed && !self.all_known(std::slice::from_ref(&value)) {
-                return self.constant(e, view);
+                return self.instance.evaluator().constant(e, view);
             }
         }
         if let Val::Scalar(id, ty) = value
             && (text || ty == Type::Integer)
         {
-            let outside = self.eval.frame == 0 && !self.eval.mode.procedure;
-            let open = self.exprs.as_num(id).is_none() && self.variability(id) <= Variability::Parameter;
+            let outside = self.instance.eval.frame == 0 && !self.instance.eval.mode.procedure;
+            let open =
+                self.instance.exprs.as_num(id).is_none() && self.instance.variability(id) <= Variability::Parameter;
             if outside
                 && open
-                && (text || !self.found_at_start(id))
-                && !self.eval.locals.iter().any(|(_, v)| v.scalar().is_some_and(|(l, _)| l == id))
+                && (text || !self.instance.found_at_start(id))
+                && !self.instance.eval.locals.iter().any(|(_, v)| v.scalar().is_some_and(|(l, _)| l == id))
             {
-                return self.constant(e, view);
+                return self.instance.evaluator().constant(e, view);
             }
         }
         Some(value)
@@ -225,9 +228,9 @@ impl<'a> Instance<'a, '_> {
 
     fn enumeration_of(&mut self, i: u32, args: &'a [Expr], view: View, span: Span) -> Option<Val> {
         let [arg] = args else {
-            return self.fail(Code::BadCall, "a conversion to an enumeration takes one Integer", span);
+            return self.instance.fail(Code::BadCall, "a conversion to an enumeration takes one Integer", span);
         };
-        Some(retyped(&self.eval(arg, view)?, Type::Enumeration(i)))
+        Some(retyped(&self.instance.evaluator().eval(arg, view)?, Type::Enumeration(i)))
     }
 
     /// A value of a record class from its constructor.
@@ -241,12 +244,12 @@ impl<'a> Instance<'a, '_> {
         let formals = self.formals(callee, |c, protected| {
             !protected && !matches!(c.prefix.variability, Some(ast::Variability::Constant))
         });
-        let fields = self.in_frame(|s| {
-            s.bind(callee, &formals, positional, named, span)?;
+        let fields = self.instance.in_frame(|s| {
+            s.calls().bind(callee, &formals, positional, named, span)?;
             let value = |f: &Formal<'a>| Some((f.name, s.eval.locals[s.local(f.name)?].1.clone()));
             formals.iter().map(value).collect::<Option<Vec<_>>>()
         })?;
-        let class = self.operator_class_of(&callee.template);
+        let class = self.instance.operators().operator_class_of(&callee.template);
         Some(Val::Record(Rc::new(crate::instance::value::Record { fields, class })))
     }
 
@@ -257,19 +260,25 @@ impl<'a> Instance<'a, '_> {
         named: Vec<(Ident, Val)>,
         span: Span,
     ) -> Option<Val> {
-        if let Some(how) = self.external_builtin_of(callee) {
-            return self.call_external(how, callee, positional, named, Place { call: span, given: None });
+        if let Some(how) = self.instance.externals().external_builtin_of(callee) {
+            return self.instance.externals().call_external(
+                how,
+                callee,
+                positional,
+                named,
+                Place { call: span, given: None },
+            );
         }
         if callee.template.bases[0].ast.prefixes.partial {
             let message = format!("`{}` is partial and cannot be called", callee.name);
-            return self.fail(Code::Partial, &message, span);
+            return self.instance.fail(Code::Partial, &message, span);
         }
         if callee.template.bases.iter().any(|b| has_external(b.ast)) {
             #[cfg(feature = "fmi")]
-            return self.call_c(callee, positional, named, span);
+            return self.instance.externals().call_c(callee, positional, named, span);
             #[cfg(not(feature = "fmi"))]
             {
-                self.unsupported(span, &format!("the external function `{}`", callee.name));
+                self.instance.unsupported(span, &format!("the external function `{}`", callee.name));
                 return None;
             }
         }
@@ -278,46 +287,47 @@ impl<'a> Instance<'a, '_> {
             return None;
         }
         let limit = if known { DEEPEST_KNOWN } else { DEEPEST_INLINE };
-        if self.eval.depth >= limit {
+        if self.instance.eval.depth >= limit {
             if known {
                 let message = format!("`{}` calls itself without end", callee.name);
                 let d = Diagnostic::new(Code::Recursion, message).at(span, "this call");
-                if !self.diagnostics.iter().any(|d| d.code == Code::Recursion) {
-                    self.report(d.help("a recursive function must reach a case in which it does not call itself"));
+                if !self.instance.diagnostics.iter().any(|d| d.code == Code::Recursion) {
+                    self.instance
+                        .report(d.help("a recursive function must reach a case in which it does not call itself"));
                 }
                 return None;
             }
-            self.eval.not_inline = true;
+            self.instance.eval.not_inline = true;
             return None;
         }
-        let mark = (self.diagnostics.len(), self.eval.calls.len());
-        let work = self.eval.work;
-        if self.eval.depth == 0 {
-            self.eval.work = Work::allowed([MOST_STEPS, MOST_KNOWN_STEPS]);
+        let mark = (self.instance.diagnostics.len(), self.instance.eval.calls.len());
+        let work = self.instance.eval.work;
+        if self.instance.eval.depth == 0 {
+            self.instance.eval.work = Work::allowed([MOST_STEPS, MOST_KNOWN_STEPS]);
         }
-        self.eval.work.known = known;
-        self.eval.depth += 1;
-        let outer = std::mem::replace(&mut self.eval.not_inline, false);
+        self.instance.eval.work.known = known;
+        self.instance.eval.depth += 1;
+        let outer = std::mem::replace(&mut self.instance.eval.not_inline, false);
         let value = self.inline(callee, positional.clone(), named.clone(), span);
-        self.eval.depth -= 1;
-        if self.eval.depth == 0 {
-            self.eval.work = work;
+        self.instance.eval.depth -= 1;
+        if self.instance.eval.depth == 0 {
+            self.instance.eval.work = work;
         }
-        self.eval.work.known = work.known;
-        let refused = std::mem::replace(&mut self.eval.not_inline, outer);
+        self.instance.eval.work.known = work.known;
+        let refused = std::mem::replace(&mut self.instance.eval.not_inline, outer);
         if value.is_some() || !refused {
             return value;
         }
-        if known && !std::mem::take(&mut self.eval.may_fail) {
+        if known && !std::mem::take(&mut self.instance.eval.may_fail) {
             let message = format!("`{}` does not come to an end", callee.name);
-            return self.fail(Code::Recursion, &message, span);
+            return self.instance.fail(Code::Recursion, &message, span);
         }
-        self.diagnostics.truncate(mark.0);
-        self.eval.calls.truncate(mark.1);
+        self.instance.diagnostics.truncate(mark.0);
+        self.instance.eval.calls.truncate(mark.1);
         if gives_nothing(&callee.template) {
             return self.call_for_effect(callee, positional, named, span);
         }
-        self.call_procedure(callee, positional, named, span)
+        self.instance.procedures().call_procedure(callee, positional, named, span)
     }
 
     /// A call of a function without outputs whose assertions values that change decide: part of the procedure around it.
@@ -328,22 +338,22 @@ impl<'a> Instance<'a, '_> {
         named: Vec<(Ident, Val)>,
         span: Span,
     ) -> Option<Val> {
-        if self.eval.mode.procedure {
-            return self.procedure_body(callee, positional, named, span);
+        if self.instance.eval.mode.procedure {
+            return self.instance.procedures().procedure_body(callee, positional, named, span);
         }
-        if self.eval.depth > 0 {
-            (self.eval.not_inline, self.eval.may_fail) = (true, true);
+        if self.instance.eval.depth > 0 {
+            (self.instance.eval.not_inline, self.instance.eval.may_fail) = (true, true);
             return None;
         }
         let what = format!("a call of `{}`, which has no output, with arguments that change,", callee.name);
-        self.unsupported(span, &what);
+        self.instance.unsupported(span, &what);
         None
     }
 
     /// Whether a function keeps to what functions may do (MLS 12.2).
     fn well_formed(&mut self, callee: &Callee<'a>) -> bool {
         let class = callee.template.class;
-        if self.functions_checked.contains(&class) {
+        if self.instance.functions_checked.contains(&class) {
             return true;
         }
         let inputs = self.formals(callee, is_input);
@@ -368,10 +378,10 @@ impl<'a> Instance<'a, '_> {
             }
         }
         match wrong {
-            None => self.functions_checked.insert(class),
+            None => self.instance.functions_checked.insert(class),
             Some(d) => {
-                if self.diagnostics.iter().all(|other| other.message != d.message) {
-                    self.report(d);
+                if self.instance.diagnostics.iter().all(|other| other.message != d.message) {
+                    self.instance.report(d);
                 }
                 false
             }
@@ -385,7 +395,7 @@ impl<'a> Instance<'a, '_> {
     fn known(&self, v: &Val) -> bool {
         let mut scalars: Vec<ExprId> = Vec::new();
         v.scalars(&mut scalars);
-        scalars.iter().all(|&e| self.exprs.as_num(e).is_some())
+        scalars.iter().all(|&e| self.instance.exprs.as_num(e).is_some())
     }
 
     /// Carries the function out on symbolic values.
@@ -400,7 +410,7 @@ impl<'a> Instance<'a, '_> {
             m.under_procedure |= m.procedure;
             m.procedure = false;
         };
-        self.in_mode(change, |s| s.in_frame(|s| s.inline_body(callee, positional, named, span)))
+        self.instance.in_mode(change, |s| s.in_frame(|s| s.calls().inline_body(callee, positional, named, span)))
     }
 
     fn inline_body(
@@ -415,17 +425,17 @@ impl<'a> Instance<'a, '_> {
         let locals = self.formals(callee, |c, p| !is_input(c, p));
         for f in in_order_of_use(&locals) {
             let value = self.declared_local(f)?;
-            self.eval.locals.push((f.name, value));
+            self.instance.eval.locals.push((f.name, value));
         }
         for (section, view) in sections(callee) {
-            if self.execute(section, view)? == Flow::Return {
+            if self.instance.statements().execute(section, view)? == Flow::Return {
                 break;
             }
         }
         let outputs: Vec<Val> = locals
             .iter()
             .filter(|f| f.component.prefix.causality == Some(Causality::Output))
-            .filter_map(|f| self.local(f.name).map(|i| self.eval.locals[i].1.clone()))
+            .filter_map(|f| self.instance.local(f.name).map(|i| self.instance.eval.locals[i].1.clone()))
             .collect();
         Self::outputs(outputs)
     }

@@ -1,7 +1,8 @@
 //! Calls of external functions: those that [`bramah_external`] knows by their C names are carried out, with the arguments
 //! of the C call in its order.
 
-use crate::instance::Instance;
+use crate::instance::ExternalCalls;
+use crate::instance::FunctionCalls;
 use crate::instance::call::Callee;
 use crate::instance::files::Place;
 use crate::instance::value::Val;
@@ -123,7 +124,7 @@ pub(super) fn external_text<'a>(callee: &Callee<'a>) -> Option<&'a str> {
     })
 }
 
-impl<'a> Instance<'a, '_> {
+impl<'a> ExternalCalls<'_, 'a, '_> {
     /// How an external function is carried out, if it is known.
     pub(in crate::instance) fn external_builtin_of(&self, callee: &Callee<'a>) -> Option<Builtin> {
         bramah_external::builtin(&self.c_call(callee)?.name)
@@ -141,7 +142,9 @@ impl<'a> Instance<'a, '_> {
         named: Vec<(Ident, Val)>,
         place: Place,
     ) -> Option<Val> {
-        self.with_inputs(callee, positional, named, place.call, |s| s.carry_out_external(how, callee, place))
+        self.instance.calls().with_inputs(callee, positional, named, place.call, |s| {
+            s.externals().carry_out_external(how, callee, place)
+        })
     }
 
     fn carry_out_external(&mut self, how: Builtin, callee: &Callee<'a>, place: Place) -> Option<Val> {
@@ -151,28 +154,32 @@ impl<'a> Instance<'a, '_> {
         let given: Vec<Given> = values.iter().map(|v| self.given(v.as_ref())).collect();
         match how {
             #[cfg(feature = "fmi")]
-            Builtin::MockUp => self.mock_up(&given, place),
+            Builtin::MockUp => self.instance.builder().mock_up(&given, place),
             #[cfg(not(feature = "fmi"))]
-            Builtin::MockUp => self.fail(Code::Unsupported, "this build has no functional mock-up units", place.call),
+            Builtin::MockUp => {
+                self.instance.fail(Code::Unsupported, "this build has no functional mock-up units", place.call)
+            }
             Builtin::Nothing => Some(Val::Tuple(Vec::new().into())),
             Builtin::Object(make) => {
                 let given = self.table_given(given, place)?;
                 match make(&given) {
                     Ok(object) => Some(Val::Object(object)),
-                    Err(why) => self.fail(Code::BadCall, &format!("the table cannot be used: {why}"), place.call),
+                    Err(why) => {
+                        self.instance.fail(Code::BadCall, &format!("the table cannot be used: {why}"), place.call)
+                    }
                 }
             }
             Builtin::Values(make) => match make(&given) {
                 Some(found) => self.external_values(found, &call, callee),
                 None => {
                     let message = format!("the arguments of `{}` must be known before the run", callee.name);
-                    self.fail(Code::NotConstant, &message, place.call)
+                    self.instance.fail(Code::NotConstant, &message, place.call)
                 }
             },
             Builtin::Function(make) => {
                 let Some(function) = make(&given) else {
                     let message = format!("these arguments do not fit `{}`", callee.name);
-                    return self.fail(Code::BadCall, &message, place.call);
+                    return self.instance.fail(Code::BadCall, &message, place.call);
                 };
                 let object = given.iter().find_map(|g| match g {
                     Given::Object(object) => Some(object.address()),
@@ -189,29 +196,29 @@ impl<'a> Instance<'a, '_> {
     /// The value of an argument that is an input of the function or written out.
     pub(super) fn input_of_c(&mut self, argument: &Argument) -> Option<Val> {
         match argument {
-            Argument::Name(name) => self.local(*name).map(|i| self.eval.locals[i].1.clone()),
+            Argument::Name(name) => self.instance.local(*name).map(|i| self.instance.eval.locals[i].1.clone()),
             Argument::Text(words) => Some(Val::text(words.as_str())),
-            Argument::Number(x) => Some(Val::Scalar(self.exprs.num(*x), Type::Real)),
+            Argument::Number(x) => Some(Val::Scalar(self.instance.exprs.num(*x), Type::Real)),
             Argument::Size(..) | Argument::Other => None,
         }
     }
 
     /// The values with which outputs and protected variables go into the call, where they are declared with one.
     pub(super) fn prepare_locals(&mut self, callee: &Callee<'a>) -> Option<()> {
-        let formals = self.formals(callee, |c, p| {
+        let formals = self.instance.calls().formals(callee, |c, p| {
             !crate::instance::calls::binding::is_input(c, p)
                 && c.modification.as_ref().is_some_and(|m| m.value.is_some())
         });
         for f in crate::instance::calls::locals::in_order_of_use(&formals) {
-            let value = self.declared_local(f)?;
-            self.eval.locals.push((f.name, value));
+            let value = self.instance.calls().declared_local(f)?;
+            self.instance.eval.locals.push((f.name, value));
         }
         Some(())
     }
 
     fn given(&self, value: Option<&Val>) -> Given {
         match value {
-            Some(text @ Val::Text(_)) => match text.as_text(&self.exprs) {
+            Some(text @ Val::Text(_)) => match text.as_text(&self.instance.exprs) {
                 Some(text) => Given::Text(text),
                 None => Given::Numbers { dims: Vec::new(), values: vec![None] },
             },
@@ -219,7 +226,7 @@ impl<'a> Instance<'a, '_> {
             Some(value) => {
                 let mut scalars = Vec::new();
                 value.scalars(&mut scalars);
-                let values = scalars.iter().map(|e| self.exprs.as_num(*e)).collect();
+                let values = scalars.iter().map(|e| self.instance.exprs.as_num(*e)).collect();
                 Given::Numbers { dims: value.dims().to_vec(), values }
             }
             None => Given::Numbers { dims: Vec::new(), values: Vec::new() },
@@ -242,8 +249,8 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// The outputs of a call in the order of the C call: the result, then those among the arguments.
-    fn c_outputs(&self, call: &CCall, callee: &Callee<'a>) -> Vec<Symbol> {
-        let formals = self.formals(callee, |c, _| c.prefix.causality == Some(Causality::Output));
+    fn c_outputs(&mut self, call: &CCall, callee: &Callee<'a>) -> Vec<Symbol> {
+        let formals = self.instance.calls().formals(callee, |c, _| c.prefix.causality == Some(Causality::Output));
         let outputs = call.arguments.iter().filter_map(Argument::name).filter(|n| formals.iter().any(|f| f.name == *n));
         call.result.into_iter().chain(outputs).collect()
     }
@@ -251,20 +258,20 @@ impl<'a> Instance<'a, '_> {
     fn external_values(&mut self, found: Vec<Given>, call: &CCall, callee: &Callee<'a>) -> Option<Val> {
         let names = self.c_outputs(call, callee);
         let mut outputs = Vec::new();
-        for f in self.formals(callee, |c, _| c.prefix.causality == Some(Causality::Output)) {
+        for f in self.instance.calls().formals(callee, |c, _| c.prefix.causality == Some(Causality::Output)) {
             let at = names.iter().position(|n| *n == f.name)?;
-            let ty = self.declared_local(&f)?.element_type().unwrap_or(Type::Real);
+            let ty = self.instance.calls().declared_local(&f)?.element_type().unwrap_or(Type::Real);
             outputs.push(match found.get(at)? {
                 Given::Text(text) => Val::text(text.as_str()),
                 Given::Object(object) => Val::Object(object.clone()),
                 Given::Numbers { dims, values } => {
-                    let number = |x: &Option<f64>| Some(Val::Scalar(self.exprs.num((*x)?), ty));
+                    let number = |x: &Option<f64>| Some(Val::Scalar(self.instance.exprs.num((*x)?), ty));
                     let mut numbers: Vec<Val> = values.iter().map(number).collect::<Option<_>>()?;
                     if dims.is_empty() { numbers.pop()? } else { Val::array(dims.clone(), numbers) }
                 }
             });
         }
-        Self::outputs(outputs)
+        FunctionCalls::outputs(outputs)
     }
 
     /// A call that stays one, or its numbers where all arguments are known.
@@ -277,20 +284,20 @@ impl<'a> Instance<'a, '_> {
         scalars: &[ExprId],
     ) -> Option<Val> {
         let names = self.c_outputs(call, callee);
-        let formals = self.formals(callee, |c, _| c.prefix.causality == Some(Causality::Output));
+        let formals = self.instance.calls().formals(callee, |c, _| c.prefix.causality == Some(Causality::Output));
         let mut blanks = Vec::new();
         for name in &names {
             let f = formals.iter().find(|f| f.name == *name)?;
-            blanks.push((*name, self.declared_local(f)?));
+            blanks.push((*name, self.instance.calls().declared_local(f)?));
         }
         let count: usize = blanks.iter().map(|(_, v)| v.elements().len()).sum();
-        let known: Option<Vec<f64>> = scalars.iter().map(|e| self.exprs.as_num(*e)).collect();
+        let known: Option<Vec<f64>> = scalars.iter().map(|e| self.instance.exprs.as_num(*e)).collect();
         let results: Vec<ExprId> = match known {
-            Some(args) => (0..count).map(|k| self.exprs.num(function.value(k, &args))).collect(),
+            Some(args) => (0..count).map(|k| self.instance.exprs.num(function.value(k, &args))).collect(),
             None => {
                 let id = self.external_id(function, key, &callee.name, scalars.len(), count);
                 let output = |k: usize| u32::try_from(k).expect("few outputs");
-                (0..count).map(|k| self.exprs.call(id, output(k), scalars)).collect()
+                (0..count).map(|k| self.instance.exprs.call(id, output(k), scalars)).collect()
             }
         };
         let mut results = results.into_iter();
@@ -301,7 +308,7 @@ impl<'a> Instance<'a, '_> {
         let output =
             |f: &crate::instance::call::Formal<'a>| filled.iter().find(|(n, _)| *n == f.name).map(|(_, v)| v.clone());
         let outputs: Option<Vec<Val>> = formals.iter().map(output).collect();
-        Self::outputs(outputs?)
+        FunctionCalls::outputs(outputs?)
     }
 
     fn external_id(
@@ -312,7 +319,7 @@ impl<'a> Instance<'a, '_> {
         inputs: usize,
         outputs: usize,
     ) -> bramah_expr::FunctionId {
-        if let Some(&id) = self.externals.get(key) {
+        if let Some(&id) = self.instance.externals.get(key) {
             return id;
         }
         let small = |n: usize| u32::try_from(n).expect("few arguments");
@@ -321,14 +328,14 @@ impl<'a> Instance<'a, '_> {
         let slots: Vec<u32> = (0..outputs).map(|k| small(inputs + k)).collect();
         let assign =
             |(k, slot): (usize, &u32)| Stmt::Assign(*slot, Term::External(handle.clone(), small(k), args.clone()));
-        let id = self.exprs.add_function(Function {
+        let id = self.instance.exprs.add_function(Function {
             name: name.to_owned(),
             inputs: small(inputs),
             slots: small(inputs + outputs),
             outputs: slots.clone(),
             body: slots.iter().enumerate().map(assign).collect(),
         });
-        self.externals.insert(key.to_owned(), id);
+        self.instance.externals.insert(key.to_owned(), id);
         id
     }
 
@@ -339,21 +346,24 @@ impl<'a> Instance<'a, '_> {
         given: crate::instance::vectorised::Given,
         place: Place,
     ) -> Option<Val> {
-        let constructor =
-            match self.member(&crate::instance::lookup::Found::Class(class.clone()), Symbol::new("constructor")) {
-                Some(crate::instance::lookup::Found::Class(c)) => c,
-                _ => {
-                    let message = format!("`{}` has no `constructor`", self.library.full_name(class.class));
-                    return self.fail(Code::BadCall, &message, place.call);
-                }
-            };
-        let template = self.template(constructor.class, constructor.parent);
-        let scope = self.package(&constructor);
-        let callee = Callee { scope, template, name: self.library.full_name(constructor.class) };
+        let constructor = match self
+            .instance
+            .names()
+            .member(&crate::instance::lookup::Found::Class(class.clone()), Symbol::new("constructor"))
+        {
+            Some(crate::instance::lookup::Found::Class(c)) => c,
+            _ => {
+                let message = format!("`{}` has no `constructor`", self.instance.library.full_name(class.class));
+                return self.instance.fail(Code::BadCall, &message, place.call);
+            }
+        };
+        let template = self.instance.names().template(constructor.class, constructor.parent);
+        let scope = self.instance.names().package(&constructor);
+        let callee = Callee { scope, template, name: self.instance.library.full_name(constructor.class) };
         match self.external_builtin_of(&callee) {
             Some(how) => self.call_external(how, &callee, given.positional, given.named, place),
             None => {
-                self.unsupported(place.call, &format!("the external object `{}`", callee.name));
+                self.instance.unsupported(place.call, &format!("the external object `{}`", callee.name));
                 None
             }
         }

@@ -3,7 +3,7 @@
 
 use crate::instance::call::Callee;
 use crate::instance::value::Val;
-use crate::instance::{Instance, Node, View};
+use crate::instance::{ExternalCalls, Node, View};
 use bramah_expr::types::Type;
 use bramah_results::table::{Axes, Matrix, read_table};
 use bramah_syntax::ast::{ClassBody, Expr, ExprKind, Ident};
@@ -35,7 +35,7 @@ impl Place {
     }
 }
 
-impl<'a> Instance<'a, '_> {
+impl<'a> ExternalCalls<'_, 'a, '_> {
     /// Which of the known external functions a function is, by the name of its C function.
     pub(in crate::instance) fn file_function(&self, callee: &Callee<'a>) -> Option<FileFunction> {
         let ClassBody::Long(body) = &callee.template.bases.first()?.ast.body else { return None };
@@ -52,10 +52,10 @@ impl<'a> Instance<'a, '_> {
     pub(in crate::instance) fn file_place(&mut self, first: Option<&'a Expr>, view: View, call: Span) -> Place {
         let given = first.and_then(|e| match &e.kind {
             ExprKind::Reference(r) if r.parts.len() == 1 => {
-                let index = *self.scope(view.scope).template.by_name.get(&r.parts[0].name.name)?;
-                let node = self.component(view.scope, index)?;
-                let Node::Var(i) = *self.node(node) else { return None };
-                self.variables[i as usize].binding.as_ref().map(|b| b.expr.span)
+                let index = *self.instance.scope(view.scope).template.by_name.get(&r.parts[0].name.name)?;
+                let node = self.instance.builder().component(view.scope, index)?;
+                let Node::Var(i) = *self.instance.node(node) else { return None };
+                self.instance.variables[i as usize].binding.as_ref().map(|b| b.expr.span)
             }
             _ => Some(e.span),
         });
@@ -70,7 +70,9 @@ impl<'a> Instance<'a, '_> {
         named: Vec<(Ident, Val)>,
         place: Place,
     ) -> Option<Val> {
-        self.with_inputs(callee, positional, named, place.call, |s| s.carry_out(function, callee, place))
+        self.instance
+            .calls()
+            .with_inputs(callee, positional, named, place.call, |s| s.externals().carry_out(function, callee, place))
     }
 
     fn carry_out(&mut self, function: FileFunction, callee: &Callee<'a>, place: Place) -> Option<Val> {
@@ -78,67 +80,68 @@ impl<'a> Instance<'a, '_> {
         let matrix = self.table(&file, &name, place)?;
         let whole = |n: usize| n as f64;
         if function == FileFunction::Size {
-            let sizes = [matrix.rows, matrix.columns].map(|n| Val::Scalar(self.exprs.num(whole(n)), Type::Integer));
+            let sizes =
+                [matrix.rows, matrix.columns].map(|n| Val::Scalar(self.instance.exprs.num(whole(n)), Type::Integer));
             return Some(Val::array(vec![2], sizes.to_vec()));
         }
         let [axes, rows, columns] = ["axes", "m", "n"].map(|input| self.number_input(input));
         let axes = axes.and_then(Axes::from_number);
         let (Some(axes), Some(rows), Some(columns)) = (axes, rows, columns) else {
             let message = format!("`{}` needs known sizes, and 0, 1 or 2 for `axes`", callee.name);
-            return self.fail(Code::BadCall, &message, place.call);
+            return self.instance.fail(Code::BadCall, &message, place.call);
         };
         if let Err(d) = matrix.check(axes) {
-            self.report(d.at(place.span(), "the file is named here"));
+            self.instance.report(d.at(place.span(), "the file is named here"));
             return None;
         }
         if (whole(matrix.rows), whole(matrix.columns)) != (rows, columns) {
             let have = format!("{} rows and {} columns", matrix.rows, matrix.columns);
             let message = format!("the table in `{file}` has {have}, and {rows} rows and {columns} columns are needed");
-            return self.fail(Code::BadData, &message, place.span());
+            return self.instance.fail(Code::BadData, &message, place.span());
         }
-        let values = matrix.values.iter().map(|&x| Val::Scalar(self.exprs.num(x), Type::Real)).collect();
+        let values = matrix.values.iter().map(|&x| Val::Scalar(self.instance.exprs.num(x), Type::Real)).collect();
         Some(Val::array(vec![matrix.rows, matrix.columns], values))
     }
 
     fn input_value(&self, name: &str) -> Option<&Val> {
-        self.local(Symbol::new(name)).map(|i| &self.eval.locals[i].1)
+        self.instance.local(Symbol::new(name)).map(|i| &self.instance.eval.locals[i].1)
     }
 
     fn number_input(&self, name: &str) -> Option<f64> {
-        self.input_value(name)?.as_number(&self.exprs)
+        self.input_value(name)?.as_number(&self.instance.exprs)
     }
 
     fn text_input(&mut self, name: &str, callee: &Callee<'a>, place: Place) -> Option<String> {
-        let text = self.input_value(name).and_then(|v| v.as_text(&self.exprs));
+        let text = self.input_value(name).and_then(|v| v.as_text(&self.instance.exprs));
         if text.is_none() {
             let message = format!("`{name}` of `{}` must be known before the run", callee.name);
-            return self.fail(Code::NotConstant, &message, place.call);
+            return self.instance.fail(Code::NotConstant, &message, place.call);
         }
         text
     }
 
     pub(in crate::instance) fn table(&mut self, file: &str, name: &str, place: Place) -> Option<Rc<Matrix>> {
-        let id = match self.library.data(file) {
+        let id = match self.instance.library.data(file) {
             Ok(id) => id,
             Err(why) => {
                 let d = Diagnostic::new(Code::FileAccess, format!("cannot read `{file}`: {why}"))
                     .at(place.span(), "the file is named here")
                     .help("a relative path begins at the folder of the model's file, or else where the command runs; `modelica://Package/...` begins at the folder of a package");
-                self.report(d);
+                self.instance.report(d);
                 return None;
             }
         };
-        if let Some(matrix) = self.tables.get(&(id, name.to_owned())) {
+        if let Some(matrix) = self.instance.tables.get(&(id, name.to_owned())) {
             return Some(matrix.clone());
         }
-        match read_table(&self.library.sources, id, name) {
+        match read_table(&self.instance.library.sources, id, name) {
             Ok(matrix) => {
                 let matrix = Rc::new(matrix);
-                self.tables.insert((id, name.to_owned()), matrix.clone());
+                self.instance.tables.insert((id, name.to_owned()), matrix.clone());
                 Some(matrix)
             }
             Err(d) => {
-                self.report(d.at(place.span(), "the file is named here"));
+                self.instance.report(d.at(place.span(), "the file is named here"));
                 None
             }
         }

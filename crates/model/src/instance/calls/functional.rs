@@ -3,19 +3,19 @@
 use crate::instance::call::Formal;
 use crate::instance::lookup::Found;
 use crate::instance::value::Val;
-use crate::instance::{ClassRef, Instance, View};
+use crate::instance::{ClassRef, FunctionCalls, View};
 use bramah_syntax::ast::{ClassKind, Expr, Ident, Path, Reference};
 use bramah_syntax::diag::Code;
 use std::rc::Rc;
 
-impl<'a> Instance<'a, '_> {
+impl<'a> FunctionCalls<'_, 'a, '_> {
     /// A function as a value; `None` for other classes.
     pub(in crate::instance) fn function_value(
         &mut self,
         class: &ClassRef<'a>,
         bound: Vec<(Ident, Val)>,
     ) -> Option<Val> {
-        let template = self.template(class.class, class.parent);
+        let template = self.instance.names().template(class.class, class.parent);
         if !matches!(template.kind, ClassKind::Function { .. }) {
             return None;
         }
@@ -23,9 +23,9 @@ impl<'a> Instance<'a, '_> {
             (c.class, c.parent) == (class.class, class.parent)
                 && (Rc::ptr_eq(&c.args, &class.args) || c.args.is_empty() && class.args.is_empty())
         };
-        let at = self.functions.iter().position(same).unwrap_or_else(|| {
-            self.functions.push(class.clone());
-            self.functions.len() - 1
+        let at = self.instance.functions.iter().position(same).unwrap_or_else(|| {
+            self.instance.functions.push(class.clone());
+            self.instance.functions.len() - 1
         });
         Some(Val::Function(u32::try_from(at).expect("few functions"), Rc::new(bound)))
     }
@@ -39,21 +39,21 @@ impl<'a> Instance<'a, '_> {
     ) -> Option<Val> {
         let mut bound = Vec::with_capacity(named.len());
         for (name, e) in named {
-            bound.push((*name, self.eval(e, view)?));
+            bound.push((*name, self.instance.evaluator().eval(e, view)?));
         }
         if let [name] = function.parts.as_slice()
-            && let Some(i) = self.local(name.name)
-            && let Val::Function(f, before) = self.eval.locals[i].1.clone()
+            && let Some(i) = self.instance.local(name.name)
+            && let Val::Function(f, before) = self.instance.eval.locals[i].1.clone()
         {
             bound.extend_from_slice(&before);
             return Some(Val::Function(f, Rc::new(bound)));
         }
-        let found = self.class_at(view, function)?;
+        let found = self.instance.names().class_at(view, function)?;
         let made = match &found {
             Found::Class(class) => self.function_value(class, bound),
             _ => None,
         };
-        made.or_else(|| self.fail(Code::UnknownFunction, "this is not a function", function.span))
+        made.or_else(|| self.instance.fail(Code::UnknownFunction, "this is not a function", function.span))
     }
 
     /// The function that an input of the function being carried out stands for.
@@ -62,16 +62,18 @@ impl<'a> Instance<'a, '_> {
         function: &Reference,
     ) -> Option<(ClassRef<'a>, Rc<Vec<(Ident, Val)>>)> {
         let [part] = function.parts.as_slice() else { return None };
-        match &self.eval.locals[self.local(part.name.name)?].1 {
-            Val::Function(f, bound) => Some((self.functions[*f as usize].clone(), bound.clone())),
+        match &self.instance.eval.locals[self.instance.local(part.name.name)?].1 {
+            Val::Function(f, bound) => Some((self.instance.functions[*f as usize].clone(), bound.clone())),
             _ => None,
         }
     }
 
     /// Whether an input takes a function.
     pub(in crate::instance) fn is_functional(&mut self, f: &Formal<'a>) -> bool {
-        match self.lookup_path(f.view, &f.component.class) {
-            Ok(Found::Class(c)) => matches!(self.template(c.class, c.parent).kind, ClassKind::Function { .. }),
+        match self.instance.names().lookup_path(f.view, &f.component.class) {
+            Ok(Found::Class(c)) => {
+                matches!(self.instance.names().template(c.class, c.parent).kind, ClassKind::Function { .. })
+            }
             _ => false,
         }
     }

@@ -1,6 +1,6 @@
 //! Outputs and protected variables of functions as they begin: with their declared values, or zeros in their shape.
 
-use crate::instance::Instance;
+use crate::instance::FunctionCalls;
 use crate::instance::call::{Callee, Formal};
 use crate::instance::lookup::{Builtin, Found};
 use crate::instance::template::Template;
@@ -12,13 +12,13 @@ use bramah_syntax::diag::{Code, Span};
 use bramah_syntax::symbol::Symbol;
 use std::rc::Rc;
 
-impl<'a> Instance<'a, '_> {
+impl<'a> FunctionCalls<'_, 'a, '_> {
     /// The initial value of an output or protected component of a function; zero where nothing is said.
     pub(in crate::instance) fn declared_local(&mut self, f: &Formal<'a>) -> Option<Val> {
-        let reached = self.reached(f.view.scope, f.index);
+        let reached = self.instance.names().reached(f.view.scope, f.index);
         let value = match reached.binding {
-            Some(b) if b.access.is_empty() => Some(self.eval(b.expr, b.view)?),
-            Some(b) => Some(self.binding_value(&b, true)?),
+            Some(b) if b.access.is_empty() => Some(self.instance.evaluator().eval(b.expr, b.view)?),
+            Some(b) => Some(self.instance.evaluator().binding_value(&b, true)?),
             None => None,
         };
         let blank = self.blank(f, value.as_ref())?;
@@ -32,7 +32,7 @@ impl<'a> Instance<'a, '_> {
                         size_text(blank.dims()),
                         size_text(v.dims())
                     );
-                    return self.fail(Code::SizeMismatch, &message, f.component.name.span);
+                    return self.instance.fail(Code::SizeMismatch, &message, f.component.name.span);
                 }
                 let ty = blank.element_type().unwrap_or(Type::Real);
                 Some(if ty == Type::Real { v.with_type(ty) } else { v })
@@ -42,9 +42,9 @@ impl<'a> Instance<'a, '_> {
 
     /// Zeros in the declared shape.
     pub(in crate::instance) fn blank(&mut self, f: &Formal<'a>, value: Option<&Val>) -> Option<Val> {
-        let mut found = self.class_at(f.view, &f.component.class)?;
+        let mut found = self.instance.names().class_at(f.view, &f.component.class)?;
         // `output R r(x = u)`: fields take what the declaration says of them
-        let given = self.reached(f.view.scope, f.index).args;
+        let given = self.instance.names().reached(f.view.scope, f.index).args;
         if let Found::Class(c) = &mut found
             && !given.is_empty()
         {
@@ -56,14 +56,18 @@ impl<'a> Instance<'a, '_> {
             dims.push(match s {
                 // without a value of its own it takes the size of what is assigned to it (MLS 12.4.5)
                 ast::Subscript::All(_) => value.and_then(|v| v.dims().get(i).copied()).unwrap_or(0),
-                ast::Subscript::Expr(e) => match self.enumeration_range(e, f.view) {
+                ast::Subscript::Expr(e) => match self.instance.evaluator().enumeration_range(e, f.view) {
                     Some(all) => all.len(),
-                    None => self.known_number(e, f.view)?.0.max(0.0) as usize,
+                    None => self.instance.evaluator().known_number(e, f.view)?.0.max(0.0) as usize,
                 },
             });
         }
         if dims.iter().product::<usize>() > 1_000_000 {
-            return self.fail(Code::TooLarge, "this array has more than a million elements", f.component.name.span);
+            return self.instance.fail(
+                Code::TooLarge,
+                "this array has more than a million elements",
+                f.component.name.span,
+            );
         }
         Some(repeated(&one, dims))
     }
@@ -80,23 +84,23 @@ impl<'a> Instance<'a, '_> {
         match found {
             Found::Builtin(b) => Some(of(*b)),
             Found::Class(c) => {
-                let t = self.template(c.class, c.parent);
+                let t = self.instance.names().template(c.class, c.parent);
                 let dims = self.type_dims(&t)?;
                 if let Some(b) = t.builtin {
                     return Some(repeated(&of(b), dims));
                 }
                 let mut fields = Vec::new();
-                let scope = self.package(c);
+                let scope = self.instance.names().package(c);
                 let callee = Callee { scope, template: t, name: String::new() };
                 for f in self.formals(&callee, |_, _| true) {
                     let value = self.declared_local(&f)?;
                     fields.push((f.name, value));
                 }
-                let class = self.operator_class(c);
+                let class = self.instance.operators().operator_class(c);
                 let one = Val::Record(Rc::new(crate::instance::value::Record { fields, class }));
                 Some(repeated(&one, dims))
             }
-            Found::Component(..) => self.fail(Code::WrongClassKind, "a type is needed here", span),
+            Found::Component(..) => self.instance.fail(Code::WrongClassKind, "a type is needed here", span),
         }
     }
 
@@ -107,8 +111,10 @@ impl<'a> Instance<'a, '_> {
             let view = t.bases[*base as usize].parent;
             for s in *subscripts {
                 dims.push(match s {
-                    ast::Subscript::All(span) => return self.fail(Code::NoValue, "this size is not given", *span),
-                    ast::Subscript::Expr(e) => self.extent(e, view)?.size,
+                    ast::Subscript::All(span) => {
+                        return self.instance.fail(Code::NoValue, "this size is not given", *span);
+                    }
+                    ast::Subscript::Expr(e) => self.instance.evaluator().extent(e, view)?.size,
                 });
             }
         }

@@ -4,6 +4,7 @@
 //! Expressions inside are built in the same pool, with locals standing as variables numbered from [`LOCAL`] on, and
 //! then turned into terms.
 
+use crate::instance::FunctionCalls;
 use crate::instance::algorithm::assigned;
 use crate::instance::call::{Callee, Formal, sections};
 use crate::instance::calls::binding::is_input;
@@ -12,7 +13,7 @@ use crate::instance::deduce::Body;
 use crate::instance::evaluation::indices::Pick;
 use crate::instance::evaluation::state::Mode;
 use crate::instance::value::Val;
-use crate::instance::{Instance, View};
+use crate::instance::{ProcedureTranslator, View};
 use bramah_expr::function::{Function, Stmt, Term};
 use bramah_expr::types::Type;
 use bramah_expr::{ExprId, Exprs, FunctionId, Node, VarId};
@@ -34,7 +35,7 @@ pub struct Translation {
     captures: Option<Vec<ExprId>>,
 }
 
-impl<'a> Instance<'a, '_> {
+impl<'a> ProcedureTranslator<'_, 'a, '_> {
     /// Calls a function through its procedure.
     pub(in crate::instance) fn call_procedure(
         &mut self,
@@ -43,11 +44,11 @@ impl<'a> Instance<'a, '_> {
         named: Vec<(Ident, Val)>,
         span: Span,
     ) -> Option<Val> {
-        let values = self.with_inputs(callee, positional, named, span, |s| {
+        let values = self.instance.calls().with_inputs(callee, positional, named, span, |s| {
             Some(s.eval.locals[s.eval.frame..].iter().map(|(_, v)| v.clone()).collect::<Vec<Val>>())
         })?;
         let key = self.procedure_key(callee, &values);
-        let known = self.procedures.get(&key).cloned();
+        let known = self.instance.procedures.get(&key).cloned();
         let (function, shapes) = match known {
             Some(found) => found,
             None => self.translate(callee, &values, key, span)?,
@@ -62,17 +63,19 @@ impl<'a> Instance<'a, '_> {
             .map(|shape| {
                 shape.map(&mut |_, _| {
                     number += 1;
-                    self.exprs.call(function, number - 1, &args)
+                    self.instance.exprs.call(function, number - 1, &args)
                 })
             })
             .collect();
-        Self::outputs(outputs)
+        FunctionCalls::outputs(outputs)
     }
 
     /// Whole numbers and truth values that are known are built in: sizes and loop bounds depend on them.
     fn specialised(&self, v: &Val) -> bool {
         match v {
-            Val::Scalar(e, Type::Integer | Type::Boolean | Type::Enumeration(_)) => self.exprs.as_num(*e).is_some(),
+            Val::Scalar(e, Type::Integer | Type::Boolean | Type::Enumeration(_)) => {
+                self.instance.exprs.as_num(*e).is_some()
+            }
             Val::Text(_) => true,
             _ => false,
         }
@@ -82,7 +85,7 @@ impl<'a> Instance<'a, '_> {
         let mut key = format!("{}@{}", callee.name, callee.scope.0);
         for v in values {
             if self.specialised(v) {
-                key.push_str(&format!("={:?}{:?}", v.as_number(&self.exprs), v.as_text(&self.exprs)));
+                key.push_str(&format!("={:?}{:?}", v.as_number(&self.instance.exprs), v.as_text(&self.instance.exprs)));
             } else {
                 let mut scalars = Vec::new();
                 v.scalars(&mut scalars);
@@ -102,31 +105,32 @@ impl<'a> Instance<'a, '_> {
         key: String,
         span: Span,
     ) -> Option<(FunctionId, Vec<Val>)> {
-        let outer = std::mem::take(&mut self.eval.translation);
-        let not_inline = std::mem::replace(&mut self.eval.not_inline, false);
+        let outer = std::mem::take(&mut self.instance.eval.translation);
+        let not_inline = std::mem::replace(&mut self.instance.eval.not_inline, false);
         let change = |m: &mut Mode| (m.procedure, m.constant) = (true, false);
-        let result = self.in_mode(change, |s| s.in_frame(|s| s.translate_body(callee, values, key)));
-        let refused = std::mem::replace(&mut self.eval.not_inline, not_inline);
-        self.eval.translation = outer;
+        let result =
+            self.instance.in_mode(change, |s| s.in_frame(|s| s.procedures().translate_body(callee, values, key)));
+        let refused = std::mem::replace(&mut self.instance.eval.not_inline, not_inline);
+        self.instance.eval.translation = outer;
         if result.is_none() && refused {
             let message = format!("`{}` has sizes or ranges that are only known at run time", callee.name);
-            return self.fail(Code::NotConstant, &message, span);
+            return self.instance.fail(Code::NotConstant, &message, span);
         }
         result
     }
 
     fn translate_body(&mut self, callee: &Callee<'a>, values: &[Val], key: String) -> Option<(FunctionId, Vec<Val>)> {
-        let inputs = self.formals(callee, is_input);
+        let inputs = self.instance.calls().formals(callee, is_input);
         for (f, v) in inputs.iter().zip(values) {
             let local = if self.specialised(v) { v.clone() } else { self.slots_like(v) };
-            self.eval.locals.push((f.name, local));
+            self.instance.eval.locals.push((f.name, local));
         }
-        let count = self.eval.translation.slots;
+        let count = self.instance.eval.translation.slots;
         let locals = self.locals_in_slots(callee)?;
         let shapes: Vec<Val> = locals
             .iter()
             .filter(|f| f.component.prefix.causality == Some(Causality::Output))
-            .filter_map(|f| self.local(f.name).map(|i| self.eval.locals[i].1.clone()))
+            .filter_map(|f| self.instance.local(f.name).map(|i| self.instance.eval.locals[i].1.clone()))
             .collect();
         let mut outputs = Vec::new();
         shapes.iter().for_each(|s| s.scalars(&mut outputs));
@@ -134,29 +138,29 @@ impl<'a> Instance<'a, '_> {
         // Entered before the body is translated, so that a recursive call finds it.
         let blank =
             Function { name: callee.name.clone(), inputs: count, slots: 0, outputs: outputs.clone(), body: Vec::new() };
-        let id = self.exprs.add_function(blank);
-        self.procedures.insert(key.clone(), (id, shapes.clone()));
+        let id = self.instance.exprs.add_function(blank);
+        self.instance.procedures.insert(key.clone(), (id, shapes.clone()));
         for (section, view) in sections(callee) {
             if self.procedure_statements(section, view).is_none() {
-                self.procedures.remove(&key);
+                self.instance.procedures.remove(&key);
                 return None;
             }
         }
-        let body = std::mem::take(&mut self.eval.translation.statements);
-        let slots = self.eval.translation.slots;
-        let f = &mut self.exprs.functions[id.0 as usize];
+        let body = std::mem::take(&mut self.instance.eval.translation.statements);
+        let slots = self.instance.eval.translation.slots;
+        let f = &mut self.instance.exprs.functions[id.0 as usize];
         (f.slots, f.body) = (slots, body);
         Some((id, shapes))
     }
 
     /// Outputs and protected variables in slots, with the values that they begin with.
     fn locals_in_slots(&mut self, callee: &Callee<'a>) -> Option<Vec<Formal<'a>>> {
-        let locals = self.formals(callee, |c, p| !is_input(c, p));
+        let locals = self.instance.calls().formals(callee, |c, p| !is_input(c, p));
         for f in in_order_of_use(&locals) {
-            let value = self.declared_local(f)?;
+            let value = self.instance.calls().declared_local(f)?;
             let slots = self.slots_like(&value);
             self.store(&slots, &value);
-            self.eval.locals.push((f.name, slots));
+            self.instance.eval.locals.push((f.name, slots));
         }
         Some(locals)
     }
@@ -165,28 +169,28 @@ impl<'a> Instance<'a, '_> {
     /// changing values say. Its relations make no events (MLS 11.2.3).
     pub(in crate::instance) fn loop_as_procedure(&mut self, s: &'a Statement, view: View) -> Option<()> {
         let changed = self.assigned_locals(s)?;
-        let before = self.eval.locals.clone();
-        let outer = std::mem::take(&mut self.eval.translation);
+        let before = self.instance.eval.locals.clone();
+        let outer = std::mem::take(&mut self.instance.eval.translation);
         let mut captures = Vec::new();
         let mut made = None;
         // Once to see what it reads, once with slots for that.
         for _ in 0..2 {
-            self.eval.locals.clone_from(&before);
+            self.instance.eval.locals.clone_from(&before);
             let slots = u32::try_from(captures.len()).expect("limited sizes");
-            self.eval.translation = Translation { slots, statements: Vec::new(), captures: Some(captures) };
-            made = self.in_mode(|m| m.procedure = true, |i| i.translate_loop(s, &changed, view));
-            captures = self.eval.translation.captures.take().unwrap_or_default();
+            self.instance.eval.translation = Translation { slots, statements: Vec::new(), captures: Some(captures) };
+            made = self.instance.in_mode(|m| m.procedure = true, |i| i.procedures().translate_loop(s, &changed, view));
+            captures = self.instance.eval.translation.captures.take().unwrap_or_default();
             if made.is_none() {
                 break;
             }
         }
-        let done = std::mem::replace(&mut self.eval.translation, outer);
-        self.eval.locals = before;
+        let done = std::mem::replace(&mut self.instance.eval.translation, outer);
+        self.instance.eval.locals = before;
         let shapes = made?;
         let mut outputs = Vec::new();
         shapes.iter().for_each(|v| v.scalars(&mut outputs));
-        let function = self.exprs.add_function(Function {
-            name: self.library.full_name(self.scope(view.scope).template.class),
+        let function = self.instance.exprs.add_function(Function {
+            name: self.instance.library.full_name(self.instance.scope(view.scope).template.class),
             inputs: u32::try_from(captures.len()).expect("limited sizes"),
             slots: done.slots,
             outputs: outputs.iter().filter_map(|&e| self.slot(e)).collect(),
@@ -194,9 +198,9 @@ impl<'a> Instance<'a, '_> {
         });
         let mut number = 0;
         for (i, shape) in changed.into_iter().zip(shapes) {
-            self.eval.locals[i].1 = shape.map(&mut |_, _| {
+            self.instance.eval.locals[i].1 = shape.map(&mut |_, _| {
                 number += 1;
-                self.exprs.call(function, number - 1, &captures)
+                self.instance.exprs.call(function, number - 1, &captures)
             });
         }
         Some(())
@@ -208,9 +212,10 @@ impl<'a> Instance<'a, '_> {
         assigned(std::slice::from_ref(s), false, &mut targets, &mut in_when);
         if let Some(target) = in_when.first() {
             let message = "a `when` cannot stand in a loop that runs as often as changing values say";
-            return self.fail(Code::Unsupported, message, target.parts[0].name.span);
+            return self.instance.fail(Code::Unsupported, message, target.parts[0].name.span);
         }
-        let mut changed: Vec<usize> = targets.iter().filter_map(|r| self.local(r.parts[0].name.name)).collect();
+        let mut changed: Vec<usize> =
+            targets.iter().filter_map(|r| self.instance.local(r.parts[0].name.name)).collect();
         changed.sort_unstable();
         changed.dedup();
         Some(changed)
@@ -219,36 +224,36 @@ impl<'a> Instance<'a, '_> {
     /// The slots in which the changed variables end.
     fn translate_loop(&mut self, s: &'a Statement, changed: &[usize], view: View) -> Option<Vec<Val>> {
         for &i in changed {
-            let value = self.eval.locals[i].1.clone();
+            let value = self.instance.eval.locals[i].1.clone();
             let slots = self.slots_like(&value);
             self.store(&slots, &value);
-            self.eval.locals[i].1 = slots;
+            self.instance.eval.locals[i].1 = slots;
         }
         self.procedure_statement(s, view)?;
-        Some(changed.iter().map(|&i| self.eval.locals[i].1.clone()).collect())
+        Some(changed.iter().map(|&i| self.instance.eval.locals[i].1.clone()).collect())
     }
 
     /// Fresh slots in the shape of a value.
     fn slots_like(&mut self, v: &Val) -> Val {
-        let mut pool = std::mem::take(&mut self.exprs);
-        let slots = &mut self.eval.translation.slots;
+        let mut pool = std::mem::take(&mut self.instance.exprs);
+        let slots = &mut self.instance.eval.translation.slots;
         let made = v.map(&mut |_, _| {
             *slots += 1;
             pool.var(VarId(LOCAL + *slots - 1))
         });
-        self.exprs = pool;
+        self.instance.exprs = pool;
         made
     }
 
     fn slot(&self, e: ExprId) -> Option<u32> {
-        match self.exprs.node(e) {
+        match self.instance.exprs.node(e) {
             Node::Var(v) if v.0 >= LOCAL => Some(v.0 - LOCAL),
             _ => None,
         }
     }
 
     fn emit(&mut self, s: Stmt) {
-        self.eval.translation.statements.push(s);
+        self.instance.eval.translation.statements.push(s);
     }
 
     /// Stores a value into slots; several at once go through temporaries, as all are read before any is written.
@@ -262,8 +267,8 @@ impl<'a> Instance<'a, '_> {
             self.emit(Stmt::Assign(targets[0], terms[0].clone()));
             return;
         }
-        let first = self.eval.translation.slots;
-        self.eval.translation.slots += u32::try_from(terms.len()).expect("limited sizes");
+        let first = self.instance.eval.translation.slots;
+        self.instance.eval.translation.slots += u32::try_from(terms.len()).expect("limited sizes");
         for (i, t) in (first..).zip(terms) {
             self.emit(Stmt::Assign(i, t));
         }
@@ -274,9 +279,9 @@ impl<'a> Instance<'a, '_> {
 
     /// Translates statements into a list of their own.
     fn nested(&mut self, f: impl FnOnce(&mut Self) -> Option<()>) -> Option<Vec<Stmt>> {
-        let outer = std::mem::take(&mut self.eval.translation.statements);
+        let outer = std::mem::take(&mut self.instance.eval.translation.statements);
         let done = f(self);
-        let inner = std::mem::replace(&mut self.eval.translation.statements, outer);
+        let inner = std::mem::replace(&mut self.instance.eval.translation.statements, outer);
         done.map(|()| inner)
     }
 
@@ -287,13 +292,13 @@ impl<'a> Instance<'a, '_> {
     fn procedure_statement(&mut self, s: &'a Statement, view: View) -> Option<()> {
         match &s.kind {
             StatementKind::Assign(target, value) => {
-                let value = self.eval(value, view)?;
+                let value = self.instance.evaluator().eval(value, view)?;
                 self.procedure_assign(target, &value, view, s.span)
             }
             StatementKind::AssignTuple(targets, call) => {
-                let value = self.eval_all(call, view)?;
+                let value = self.instance.evaluator().eval_all(call, view)?;
                 let Val::Tuple(values) = &value else {
-                    return self.fail(Code::BadCall, "this function has one result only", s.span);
+                    return self.instance.fail(Code::BadCall, "this function has one result only", s.span);
                 };
                 for (target, v) in targets.iter().zip(values.iter()) {
                     if let Some(t) = target {
@@ -306,13 +311,15 @@ impl<'a> Instance<'a, '_> {
             StatementKind::If { branches, otherwise } => self.procedure_if(branches, otherwise, view),
             StatementKind::For { iterators, body } => self.procedure_for(iterators, body, view),
             StatementKind::While(condition, body) => {
-                let c = self.eval(condition, view)?;
+                let c = self.instance.evaluator().eval(condition, view)?;
                 let test = self.boolean_term(&c, condition.span)?;
                 let body = self.nested(|s| s.procedure_statements(body, view))?;
                 self.emit(Stmt::While(test, body));
                 Some(())
             }
-            StatementKind::When(_) => self.fail(Code::Unsupported, "`when` cannot stand in a function", s.span),
+            StatementKind::When(_) => {
+                self.instance.fail(Code::Unsupported, "`when` cannot stand in a function", s.span)
+            }
             StatementKind::Break => {
                 self.emit(Stmt::Break);
                 Some(())
@@ -328,13 +335,16 @@ impl<'a> Instance<'a, '_> {
         if let ExprKind::Call { function, args, .. } = &call.kind
             && function.parts[0].name.name == "assert"
         {
-            let c = self.eval(args.first()?, view)?;
+            let c = self.instance.evaluator().eval(args.first()?, view)?;
             let test = self.boolean_term(&c, call.span)?;
-            let text = args.get(1).and_then(|m| self.eval(m, view)).map(|v| v.in_words(&self.exprs));
+            let text = args
+                .get(1)
+                .and_then(|m| self.instance.evaluator().eval(m, view))
+                .map(|v| v.in_words(&self.instance.exprs));
             self.emit(Stmt::Assert(test, text.unwrap_or_default()));
             return Some(());
         }
-        self.eval_all(call, view).map(|_| ())
+        self.instance.evaluator().eval_all(call, view).map(|_| ())
     }
 
     /// The statements of a function without outputs as part of the procedure being translated.
@@ -345,13 +355,13 @@ impl<'a> Instance<'a, '_> {
         named: Vec<(Ident, Val)>,
         span: Span,
     ) -> Option<Val> {
-        self.with_inputs(callee, positional, named, span, |s| {
-            s.locals_in_slots(callee)?;
+        self.instance.calls().with_inputs(callee, positional, named, span, |s| {
+            s.procedures().locals_in_slots(callee)?;
             for (section, view) in sections(callee) {
                 if let Some(end) = section.iter().find(|s| returns(s)) {
                     return s.fail(Code::Unsupported, "a `return` of a function without outputs", end.span);
                 }
-                s.procedure_statements(section, view)?;
+                s.procedures().procedure_statements(section, view)?;
             }
             Some(Val::Tuple(Vec::new().into()))
         })
@@ -360,34 +370,34 @@ impl<'a> Instance<'a, '_> {
     fn boolean_term(&mut self, v: &Val, span: Span) -> Option<Term> {
         match v.scalar() {
             Some((e, Type::Boolean)) => Some(self.term(e)),
-            _ => self.wrong_type("a Boolean", v, span),
+            _ => self.instance.evaluator().wrong_type("a Boolean", v, span),
         }
     }
 
     fn procedure_assign(&mut self, target: &'a Expr, value: &Val, view: View, span: Span) -> Option<()> {
-        let (r, i) = self.assigned_local(target)?;
+        let (r, i) = self.instance.statements().assigned_local(target)?;
         let name = r.parts[0].name;
         let value = value.first_output();
-        let mut place = self.eval.locals[i].1.clone();
+        let mut place = self.instance.eval.locals[i].1.clone();
         let whole = r.parts.len() == 1 && r.parts[0].subscripts.is_empty() && place.dims() != value.dims();
         if whole && place.elements().is_empty() && self.takes_any_size(view, name.name) {
             place = self.slots_like(&value);
-            self.eval.locals[i].1 = place.clone();
+            self.instance.eval.locals[i].1 = place.clone();
         }
         for (k, part) in r.parts.iter().enumerate() {
             if k > 0 {
-                place = self.field(&place, part.name.name, part.name.span)?;
+                place = self.instance.evaluator().field(&place, part.name.name, part.name.span)?;
             }
             if !part.subscripts.is_empty() {
                 if let Some(done) = self.store_element(&place, part, r, k, &value, view, span)? {
                     return Some(done);
                 }
-                place = self.subscript(place, &part.subscripts, view, span)?;
+                place = self.instance.evaluator().subscript(place, &part.subscripts, view, span)?;
             }
         }
         if place.dims() != value.dims() {
             let message = format!("{} cannot take {}", place.describe(), value.describe());
-            return self.fail(Code::SizeMismatch, &message, span);
+            return self.instance.fail(Code::SizeMismatch, &message, span);
         }
         self.store(&place, &value);
         Some(())
@@ -395,7 +405,8 @@ impl<'a> Instance<'a, '_> {
 
     /// Whether a protected variable of a function takes the size of what is assigned to it; outputs are sized before.
     fn takes_any_size(&mut self, view: View, name: Symbol) -> bool {
-        self.is_flexible(view, name) && self.declaration(view, name).is_some_and(|c| c.prefix.causality.is_none())
+        self.instance.statements().is_flexible(view, name)
+            && self.instance.statements().declaration(view, name).is_some_and(|c| c.prefix.causality.is_none())
     }
 
     /// `a[i] := value` with an index known at run time only.
@@ -415,16 +426,16 @@ impl<'a> Instance<'a, '_> {
             return Some(None);
         }
         let mut picks = Vec::new();
-        let by = if k == 0 { self.counted_by(view, part.name.name) } else { Vec::new() };
+        let by = if k == 0 { self.instance.evaluator().counted_by(view, part.name.name) } else { Vec::new() };
         for (i, (s, &n)) in part.subscripts.iter().zip(dims).enumerate() {
-            picks.push(self.index(s, (n, by.get(i).copied()), view, span)?);
+            picks.push(self.instance.evaluator().index(s, (n, by.get(i).copied()), view, span)?);
         }
         if !picks.iter().any(|p| matches!(p, Pick::Symbolic(_))) {
             return Some(None);
         }
         let base = elements.first().and_then(|v| v.scalar()).and_then(|(e, _)| self.slot(e));
         let (Some(base), Some((e, _)), true) = (base, value.scalar(), k + 1 == r.parts.len()) else {
-            return self.fail(Code::Unsupported, "this assignment needs an index known before the run", span);
+            return self.instance.fail(Code::Unsupported, "this assignment needs an index known before the run", span);
         };
         let offset = self.offset(dims, &picks);
         let (offset, value) = (self.term(offset), self.term(e));
@@ -437,14 +448,14 @@ impl<'a> Instance<'a, '_> {
     fn offset(&mut self, dims: &[usize], picks: &[Pick]) -> ExprId {
         let mut offset = Exprs::ZERO;
         for (p, &d) in picks.iter().zip(dims) {
-            let size = self.exprs.num(d as f64);
-            offset = self.exprs.mul(offset, size);
+            let size = self.instance.exprs.num(d as f64);
+            offset = self.instance.exprs.mul(offset, size);
             let place = match p {
-                Pick::One(i) => self.exprs.num(*i as f64),
-                Pick::Symbolic(e) => self.exprs.sub(*e, Exprs::ONE),
+                Pick::One(i) => self.instance.exprs.num(*i as f64),
+                Pick::Symbolic(e) => self.instance.exprs.sub(*e, Exprs::ONE),
                 Pick::Many(_) => Exprs::ZERO,
             };
-            offset = self.exprs.add(offset, place);
+            offset = self.instance.exprs.add(offset, place);
         }
         offset
     }
@@ -467,8 +478,8 @@ impl<'a> Instance<'a, '_> {
         let base = match first {
             Some(b) if lined_up => b,
             _ => {
-                let base = self.eval.translation.slots;
-                self.eval.translation.slots += u32::try_from(scalars.len()).expect("limited sizes");
+                let base = self.instance.eval.translation.slots;
+                self.instance.eval.translation.slots += u32::try_from(scalars.len()).expect("limited sizes");
                 for (s, e) in (base..).zip(scalars) {
                     let t = self.term(e);
                     self.emit(Stmt::Assign(s, t));
@@ -477,8 +488,8 @@ impl<'a> Instance<'a, '_> {
             }
         };
         let offset = self.offset(dims, picks);
-        let len = self.exprs.num(elements.len() as f64);
-        Some(Val::Scalar(self.exprs.call(ELEMENT, base, &[offset, len]), ty))
+        let len = self.instance.exprs.num(elements.len() as f64);
+        Some(Val::Scalar(self.instance.exprs.call(ELEMENT, base, &[offset, len]), ty))
     }
 
     fn procedure_if(
@@ -489,8 +500,8 @@ impl<'a> Instance<'a, '_> {
     ) -> Option<()> {
         let mut tests = Vec::new();
         for (condition, body) in branches {
-            let c = self.eval(condition, view)?;
-            if c.as_number(&self.exprs) == Some(0.0) {
+            let c = self.instance.evaluator().eval(condition, view)?;
+            if c.as_number(&self.instance.exprs) == Some(0.0) {
                 continue;
             }
             let test = self.boolean_term(&c, condition.span)?;
@@ -498,7 +509,7 @@ impl<'a> Instance<'a, '_> {
         }
         let otherwise = self.nested(|s| s.procedure_statements(otherwise, view))?;
         if tests.is_empty() {
-            self.eval.translation.statements.extend(otherwise);
+            self.instance.eval.translation.statements.extend(otherwise);
         } else {
             self.emit(Stmt::If(tests, otherwise));
         }
@@ -509,22 +520,26 @@ impl<'a> Instance<'a, '_> {
         let Some((first, rest)) = iterators.split_first() else { return self.procedure_statements(body, view) };
         match first.range.as_ref().map(|r| &r.kind) {
             Some(ExprKind::Range { from, step, to }) => {
-                let from = self.eval(from, view)?;
+                let from = self.instance.evaluator().eval(from, view)?;
                 let step = match step {
-                    Some(s) => self.eval(s, view)?,
-                    None => self.integer(1.0),
+                    Some(s) => self.instance.evaluator().eval(s, view)?,
+                    None => self.instance.evaluator().integer(1.0),
                 };
-                let to = self.eval(to, view)?;
+                let to = self.instance.evaluator().eval(to, view)?;
                 let ty = from.element_type().unwrap_or(Type::Integer);
                 let bounds: Option<Vec<Term>> =
                     [from, step, to].iter().map(|v| v.scalar().map(|(e, _)| self.term(e))).collect();
                 let Some([from, step, to]) = bounds.and_then(|b| <[Term; 3]>::try_from(b).ok()) else {
-                    return self.fail(Code::TypeMismatch, "the bounds of a range are numbers", first.name.span);
+                    return self.instance.fail(
+                        Code::TypeMismatch,
+                        "the bounds of a range are numbers",
+                        first.name.span,
+                    );
                 };
                 self.loop_over(first.name.name, ty, (from, step, to), None, rest, body, view)
             }
             _ => {
-                let values = self.iterate(first, Body::Statements(body), view)?;
+                let values = self.instance.evaluator().iterate(first, Body::Statements(body), view)?;
                 let n = values.len();
                 let Some(ty) = values.first().and_then(Val::element_type) else { return Some(()) };
                 let array = Val::array(vec![n], values);
@@ -552,9 +567,9 @@ impl<'a> Instance<'a, '_> {
             None => Val::Scalar(index, ty),
             Some(a) => self.indexed_slot(a.dims(), a.elements(), &[Pick::Symbolic(index)])?,
         };
-        self.eval.locals.push((name, value));
+        self.instance.eval.locals.push((name, value));
         let body = self.nested(|s| s.procedure_for(rest, body, view));
-        self.eval.locals.pop();
+        self.instance.eval.locals.pop();
         let (from, step, to) = bounds;
         self.emit(Stmt::For { slot, from, step, to, body: body? });
         Some(())
@@ -562,10 +577,10 @@ impl<'a> Instance<'a, '_> {
 
     /// An expression of the pool as a term over slots.
     fn term(&mut self, e: ExprId) -> Term {
-        match self.exprs.node(e) {
+        match self.instance.exprs.node(e) {
             Node::Num(bits) => Term::Num(f64::from_bits(bits)),
             Node::Var(v) if v.0 >= LOCAL => Term::Slot(v.0 - LOCAL),
-            _ if self.eval.translation.captures.is_some() && !self.uses_slots(e) => self.captured(e),
+            _ if self.instance.eval.translation.captures.is_some() && !self.uses_slots(e) => self.captured(e),
             Node::Unary(op, a) => Term::Unary(op, self.boxed(a)),
             Node::Binary(op, a, b) => Term::Binary(op, self.boxed(a), self.boxed(b)),
             Node::Rel(rel, a, b) | Node::EventRel(rel, a, b) => Term::Rel(rel, self.boxed(a), self.boxed(b)),
@@ -573,12 +588,12 @@ impl<'a> Instance<'a, '_> {
             Node::If(c, a, b) => Term::If(self.boxed(c), self.boxed(a), self.boxed(b)),
             Node::Homotopy(a, _) => self.term(a),
             Node::Call(ELEMENT, base, args) => {
-                let args = self.exprs.args(args);
-                let (offset, len) = (args[0], self.exprs.as_num(args[1]).unwrap_or(0.0) as u32);
+                let args = self.instance.exprs.args(args);
+                let (offset, len) = (args[0], self.instance.exprs.as_num(args[1]).unwrap_or(0.0) as u32);
                 Term::At { base, len, offset: self.boxed(offset) }
             }
             Node::Call(f, output, args) => {
-                let args = self.exprs.args(args).to_vec();
+                let args = self.instance.exprs.args(args).to_vec();
                 Term::Call(f, output, args.into_iter().map(|a| self.term(a)).collect())
             }
             // Nothing else can be named in a function; not a number makes a mistake of ours visible.
@@ -591,17 +606,17 @@ impl<'a> Instance<'a, '_> {
     }
 
     fn uses_slots(&self, e: ExprId) -> bool {
-        let slot = |e: &ExprId| match self.exprs.node(*e) {
+        let slot = |e: &ExprId| match self.instance.exprs.node(*e) {
             Node::Var(v) => v.0 >= LOCAL,
             Node::Call(f, ..) => f == ELEMENT,
             _ => false,
         };
-        self.exprs.reachable(&[e], |_| true).iter().any(slot)
+        self.instance.exprs.reachable(&[e], |_| true).iter().any(slot)
     }
 
     /// An expression of the model that a loop reads, in the slot it is handed in.
     fn captured(&mut self, e: ExprId) -> Term {
-        let captures = self.eval.translation.captures.get_or_insert_default();
+        let captures = self.instance.eval.translation.captures.get_or_insert_default();
         let at = captures.iter().position(|&c| c == e).unwrap_or_else(|| {
             captures.push(e);
             captures.len() - 1

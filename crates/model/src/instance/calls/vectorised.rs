@@ -1,6 +1,6 @@
 //! Functions of single values called with arrays: one call for each element (MLS 12.4.6).
 
-use crate::instance::Instance;
+use crate::instance::FunctionCalls;
 use crate::instance::call::{Callee, Formal};
 use crate::instance::calls::binding::is_input;
 use crate::instance::lookup::Found;
@@ -18,7 +18,7 @@ pub(in crate::instance) struct Given {
     pub named: Vec<(Ident, Val)>,
 }
 
-impl<'a> Instance<'a, '_> {
+impl<'a> FunctionCalls<'_, 'a, '_> {
     /// Calls a function, element by element where arguments have more dimensions than their inputs.
     pub(in crate::instance) fn call_elementwise(
         &mut self,
@@ -81,7 +81,7 @@ impl<'a> Instance<'a, '_> {
                         f.name
                     );
                     let d = Diagnostic::new(Code::SizeMismatch, message).at(span, "this call");
-                    self.report(d.help("give arrays of the same size, or single values that all calls share"));
+                    self.instance.report(d.help("give arrays of the same size, or single values that all calls share"));
                     return None;
                 }
             }
@@ -95,8 +95,10 @@ impl<'a> Instance<'a, '_> {
         if v.dims().len() <= declared {
             return 0;
         }
-        let of_type = match self.lookup_path(f.view, &f.component.class) {
-            Ok(Found::Class(c)) => self.template(c.class, c.parent).dims.iter().map(|(s, _)| s.len()).sum(),
+        let of_type = match self.instance.names().lookup_path(f.view, &f.component.class) {
+            Ok(Found::Class(c)) => {
+                self.instance.names().template(c.class, c.parent).dims.iter().map(|(s, _)| s.len()).sum()
+            }
             _ => 0,
         };
         v.dims().len().saturating_sub(declared + of_type)
@@ -123,7 +125,7 @@ impl<'a> Instance<'a, '_> {
         let shapes: Vec<String> = results.iter().map(Val::describe).collect();
         let Some(Val::Array { dims: stacked, elements }) = stack(results) else {
             let message = format!("the calls for each element differ in size: {}", shapes.join(", "));
-            return self.fail(Code::SizeMismatch, &message, span);
+            return self.instance.fail(Code::SizeMismatch, &message, span);
         };
         Some(Val::Array { dims: dims.into_iter().chain(stacked[1..].iter().copied()).collect(), elements })
     }

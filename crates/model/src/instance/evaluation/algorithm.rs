@@ -6,7 +6,7 @@ use crate::instance::evaluation::indices::places;
 use crate::instance::lookup::Found;
 use crate::instance::template::Kind;
 use crate::instance::value::{Val, size_text};
-use crate::instance::{Instance, View};
+use crate::instance::{Statements, View};
 use bramah_expr::types::{MessagePart, Type, Variability};
 use bramah_expr::{ExprId, Exprs, Rel};
 use bramah_syntax::ast::{Component, Expr, ExprKind, Reference, ReferencePart, Statement, StatementKind, Subscript};
@@ -93,12 +93,12 @@ pub struct Asserted {
     pub warning: bool,
 }
 
-impl<'a> Instance<'a, '_> {
+impl<'a> Statements<'_, 'a, '_> {
     /// Carries out statements; `None` after a message, or when they cannot be written as expressions.
     pub fn execute(&mut self, statements: &'a [Statement], view: View) -> Option<Flow> {
         for (i, s) in statements.iter().enumerate() {
-            if !self.eval.work.step() {
-                self.eval.not_inline = true;
+            if !self.instance.eval.work.step() {
+                self.instance.eval.not_inline = true;
                 return None;
             }
             match self.statement(s, view)? {
@@ -106,10 +106,10 @@ impl<'a> Instance<'a, '_> {
                 Flow::BreakIf(left) => {
                     let rest = self.unless_left(left, |s| s.execute(&statements[i + 1..], view))?;
                     let Some(later) = rest.left() else {
-                        self.eval.not_inline = true;
+                        self.instance.eval.not_inline = true;
                         return None;
                     };
-                    return Some(Flow::leaving(self.exprs.or(left, later)));
+                    return Some(Flow::leaving(self.instance.exprs.or(left, later)));
                 }
                 other => return Some(other),
             }
@@ -122,8 +122,8 @@ impl<'a> Instance<'a, '_> {
         if left == Exprs::ZERO {
             return f(self);
         }
-        let before = self.eval.locals.clone();
-        let not = self.exprs.not(left);
+        let before = self.instance.eval.locals.clone();
+        let not = self.instance.exprs.not(left);
         let done = self.guarded(not, f)?;
         self.merge_locals(left, &before)?;
         Some(done)
@@ -131,18 +131,18 @@ impl<'a> Instance<'a, '_> {
 
     /// Gives locals the values they had where a condition holds.
     fn merge_locals(&mut self, test: ExprId, before: &[(Symbol, Val)]) -> Option<()> {
-        for i in self.eval.frame..self.eval.locals.len() {
-            let (a, b) = (&before[i].1, &self.eval.locals[i].1);
-            match a.zip(b, &mut |x, y, _| self.exprs.if_(test, x, y)) {
-                Some(merged) => self.eval.locals[i].1 = merged,
+        for i in self.instance.eval.frame..self.instance.eval.locals.len() {
+            let (a, b) = (&before[i].1, &self.instance.eval.locals[i].1);
+            match a.zip(b, &mut |x, y, _| self.instance.exprs.if_(test, x, y)) {
+                Some(merged) => self.instance.eval.locals[i].1 = merged,
                 // which of the two it is is not known before the run, and a message can say no more
                 None if matches!((a, b), (Val::Text(_), Val::Text(_))) => {
                     let words = MessagePart::Text("a text by a condition that is ".into());
                     let parts = vec![words, MessagePart::Value(test, Type::Boolean)];
-                    self.eval.locals[i].1 = Val::Text(Rc::new(parts));
+                    self.instance.eval.locals[i].1 = Val::Text(Rc::new(parts));
                 }
                 None => {
-                    self.eval.not_inline = true;
+                    self.instance.eval.not_inline = true;
                     return None;
                 }
             }
@@ -153,12 +153,12 @@ impl<'a> Instance<'a, '_> {
     fn statement(&mut self, s: &'a Statement, view: View) -> Option<Flow> {
         match &s.kind {
             StatementKind::Assign(target, value) => {
-                let value = self.eval(value, view)?;
+                let value = self.instance.evaluator().eval(value, view)?;
                 self.assign(target, value, view, s.span)?;
                 Some(Flow::Next)
             }
             StatementKind::AssignTuple(targets, call) => {
-                let value = self.eval_all(call, view)?;
+                let value = self.instance.evaluator().eval_all(call, view)?;
                 self.assign_tuple(targets, value, view, s.span)?;
                 Some(Flow::Next)
             }
@@ -184,7 +184,7 @@ impl<'a> Instance<'a, '_> {
         };
         if targets.len() > values.len() {
             let message = format!("{} results are wanted and {} are there", targets.len(), values.len());
-            return self.fail(Code::BadCall, &message, span);
+            return self.instance.fail(Code::BadCall, &message, span);
         }
         for (target, value) in targets.iter().zip(values) {
             if let Some(t) = target {
@@ -197,12 +197,12 @@ impl<'a> Instance<'a, '_> {
     /// The local that a target names, or a message.
     pub(in crate::instance) fn assigned_local(&mut self, target: &'a Expr) -> Option<(&'a Reference, usize)> {
         let ExprKind::Reference(r) = &target.kind else {
-            return self.fail(Code::TypeMismatch, "only a variable can be assigned to", target.span);
+            return self.instance.fail(Code::TypeMismatch, "only a variable can be assigned to", target.span);
         };
         let name = r.parts[0].name;
-        let local = self.local(name.name);
+        let local = self.instance.local(name.name);
         if local.is_none() {
-            self.unknown_name(name.name, name.span, &[]);
+            self.instance.evaluator().unknown_name(name.name, name.span, &[]);
         }
         local.map(|i| (r, i))
     }
@@ -212,14 +212,14 @@ impl<'a> Instance<'a, '_> {
         let (r, i) = self.assigned_local(target)?;
         let name = r.parts[0].name;
         let value = value.first_output();
-        let old = self.eval.locals[i].1.clone();
+        let old = self.instance.eval.locals[i].1.clone();
         let whole = r.parts.len() == 1 && r.parts[0].subscripts.is_empty();
         if whole && old.dims().len() == value.dims().len() && self.is_flexible(view, name.name) {
-            self.eval.locals[i].1 = value;
+            self.instance.eval.locals[i].1 = value;
             return Some(());
         }
         let new = self.replaced(&old, r, 0, value, view, span)?;
-        self.eval.locals[i].1 = new;
+        self.instance.eval.locals[i].1 = new;
         Some(())
     }
 
@@ -230,8 +230,8 @@ impl<'a> Instance<'a, '_> {
 
     /// The declaration of a variable of a function.
     pub(in crate::instance) fn declaration(&mut self, view: View, name: Symbol) -> Option<&'a Component> {
-        let Some(Found::Component(scope, index)) = self.lookup(view, name) else { return None };
-        match self.scope(scope).template.elements[index as usize].kind {
+        let Some(Found::Component(scope, index)) = self.instance.names().lookup(view, name) else { return None };
+        match self.instance.scope(scope).template.elements[index as usize].kind {
             Kind::Component(c) => Some(c),
             Kind::Class(_) => None,
         }
@@ -255,9 +255,9 @@ impl<'a> Instance<'a, '_> {
             return self.replaced_field(old, r, part + 1, value, view, span);
         }
         let Val::Array { dims, elements } = old else {
-            return self.fail(Code::BadIndex, &format!("`{}` is not an array", p.name.name), span);
+            return self.instance.fail(Code::BadIndex, &format!("`{}` is not an array", p.name.name), span);
         };
-        let by = if part == 0 { self.counted_by(view, p.name.name) } else { Vec::new() };
+        let by = if part == 0 { self.instance.evaluator().counted_by(view, p.name.name) } else { Vec::new() };
         let picks = self.picks(dims, &by, p, view, span)?;
         if picks.iter().any(|p| matches!(p, Pick::Symbolic(_))) {
             return self.replaced_somewhere(dims, elements, &picks, last, &value, span);
@@ -267,14 +267,14 @@ impl<'a> Instance<'a, '_> {
         if last {
             if places.len() != value.elements().len() {
                 let message = format!("{} places cannot take {}", places.len(), value.describe());
-                return self.fail(Code::SizeMismatch, &message, span);
+                return self.instance.fail(Code::SizeMismatch, &message, span);
             }
             for (&place, v) in places.iter().zip(value.elements()) {
                 elements[place] = self.matching(&elements[place].clone(), v.clone(), span)?;
             }
         } else {
             let [place] = places[..] else {
-                return self.fail(Code::BadIndex, "one element must be named here", span);
+                return self.instance.fail(Code::BadIndex, "one element must be named here", span);
             };
             elements[place] = self.replaced_field(&elements[place].clone(), r, part + 1, value, view, span)?;
         }
@@ -292,7 +292,7 @@ impl<'a> Instance<'a, '_> {
     ) -> Option<Val> {
         let name = r.parts[part].name;
         let Val::Record(record) = old else {
-            return self.fail(
+            return self.instance.fail(
                 Code::UnknownName,
                 &format!("{} has no field `{}`", old.describe(), name.name),
                 name.span,
@@ -301,7 +301,7 @@ impl<'a> Instance<'a, '_> {
         let mut fields = record.fields.clone();
         let Some(i) = fields.iter().position(|(n, _)| *n == name.name) else {
             let names: Vec<Symbol> = fields.iter().map(|(n, _)| *n).collect();
-            self.unknown_name(name.name, name.span, &names);
+            self.instance.evaluator().unknown_name(name.name, name.span, &names);
             return None;
         };
         fields[i].1 = self.replaced(&fields[i].1.clone(), r, part, value, view, span)?;
@@ -319,11 +319,11 @@ impl<'a> Instance<'a, '_> {
     ) -> Option<Vec<Pick>> {
         if p.subscripts.len() > dims.len() {
             let message = format!("{} indices for an array of size {}", p.subscripts.len(), size_text(dims));
-            return self.fail(Code::BadIndex, &message, span);
+            return self.instance.fail(Code::BadIndex, &message, span);
         }
         let mut picks = Vec::with_capacity(dims.len());
         for (i, (s, &n)) in p.subscripts.iter().zip(dims).enumerate() {
-            picks.push(self.index(s, (n, by.get(i).copied()), view, span)?);
+            picks.push(self.instance.evaluator().index(s, (n, by.get(i).copied()), view, span)?);
         }
         picks.extend(dims[picks.len()..].iter().map(|&n| Pick::Many((0..n).collect())));
         Some(picks)
@@ -340,8 +340,8 @@ impl<'a> Instance<'a, '_> {
         value: &Val,
         span: Span,
     ) -> Option<Val> {
-        if self.eval.depth > 0 || !last || picks.iter().any(|p| matches!(p, Pick::Many(_))) {
-            self.eval.not_inline = true;
+        if self.instance.eval.depth > 0 || !last || picks.iter().any(|p| matches!(p, Pick::Many(_))) {
+            self.instance.eval.not_inline = true;
             return None;
         }
         let mut replaced = Vec::with_capacity(elements.len());
@@ -352,16 +352,16 @@ impl<'a> Instance<'a, '_> {
                 let place = rest % n;
                 rest /= n;
                 let here = match p {
-                    Pick::One(i) => self.exprs.boolean(*i == place),
+                    Pick::One(i) => self.instance.exprs.boolean(*i == place),
                     Pick::Symbolic(e) => {
-                        let number = self.exprs.num(place as f64 + 1.0);
-                        self.exprs.rel(Rel::Eq, *e, number)
+                        let number = self.instance.exprs.num(place as f64 + 1.0);
+                        self.instance.exprs.rel(Rel::Eq, *e, number)
                     }
                     Pick::Many(_) => Exprs::ZERO,
                 };
-                hit = self.exprs.and(hit, here);
+                hit = self.instance.exprs.and(hit, here);
             }
-            replaced.push(value.zip(old, &mut |new, old, _| self.exprs.if_(hit, new, old))?);
+            replaced.push(value.zip(old, &mut |new, old, _| self.instance.exprs.if_(hit, new, old))?);
         }
         Some(Val::array(dims.to_vec(), replaced))
     }
@@ -370,41 +370,55 @@ impl<'a> Instance<'a, '_> {
     fn matching(&mut self, old: &Val, value: Val, span: Span) -> Option<Val> {
         if old.dims() != value.dims() {
             let message = format!("{} cannot take {}", old.describe(), value.describe());
-            return self.fail(Code::SizeMismatch, &message, span);
+            return self.instance.fail(Code::SizeMismatch, &message, span);
         }
         match (old.element_type(), value.element_type()) {
             (Some(Type::Real), Some(Type::Integer)) => Some(value.with_type(Type::Real)),
-            (Some(a), Some(b)) if a != b => {
-                self.fail(Code::TypeMismatch, &format!("{} cannot take {}", old.describe(), value.describe()), span)
-            }
+            (Some(a), Some(b)) if a != b => self.instance.fail(
+                Code::TypeMismatch,
+                &format!("{} cannot take {}", old.describe(), value.describe()),
+                span,
+            ),
             _ => Some(value),
         }
     }
 
     /// Whether a value that changes decides if the present statement is carried out.
     fn may_not_come_here(&self) -> bool {
-        !self.eval.guards.is_empty() || self.eval.mode.procedure || self.eval.mode.under_procedure
+        !self.instance.eval.guards.is_empty()
+            || self.instance.eval.mode.procedure
+            || self.instance.eval.mode.under_procedure
     }
 
     /// `assert` in a function: known to hold, known to fail, or left to a procedure.
     fn statement_call(&mut self, call: &'a Expr, view: View) -> Option<Flow> {
         if let ExprKind::Call { function, args, .. } = &call.kind {
             match function.parts[0].name.name.as_str() {
-                "assert" if (self.eval.frame > 0 || self.eval.depth > 0) && !self.eval.mode.keep_asserts => {
-                    let c = self.eval(args.first()?, view)?;
-                    return match c.as_number(&self.exprs) {
+                "assert"
+                    if (self.instance.eval.frame > 0 || self.instance.eval.depth > 0)
+                        && !self.instance.eval.mode.keep_asserts =>
+                {
+                    let c = self.instance.evaluator().eval(args.first()?, view)?;
+                    return match c.as_number(&self.instance.exprs) {
                         Some(x) if x != 0.0 => Some(Flow::Next),
                         Some(_) if self.may_not_come_here() => {
-                            (self.eval.not_inline, self.eval.may_fail) = (true, true);
+                            (self.instance.eval.not_inline, self.instance.eval.may_fail) = (true, true);
                             None
                         }
                         Some(_) => {
-                            let text = args.get(1).and_then(|m| self.eval(m, view)).map(|v| v.in_words(&self.exprs));
+                            let text = args
+                                .get(1)
+                                .and_then(|m| self.instance.evaluator().eval(m, view))
+                                .map(|v| v.in_words(&self.instance.exprs));
                             let text = text.unwrap_or_else(|| "an assertion".into());
-                            self.fail(Code::Evaluation, &format!("an assertion of a function fails: {text}"), call.span)
+                            self.instance.fail(
+                                Code::Evaluation,
+                                &format!("an assertion of a function fails: {text}"),
+                                call.span,
+                            )
                         }
                         None => {
-                            self.eval.not_inline = true;
+                            self.instance.eval.not_inline = true;
                             None
                         }
                     };
@@ -416,17 +430,18 @@ impl<'a> Instance<'a, '_> {
                 "reinit" => {
                     let d = Diagnostic::new(Code::BadCall, "`reinit` cannot stand in an algorithm");
                     let d = d.at(call.span, "an equation is needed here");
-                    self.report(d.help("write it below `equation`: `when condition then reinit(x, value); end when;`"));
+                    self.instance
+                        .report(d.help("write it below `equation`: `when condition then reinit(x, value); end when;`"));
                     return None;
                 }
                 "terminate" => {
-                    let message = args.first().and_then(|m| self.eval(m, view));
+                    let message = args.first().and_then(|m| self.instance.evaluator().eval(m, view));
                     return self.keep_call(None, message, false, call.span);
                 }
                 _ => {}
             }
         }
-        self.eval_all(call, view)?;
+        self.instance.evaluator().eval_all(call, view)?;
         Some(Flow::Next)
     }
 
@@ -439,10 +454,10 @@ impl<'a> Instance<'a, '_> {
         span: Span,
     ) -> Option<Flow> {
         let mut guard = Exprs::ONE;
-        for g in self.eval.guards.clone() {
-            guard = self.exprs.and(guard, g);
+        for g in self.instance.eval.guards.clone() {
+            guard = self.instance.exprs.and(guard, g);
         }
-        self.eval.calls.push(AlgorithmCall { condition, guard, message, warning, span });
+        self.instance.eval.calls.push(AlgorithmCall { condition, guard, message, warning, span });
         Some(Flow::Next)
     }
 
@@ -451,16 +466,18 @@ impl<'a> Instance<'a, '_> {
         let ExprKind::Call { args, named, .. } = &call.kind else { return None };
         let by_name = |n: &str| named.iter().find(|(i, _)| i.name == n).map(|(_, e)| e);
         let Some(condition) = args.first().or_else(|| by_name("condition")) else {
-            return self.fail(Code::BadCall, "`assert` needs a condition and a message", call.span);
+            return self.instance.fail(Code::BadCall, "`assert` needs a condition and a message", call.span);
         };
-        let value = self.in_mode(|m| m.no_event = true, |s| s.eval(condition, view));
+        let value = self.instance.in_mode(|m| m.no_event = true, |s| s.evaluator().eval(condition, view));
         let value = value?;
         let Some((condition, Type::Boolean)) = value.scalar() else {
-            return self.wrong_type("a Boolean", &value, condition.span);
+            return self.instance.evaluator().wrong_type("a Boolean", &value, condition.span);
         };
-        let message = args.get(1).or_else(|| by_name("message")).and_then(|m| self.eval(m, view));
+        let message = args.get(1).or_else(|| by_name("message")).and_then(|m| self.instance.evaluator().eval(m, view));
         let warning = match args.get(2).or_else(|| by_name("level")) {
-            Some(level) => self.constant(level, view)?.as_number(&self.exprs) == Some(1.0),
+            Some(level) => {
+                self.instance.evaluator().constant(level, view)?.as_number(&self.instance.exprs) == Some(1.0)
+            }
             None => false,
         };
         Some(Asserted { condition, message, warning })
@@ -473,24 +490,26 @@ impl<'a> Instance<'a, '_> {
         view: View,
     ) -> Option<Flow> {
         let Some(((condition, body), rest)) = branches.split_first() else { return self.execute(otherwise, view) };
-        let c = self.eval(condition, view)?;
-        let Some((test, Type::Boolean)) = c.scalar() else { return self.wrong_type("a Boolean", &c, condition.span) };
-        if let Some(known) = self.exprs.as_num(test) {
+        let c = self.instance.evaluator().eval(condition, view)?;
+        let Some((test, Type::Boolean)) = c.scalar() else {
+            return self.instance.evaluator().wrong_type("a Boolean", &c, condition.span);
+        };
+        if let Some(known) = self.instance.exprs.as_num(test) {
             return if known == 0.0 { self.if_statement(rest, otherwise, view) } else { self.execute(body, view) };
         }
-        let before = self.eval.locals.clone();
-        let not = self.exprs.not(test);
+        let before = self.instance.eval.locals.clone();
+        let not = self.instance.exprs.not(test);
         let first = self.guarded(test, |s| s.execute(body, view))?;
-        let after = std::mem::replace(&mut self.eval.locals, before);
+        let after = std::mem::replace(&mut self.instance.eval.locals, before);
         let second = self.guarded(not, |s| s.if_statement(rest, otherwise, view))?;
-        let ways = if self.eval.depth == 0 { first.left().zip(second.left()) } else { None };
+        let ways = if self.instance.eval.depth == 0 { first.left().zip(second.left()) } else { None };
         let Some((a, b)) = ways.or((first == Flow::Next && second == Flow::Next).then_some((Exprs::ZERO, Exprs::ZERO)))
         else {
-            self.eval.not_inline = true;
+            self.instance.eval.not_inline = true;
             return None;
         };
         self.merge_locals(test, &after)?;
-        Some(Flow::leaving(self.exprs.if_(test, a, b)))
+        Some(Flow::leaving(self.instance.exprs.if_(test, a, b)))
     }
 
     /// Runs statements that are reached under a condition only.
@@ -499,38 +518,38 @@ impl<'a> Instance<'a, '_> {
         guard: ExprId,
         f: impl FnOnce(&mut Self) -> Option<T>,
     ) -> Option<T> {
-        self.eval.guards.push(guard);
+        self.instance.eval.guards.push(guard);
         let done = f(self);
-        self.eval.guards.pop();
+        self.instance.eval.guards.pop();
         done
     }
 
     /// A loop; in a section of a model one whose trajectory is not known becomes a procedure.
     fn loop_statement(&mut self, s: &'a Statement, view: View) -> Option<Flow> {
-        let before = self.eval.locals.clone();
-        let marks = (self.diagnostics.len(), self.eval.calls.len(), self.eval.whens.len());
+        let before = self.instance.eval.locals.clone();
+        let marks = (self.instance.diagnostics.len(), self.instance.eval.calls.len(), self.instance.eval.whens.len());
         let flow = match &s.kind {
             StatementKind::For { iterators, body } => self.for_statement(iterators, body, view),
             StatementKind::While(condition, body) => self.while_statement(condition, body, view),
             _ => unreachable!("the caller found a loop"),
         };
-        let refused = flow.is_none() && self.eval.not_inline && self.diagnostics.len() == marks.0;
-        if !refused || self.eval.depth > 0 {
+        let refused = flow.is_none() && self.instance.eval.not_inline && self.instance.diagnostics.len() == marks.0;
+        if !refused || self.instance.eval.depth > 0 {
             return flow;
         }
-        self.eval.not_inline = false;
-        self.eval.locals = before;
-        self.eval.calls.truncate(marks.1);
-        self.eval.whens.truncate(marks.2);
-        self.loop_as_procedure(s, view).map(|()| Flow::Next)
+        self.instance.eval.not_inline = false;
+        self.instance.eval.locals = before;
+        self.instance.eval.calls.truncate(marks.1);
+        self.instance.eval.whens.truncate(marks.2);
+        self.instance.procedures().loop_as_procedure(s, view).map(|()| Flow::Next)
     }
 
     /// Whether the bounds of a range change during the run: then it is no list of values.
     fn varies(&mut self, range: Option<&'a Expr>, view: View) -> Option<bool> {
         let Some(ExprKind::Range { from, step, to }) = range.map(|r| &r.kind) else { return Some(false) };
         for e in [Some(&**from), step.as_deref(), Some(&**to)].into_iter().flatten() {
-            let value = self.eval(e, view)?;
-            if value.scalar().is_some_and(|(e, _)| self.variability(e) > Variability::Parameter) {
+            let value = self.instance.evaluator().eval(e, view)?;
+            if value.scalar().is_some_and(|(e, _)| self.instance.variability(e) > Variability::Parameter) {
                 return Some(true);
             }
         }
@@ -544,20 +563,20 @@ impl<'a> Instance<'a, '_> {
         view: View,
     ) -> Option<Flow> {
         let Some((first, rest)) = iterators.split_first() else { return self.execute(body, view) };
-        if self.eval.depth == 0 && self.varies(first.range.as_ref(), view)? {
-            self.eval.not_inline = true;
+        if self.instance.eval.depth == 0 && self.varies(first.range.as_ref(), view)? {
+            self.instance.eval.not_inline = true;
             return None;
         }
         let mut left = Exprs::ZERO;
-        for value in self.iterate(first, Body::Statements(body), view)? {
+        for value in self.instance.evaluator().iterate(first, Body::Statements(body), view)? {
             let flow = self.unless_left(left, |s| {
-                s.eval.locals.push((first.name.name, value));
+                s.instance.eval.locals.push((first.name.name, value));
                 let flow = s.for_statement(rest, body, view);
-                s.eval.locals.pop();
+                s.instance.eval.locals.pop();
                 flow
             })?;
             let Some(now) = flow.left() else { return Some(Flow::Return) };
-            left = self.exprs.or(left, now);
+            left = self.instance.exprs.or(left, now);
             if left == Exprs::ONE {
                 break;
             }
@@ -567,13 +586,13 @@ impl<'a> Instance<'a, '_> {
 
     fn while_statement(&mut self, condition: &'a Expr, body: &'a [Statement], view: View) -> Option<Flow> {
         loop {
-            let may_go_on = self.eval.work.step();
-            let c = self.eval(condition, view)?;
-            match c.as_number(&self.exprs) {
+            let may_go_on = self.instance.eval.work.step();
+            let c = self.instance.evaluator().eval(condition, view)?;
+            match c.as_number(&self.instance.exprs) {
                 Some(0.0) => return Some(Flow::Next),
                 Some(_) if may_go_on => {}
                 _ => {
-                    self.eval.not_inline = true;
+                    self.instance.eval.not_inline = true;
                     return None;
                 }
             }
@@ -582,7 +601,7 @@ impl<'a> Instance<'a, '_> {
                 Flow::Break => return Some(Flow::Next),
                 Flow::Return => return Some(Flow::Return),
                 Flow::BreakIf(_) => {
-                    self.eval.not_inline = true;
+                    self.instance.eval.not_inline = true;
                     return None;
                 }
             }
@@ -591,40 +610,40 @@ impl<'a> Instance<'a, '_> {
 
     /// `when` in an algorithm section of a model: what each branch assigns is kept for the flat model.
     fn when_statement(&mut self, branches: &'a [(Expr, Vec<Statement>)], view: View, span: Span) -> Option<Flow> {
-        if self.eval.depth > 0 {
-            return self.fail(Code::Unsupported, "`when` cannot stand in a function", span);
+        if self.instance.eval.depth > 0 {
+            return self.instance.fail(Code::Unsupported, "`when` cannot stand in a function", span);
         }
         let mut collected = AlgorithmWhen { branches: Vec::new(), span };
-        let before = self.eval.locals.clone();
-        let outside = std::mem::take(&mut self.eval.calls);
+        let before = self.instance.eval.locals.clone();
+        let outside = std::mem::take(&mut self.instance.eval.calls);
         for (condition, body) in branches {
             let conditions = self.when_conditions(condition, view)?;
-            let done = self.in_mode(|m| m.no_event = true, |s| s.execute(body, view));
-            let calls = std::mem::take(&mut self.eval.calls);
+            let done = self.instance.in_mode(|m| m.no_event = true, |s| s.statements().execute(body, view));
+            let calls = std::mem::take(&mut self.instance.eval.calls);
             done?;
-            let frame = self.eval.frame;
+            let frame = self.instance.eval.frame;
             let mut values = Vec::new();
-            for (i, (name, value)) in self.eval.locals.iter().enumerate().skip(frame) {
+            for (i, (name, value)) in self.instance.eval.locals.iter().enumerate().skip(frame) {
                 if !same(&before[i].1, value) {
                     values.push((*name, value.clone()));
                 }
             }
-            self.eval.locals.clone_from(&before);
+            self.instance.eval.locals.clone_from(&before);
             collected.branches.push(AlgorithmBranch { conditions, values, calls });
         }
-        self.eval.calls = outside;
-        self.eval.whens.push(collected);
+        self.instance.eval.calls = outside;
+        self.instance.eval.whens.push(collected);
         Some(Flow::Next)
     }
 
     /// The conditions of a `when`: one, or a vector of which any fires.
     pub fn when_conditions(&mut self, condition: &'a Expr, view: View) -> Option<Vec<ExprId>> {
-        let value = self.eval(condition, view)?;
+        let value = self.instance.evaluator().eval(condition, view)?;
         let mut conditions = Vec::new();
         for v in value.elements() {
             match v.scalar() {
                 Some((e, Type::Boolean)) => conditions.push(e),
-                _ => return self.wrong_type("a Boolean", v, condition.span),
+                _ => return self.instance.evaluator().wrong_type("a Boolean", v, condition.span),
             }
         }
         conditions.retain(|&c| c != Exprs::ZERO);

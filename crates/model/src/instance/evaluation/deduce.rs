@@ -3,7 +3,7 @@
 
 use crate::instance::evaluation::ranges::Extent;
 use crate::instance::lookup::Found;
-use crate::instance::{Instance, Node, View};
+use crate::instance::{Evaluator, Node, View};
 use bramah_expr::types::Type;
 use bramah_syntax::ast::{
     Component, Equation, EquationKind, Expr, ExprKind, Reference, Statement, StatementKind, Subscript,
@@ -22,7 +22,7 @@ pub enum Body<'a> {
     Statements(&'a [Statement]),
 }
 
-impl<'a> Instance<'a, '_> {
+impl<'a> Evaluator<'_, 'a, '_> {
     /// How often a loop over `name` runs, where an array tells.
     pub(in crate::instance) fn deduced_extent(&mut self, name: Symbol, body: Body<'a>, view: View) -> Option<Extent> {
         let mut found: Vec<(&'a Reference, usize, usize)> = Vec::new();
@@ -42,7 +42,7 @@ impl<'a> Instance<'a, '_> {
                         other.size, size.size
                     );
                     let d = Diagnostic::new(Code::SizeMismatch, message).at(r.span, "of another size");
-                    self.report(d.help(format!("write `for {name} in 1:n`")).note("Modelica 3.6, 11.2.2.1"));
+                    self.instance.report(d.help(format!("write `for {name} in 1:n`")).note("Modelica 3.6, 11.2.2.1"));
                     return None;
                 }
                 Some(_) => {}
@@ -55,21 +55,21 @@ impl<'a> Instance<'a, '_> {
     fn indexed_size(&mut self, r: &'a Reference, part: usize, dimension: usize, view: View) -> Option<Extent> {
         let first = r.parts[0].name.name;
         if part == 0
-            && let Some(i) = self.local(first)
+            && let Some(i) = self.instance.local(first)
         {
-            let size = *self.eval.locals[i].1.dims().get(dimension)?;
+            let size = *self.instance.eval.locals[i].1.dims().get(dimension)?;
             let by = self.counted_by(view, first).get(dimension).copied().unwrap_or(Type::Integer);
             return Some(Extent { size, by });
         }
-        let Found::Component(mut scope, mut index) = self.lookup(view, first)? else { return None };
+        let Found::Component(mut scope, mut index) = self.instance.names().lookup(view, first)? else { return None };
         for step in &r.parts[1..=part] {
             let first = self.first_of(scope, index)?;
-            let Node::Object(inner) = *self.node(first) else { return None };
+            let Node::Object(inner) = *self.instance.node(first) else { return None };
             scope = inner;
-            index = *self.scope(inner).template.by_name.get(&step.name.name)?;
+            index = *self.instance.scope(inner).template.by_name.get(&step.name.name)?;
         }
-        let node = self.component(scope, index)?;
-        match self.node(node) {
+        let node = self.instance.builder().component(scope, index)?;
+        match self.instance.node(node) {
             Node::Array { dims, by, .. } => Some(Extent { size: *dims.get(dimension)?, by: by[dimension] }),
             _ => None,
         }
@@ -77,8 +77,8 @@ impl<'a> Instance<'a, '_> {
 
     /// A component, or the first element of an array of them.
     fn first_of(&mut self, scope: crate::instance::ScopeId, index: u32) -> Option<crate::instance::NodeId> {
-        let node = self.component(scope, index)?;
-        match self.node(node) {
+        let node = self.instance.builder().component(scope, index)?;
+        match self.instance.node(node) {
             Node::Array { elements, .. } => elements.first().copied(),
             _ => Some(node),
         }

@@ -3,14 +3,14 @@
 use crate::instance::evaluation::state::Mode;
 use crate::instance::modifiers::{Access, Binding};
 use crate::instance::value::{Val, size_text, stack};
-use crate::instance::{Instance, View};
+use crate::instance::{Evaluator, View};
 use bramah_expr::types::{Type, Variability};
 use bramah_expr::{ExprId, Exprs};
 use bramah_syntax::ast::{Expr, ExprKind};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 use std::rc::Rc;
 
-impl<'a> Instance<'a, '_> {
+impl<'a> Evaluator<'_, 'a, '_> {
     /// Evaluates an expression; `None` after a message. A call with several outputs counts as its first (MLS 12.4.3).
     pub fn eval(&mut self, e: &'a Expr, view: View) -> Option<Val> {
         match self.eval_all(e, view)? {
@@ -30,28 +30,28 @@ impl<'a> Instance<'a, '_> {
             }
             _ => "this".to_owned(),
         };
-        self.fail(Code::BadCall, &format!("`{name}` has no output"), e.span)
+        self.instance.fail(Code::BadCall, &format!("`{name}` has no output"), e.span)
     }
 
     /// Evaluates an expression with all outputs of a call.
     pub fn eval_all(&mut self, e: &'a Expr, view: View) -> Option<Val> {
         match &e.kind {
             ExprKind::Integer(i) => Some(self.integer(*i as f64)),
-            ExprKind::Real(x) => Some(Val::Scalar(self.exprs.num(*x), Type::Real)),
-            ExprKind::Boolean(b) => Some(Val::Scalar(self.exprs.boolean(*b), Type::Boolean)),
+            ExprKind::Real(x) => Some(Val::Scalar(self.instance.exprs.num(*x), Type::Real)),
+            ExprKind::Boolean(b) => Some(Val::Scalar(self.instance.exprs.boolean(*b), Type::Boolean)),
             ExprKind::String(s) => Some(Val::text(&**s)),
             ExprKind::Reference(r) => self.reference(r, view),
             ExprKind::Unary(op, a) => {
                 let value = self.eval(a, view)?;
-                self.unary(*op, value, e.span)
+                self.instance.operators().unary(*op, value, e.span)
             }
             ExprKind::Binary(op, a, b) => {
                 let (x, y) = (self.eval(a, view), self.eval(b, view));
-                self.binary(*op, x?, y?, e.span)
+                self.instance.operators().binary(*op, x?, y?, e.span)
             }
             ExprKind::If { branches, otherwise } => self.if_expression(branches, otherwise, view, e.span),
             ExprKind::Range { .. } => self.range(e, view),
-            ExprKind::Call { function, args, named } => self.call(function, args, named, view, e.span),
+            ExprKind::Call { function, args, named } => self.instance.calls().call(function, args, named, view, e.span),
             ExprKind::Comprehension { function, body, iterators } => {
                 self.comprehension(function.as_ref(), body, iterators, view, e.span)
             }
@@ -69,46 +69,43 @@ impl<'a> Instance<'a, '_> {
                 let value = self.eval(inner, view)?;
                 self.subscript(value, subscripts, view, e.span)
             }
-            ExprKind::End => match self.eval.ends.last() {
+            ExprKind::End => match self.instance.eval.ends.last() {
                 // of an enumeration its last literal, of truth values `true` (MLS 10.5)
                 Some(&(_, Type::Boolean)) => Some(Val::Scalar(Exprs::ONE, Type::Boolean)),
-                Some(&(n, by)) => Some(Val::Scalar(self.exprs.num(n as f64), by)),
-                None => self.fail(Code::BadIndex, "`end` is only known inside brackets `[...]`", e.span),
+                Some(&(n, by)) => Some(Val::Scalar(self.instance.exprs.num(n as f64), by)),
+                None => self.instance.fail(Code::BadIndex, "`end` is only known inside brackets `[...]`", e.span),
             },
-            ExprKind::PartialApplication { function, named } => self.partial_application(function, named, view),
+            ExprKind::PartialApplication { function, named } => {
+                self.instance.calls().partial_application(function, named, view)
+            }
             ExprKind::Error => None,
         }
     }
 
     /// Evaluates with parameters by value.
     pub fn constant(&mut self, e: &'a Expr, view: View) -> Option<Val> {
-        self.in_mode(|m| m.constant = true, |s| s.eval(e, view))
+        self.instance.in_mode(|m| m.constant = true, |s| s.evaluator().eval(e, view))
     }
 
     /// A truth value that must be known.
     pub fn constant_boolean(&mut self, e: &'a Expr, view: View) -> Option<bool> {
         let value = self.constant(e, view)?;
-        match (value.scalar(), value.as_number(&self.exprs)) {
+        match (value.scalar(), value.as_number(&self.instance.exprs)) {
             (Some((_, Type::Boolean)), Some(x)) => Some(x != 0.0),
             (Some((_, Type::Boolean)), None) => {
-                self.fail(Code::NotConstant, "this condition must be known before the run", e.span)
+                self.instance.fail(Code::NotConstant, "this condition must be known before the run", e.span)
             }
             _ => self.wrong_type("a Boolean", &value, e.span),
         }
     }
 
     pub(in crate::instance) fn integer(&mut self, x: f64) -> Val {
-        Val::Scalar(self.exprs.num(x), Type::Integer)
-    }
-
-    pub(in crate::instance) fn fail<T>(&mut self, code: Code, message: &str, span: Span) -> Option<T> {
-        self.report(Diagnostic::new(code, message).at(span, ""));
-        None
+        Val::Scalar(self.instance.exprs.num(x), Type::Integer)
     }
 
     pub(in crate::instance) fn wrong_type<T>(&mut self, wanted: &str, got: &Val, span: Span) -> Option<T> {
         let message = format!("{wanted} is needed here, and this is {}", got.describe());
-        self.fail(Code::TypeMismatch, &message, span)
+        self.instance.fail(Code::TypeMismatch, &message, span)
     }
 
     /// The value of a binding, or the part of it that is meant for one element.
@@ -117,11 +114,11 @@ impl<'a> Instance<'a, '_> {
             return self.isolated(b, constant);
         }
         let key = (std::ptr::from_ref(b.expr), b.view, constant);
-        let whole = match self.array_values.get(&key) {
+        let whole = match self.instance.array_values.get(&key) {
             Some(v) => v.clone(),
             None => {
                 let v = self.isolated(b, constant)?;
-                self.array_values.insert(key, v.clone());
+                self.instance.array_values.insert(key, v.clone());
                 v
             }
         };
@@ -129,12 +126,12 @@ impl<'a> Instance<'a, '_> {
     }
 
     fn isolated(&mut self, b: &Binding<'a>, constant: bool) -> Option<Val> {
-        let frame = std::mem::replace(&mut self.eval.frame, self.eval.locals.len());
-        let ends = std::mem::take(&mut self.eval.ends);
+        let frame = std::mem::replace(&mut self.instance.eval.frame, self.instance.eval.locals.len());
+        let ends = std::mem::take(&mut self.instance.eval.ends);
         let change = |m: &mut Mode| (m.constant, m.no_event) = (constant, false);
-        let value = self.in_mode(change, |s| s.eval(b.expr, b.view));
-        self.eval.frame = frame;
-        self.eval.ends = ends;
+        let value = self.instance.in_mode(change, |s| s.evaluator().eval(b.expr, b.view));
+        self.instance.eval.frame = frame;
+        self.instance.eval.ends = ends;
         value
     }
 
@@ -158,7 +155,7 @@ impl<'a> Instance<'a, '_> {
                 }
                 (None, Access::Field(name)) => {
                     let message = format!("this has no field `{name}`: it is {}", value.describe());
-                    return self.fail(Code::TypeMismatch, &message, span);
+                    return self.instance.fail(Code::TypeMismatch, &message, span);
                 }
             };
         }
@@ -168,10 +165,15 @@ impl<'a> Instance<'a, '_> {
     /// A value for an array of another size, reported once for all its elements.
     fn wrong_count(&mut self, wanted: u32, value: &Val, span: Span) {
         let message = format!("an array of {wanted} elements is needed here, and this is {}", value.describe());
-        if self.diagnostics.iter().any(|d| d.message == message && d.labels.first().is_some_and(|l| l.span == span)) {
+        if self
+            .instance
+            .diagnostics
+            .iter()
+            .any(|d| d.message == message && d.labels.first().is_some_and(|l| l.span == span))
+        {
             return;
         }
-        self.report(
+        self.instance.report(
             Diagnostic::new(Code::SizeMismatch, message)
                 .at(span, "the value for an array")
                 .help("give one value for each element, or write `each` to give all of them the same"),
@@ -184,7 +186,7 @@ impl<'a> Instance<'a, '_> {
             Some(v) => Some(v),
             None => {
                 let message = format!("the elements of an array differ in size: {}", shapes.join(", "));
-                self.fail(Code::SizeMismatch, &message, span)
+                self.instance.fail(Code::SizeMismatch, &message, span)
             }
         }
     }
@@ -204,14 +206,18 @@ impl<'a> Instance<'a, '_> {
         let Some(first) = values.first() else { return Some(Val::array(vec![0], Vec::new())) };
         let mut dims = first.dims().to_vec();
         if along == 0 || along > dims.len() {
-            return self.fail(Code::SizeMismatch, &format!("there is no dimension {along} to join along"), span);
+            return self.instance.fail(
+                Code::SizeMismatch,
+                &format!("there is no dimension {along} to join along"),
+                span,
+            );
         }
         let k = along - 1;
         for v in &values[1..] {
             let fits = v.dims().len() == dims.len() && (0..dims.len()).all(|i| i == k || v.dims()[i] == dims[i]);
             if !fits {
                 let message = format!("sizes {} and {} cannot be joined", size_text(&dims), size_text(v.dims()));
-                return self.fail(Code::SizeMismatch, &message, span);
+                return self.instance.fail(Code::SizeMismatch, &message, span);
             }
         }
         dims[k] = values.iter().map(|v| v.dims()[k]).sum();
@@ -238,38 +244,42 @@ impl<'a> Instance<'a, '_> {
         let Some((test, Type::Boolean)) = c.scalar() else {
             return self.wrong_type("a Boolean", &c, condition.span);
         };
-        if let Some(known) = self.exprs.as_num(test) {
+        if let Some(known) = self.instance.exprs.as_num(test) {
             return if known == 0.0 { self.if_expression(rest, otherwise, view, span) } else { self.eval(value, view) };
         }
         if self.is_evaluated(test) {
-            let mark = self.diagnostics.len();
+            let mark = self.instance.diagnostics.len();
             match self.constant_boolean(condition, view) {
                 Some(true) => return self.eval(value, view),
                 Some(false) => return self.if_expression(rest, otherwise, view, span),
                 // in the body of a function that is inlined, arguments are expressions
-                None => self.diagnostics.truncate(mark),
+                None => self.instance.diagnostics.truncate(mark),
             }
         }
-        let mark = (self.diagnostics.len(), self.eval.calls.len());
-        let not = self.exprs.not(test);
-        let a = self.guarded(test, |s| s.eval(value, view));
-        let b = self.guarded(not, |s| s.if_expression(rest, otherwise, view, span));
-        let by_parameter =
-            self.variability(test) <= Variability::Parameter && !self.eval.mode.procedure && self.eval.frame == 0;
+        let mark = (self.instance.diagnostics.len(), self.instance.eval.calls.len());
+        let not = self.instance.exprs.not(test);
+        let a = self.instance.statements().guarded(test, |s| s.instance.evaluator().eval(value, view));
+        let b = self
+            .instance
+            .statements()
+            .guarded(not, |s| s.instance.evaluator().if_expression(rest, otherwise, view, span));
+        let by_parameter = self.instance.variability(test) <= Variability::Parameter
+            && !self.instance.eval.mode.procedure
+            && self.instance.eval.frame == 0;
         // what is a state must be known before the run
         if by_parameter
             && let (Some(a), Some(b)) = (&a, &b)
             && self.derivatives_differ(a, b)
-            && !self.found_at_start(test)
+            && !self.instance.found_at_start(test)
         {
-            self.eval.calls.truncate(mark.1);
+            self.instance.eval.calls.truncate(mark.1);
             return match self.constant_boolean(condition, view)? {
                 true => self.eval(value, view),
                 false => self.if_expression(rest, otherwise, view, span),
             };
         }
         let merged = match (&a, &b) {
-            (Some(a), Some(b)) => a.zip(b, &mut |x, y, _| self.exprs.if_(test, x, y)),
+            (Some(a), Some(b)) => a.zip(b, &mut |x, y, _| self.instance.exprs.if_(test, x, y)),
             _ => None,
         };
         if merged.is_some() {
@@ -277,8 +287,8 @@ impl<'a> Instance<'a, '_> {
         }
         // A branch that has no meaning here (an absent component, another size) is allowed when a parameter decides.
         if by_parameter {
-            self.diagnostics.truncate(mark.0);
-            self.eval.calls.truncate(mark.1);
+            self.instance.diagnostics.truncate(mark.0);
+            self.instance.eval.calls.truncate(mark.1);
             return match self.constant_boolean(condition, view)? {
                 true => self.eval(value, view),
                 false => self.if_expression(rest, otherwise, view, span),
@@ -286,16 +296,16 @@ impl<'a> Instance<'a, '_> {
         }
         let (a, b) = (a?, b?);
         if let (Val::Text(_), Val::Text(_)) = (&a, &b) {
-            return self.fail(Code::NotConstant, "this text must be known before the run", span);
+            return self.instance.fail(Code::NotConstant, "this text must be known before the run", span);
         }
-        self.sizes_differ(&a, &b, span)
+        self.instance.operators().sizes_differ(&a, &b, span)
     }
 
     /// Whether a condition hangs on nothing but parameters annotated `Evaluate` (MLS 18.3).
     fn is_evaluated(&self, test: ExprId) -> bool {
-        let variables = self.exprs.variables(test);
-        let own = !self.eval.mode.procedure && self.eval.frame == 0;
-        own && !variables.is_empty() && variables.iter().all(|v| self.variable(*v).evaluate)
+        let variables = self.instance.exprs.variables(test);
+        let own = !self.instance.eval.mode.procedure && self.instance.eval.frame == 0;
+        own && !variables.is_empty() && variables.iter().all(|v| self.instance.variable(*v).evaluate)
     }
 
     /// Whether one of two values has derivatives that the other one has not.
@@ -303,7 +313,7 @@ impl<'a> Instance<'a, '_> {
         let of = |v: &Val| {
             let mut scalars = Vec::new();
             v.scalars(&mut scalars);
-            let mut found: Vec<_> = scalars.into_iter().flat_map(|e| self.exprs.derivatives(e)).collect();
+            let mut found: Vec<_> = scalars.into_iter().flat_map(|e| self.instance.exprs.derivatives(e)).collect();
             found.sort_unstable();
             found.dedup();
             found

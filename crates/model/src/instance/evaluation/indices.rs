@@ -2,14 +2,14 @@
 
 use crate::instance::errors::short;
 use crate::instance::value::Val;
-use crate::instance::{Instance, View};
+use crate::instance::{Evaluator, View};
 use bramah_expr::types::{MessagePart, Type, Variability};
 use bramah_expr::{ExprId, Exprs, Rel};
 use bramah_syntax::ast::Subscript;
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 use std::rc::Rc;
 
-impl<'a> Instance<'a, '_> {
+impl<'a> Evaluator<'_, 'a, '_> {
     /// Applies subscripts to a value.
     pub(in crate::instance) fn subscript(
         &mut self,
@@ -34,11 +34,11 @@ impl<'a> Instance<'a, '_> {
             return Some(value);
         }
         let Val::Array { dims, elements } = &value else {
-            return self.fail(Code::BadIndex, &format!("{} cannot be indexed", value.describe()), span);
+            return self.instance.fail(Code::BadIndex, &format!("{} cannot be indexed", value.describe()), span);
         };
         if subscripts.len() > dims.len() {
             let message = format!("{} indices for {}", subscripts.len(), value.describe());
-            return self.fail(Code::BadIndex, &message, span);
+            return self.instance.fail(Code::BadIndex, &message, span);
         }
         let mut picks = Vec::new();
         for (i, s) in subscripts.iter().enumerate() {
@@ -65,24 +65,27 @@ impl<'a> Instance<'a, '_> {
             self.check_index(all.first().and_then(Val::element_type), by, e.span)?;
             return Some(Pick::Many((0..all.len()).collect()));
         }
-        self.eval.ends.push((size, by.unwrap_or(Type::Integer)));
+        self.instance.eval.ends.push((size, by.unwrap_or(Type::Integer)));
         let value = self.eval(e, view);
-        self.eval.ends.pop();
+        self.instance.eval.ends.pop();
         let value = value?;
         self.check_index(value.element_type(), by, e.span)?;
         match &value {
             Val::Scalar(id, Type::Boolean) if size == 2 => Some(self.boolean_index(*id)),
-            Val::Scalar(id, ty @ (Type::Integer | Type::Enumeration(_))) => match self.exprs.as_num(*id) {
+            Val::Scalar(id, ty @ (Type::Integer | Type::Enumeration(_))) => match self.instance.exprs.as_num(*id) {
                 Some(x) => Some(Pick::One(self.in_range(x, size, e.span)?)),
                 None => {
-                    let outside = self.eval.frame == 0 && !self.eval.mode.procedure;
-                    if outside && self.variability(*id) <= Variability::Parameter && !self.found_at_start(*id) {
-                        let known = self.constant(e, view)?.as_number(&self.exprs);
+                    let outside = self.instance.eval.frame == 0 && !self.instance.eval.mode.procedure;
+                    if outside
+                        && self.instance.variability(*id) <= Variability::Parameter
+                        && !self.instance.found_at_start(*id)
+                    {
+                        let known = self.constant(e, view)?.as_number(&self.instance.exprs);
                         if let Some(x) = known {
                             return Some(Pick::One(self.in_range(x, size, e.span)?));
                         }
                     }
-                    if *ty == Type::Integer && !self.eval.mode.procedure {
+                    if *ty == Type::Integer && !self.instance.eval.mode.procedure {
                         self.watch_index(*id, size, e.span);
                     }
                     Some(Pick::Symbolic(*id))
@@ -91,8 +94,8 @@ impl<'a> Instance<'a, '_> {
             Val::Array { elements, .. } => {
                 let mut places = Vec::new();
                 for v in elements.iter() {
-                    let Some(x) = v.as_number(&self.exprs) else {
-                        return self.fail(Code::NotConstant, "an index must be known before the run", span);
+                    let Some(x) = v.as_number(&self.instance.exprs) else {
+                        return self.instance.fail(Code::NotConstant, "an index must be known before the run", span);
                     };
                     let first = if v.element_type() == Some(Type::Boolean) { 0.0 } else { 1.0 };
                     places.push(self.in_range(x - first + 1.0, size, e.span)?);
@@ -110,10 +113,10 @@ impl<'a> Instance<'a, '_> {
         if given == by {
             return Some(());
         }
-        let (wanted, words) = (self.type_words(by), self.type_words(given));
+        let (wanted, words) = (self.instance.parameters().type_words(by), self.instance.parameters().type_words(given));
         let help = match (by, given) {
             (Type::Enumeration(e), _) => {
-                let e = &self.enumerations[e as usize];
+                let e = &self.instance.enumerations[e as usize];
                 let name = short(&e.name);
                 let first = e.literals.first().map_or("", |l| l.as_str());
                 format!("give a literal, as in `[{name}.{first}]`, or loop with `for i in {name} loop`")
@@ -123,39 +126,40 @@ impl<'a> Instance<'a, '_> {
             _ => "give a whole number; `integer(x)` is the one below `x`".into(),
         };
         let message = format!("this dimension counts by {wanted}, and the index is {words}");
-        self.report(Diagnostic::new(Code::TypeMismatch, message).at(span, "the index").help(help));
+        self.instance.report(Diagnostic::new(Code::TypeMismatch, message).at(span, "the index").help(help));
         None
     }
 
     /// `false` and `true` as indices of an array declared with `[Boolean]`.
     pub(in crate::instance) fn boolean_index(&mut self, e: ExprId) -> Pick {
-        match self.exprs.as_num(e) {
+        match self.instance.exprs.as_num(e) {
             Some(x) => Pick::One(usize::from(x != 0.0)),
             None => {
-                let two = self.exprs.num(2.0);
-                Pick::Symbolic(self.exprs.if_(e, two, Exprs::ONE))
+                let two = self.instance.exprs.num(2.0);
+                Pick::Symbolic(self.instance.exprs.if_(e, two, Exprs::ONE))
             }
         }
     }
 
     /// An index that changes must stay inside the array during the run, wherever it is used.
     pub(in crate::instance) fn watch_index(&mut self, index: ExprId, size: usize, span: Span) {
-        let last = self.exprs.num(size as f64);
-        let (low, high) = (self.exprs.rel(Rel::Ge, index, Exprs::ONE), self.exprs.rel(Rel::Le, index, last));
-        let condition = self.exprs.and(low, high);
+        let last = self.instance.exprs.num(size as f64);
+        let (low, high) =
+            (self.instance.exprs.rel(Rel::Ge, index, Exprs::ONE), self.instance.exprs.rel(Rel::Le, index, last));
+        let condition = self.instance.exprs.and(low, high);
         let parts = vec![
             MessagePart::Text("the index ".into()),
             MessagePart::Value(index, Type::Integer),
             MessagePart::Text(format!(" lies outside 1..{size}")),
         ];
-        self.keep_call(Some(condition), Some(Val::Text(Rc::new(parts))), false, span);
+        self.instance.statements().keep_call(Some(condition), Some(Val::Text(Rc::new(parts))), false, span);
     }
 
     pub(in crate::instance) fn in_range(&mut self, x: f64, size: usize, span: Span) -> Option<usize> {
         if x >= 1.0 && x <= size as f64 && x.fract() == 0.0 {
             return Some(x as usize - 1);
         }
-        self.fail(Code::BadIndex, &format!("index {x} lies outside 1..{size}"), span)
+        self.instance.fail(Code::BadIndex, &format!("index {x} lies outside 1..{size}"), span)
     }
 
     /// An element chosen at run time: a chain of `if`, or an indexed slot in a procedure.
@@ -166,12 +170,12 @@ impl<'a> Instance<'a, '_> {
         picks: &[Pick],
         span: Span,
     ) -> Option<Val> {
-        if self.eval.frame > 0 && !self.eval.mode.procedure && elements.len() > 12 {
-            self.eval.not_inline = true;
+        if self.instance.eval.frame > 0 && !self.instance.eval.mode.procedure && elements.len() > 12 {
+            self.instance.eval.not_inline = true;
             return None;
         }
-        if self.eval.mode.procedure
-            && let Some(v) = self.indexed_slot(dims, elements, picks)
+        if self.instance.eval.mode.procedure
+            && let Some(v) = self.instance.procedures().indexed_slot(dims, elements, picks)
         {
             return Some(v);
         }
@@ -189,13 +193,13 @@ impl<'a> Instance<'a, '_> {
             result = Some(match result {
                 None => value,
                 Some(rest) => {
-                    let number = self.exprs.num(k as f64 + 1.0);
-                    let plain = self.exprs.rel(Rel::Le, index, number);
-                    value.zip(&rest, &mut |x, y, _| self.exprs.if_(plain, x, y))?
+                    let number = self.instance.exprs.num(k as f64 + 1.0);
+                    let plain = self.instance.exprs.rel(Rel::Le, index, number);
+                    value.zip(&rest, &mut |x, y, _| self.instance.exprs.if_(plain, x, y))?
                 }
             });
         }
-        result.or_else(|| self.fail(Code::BadIndex, "an index into an empty array", span))
+        result.or_else(|| self.instance.fail(Code::BadIndex, "an index into an empty array", span))
     }
 }
 

@@ -13,4 +13,5 @@ pub mod references;
 pub(in crate::instance) mod sections;
 pub(in crate::instance) mod shapes;
 pub(in crate::instance) mod state;
+pub mod streams;
 pub mod value;

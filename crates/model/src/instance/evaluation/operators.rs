@@ -1,6 +1,6 @@
 //! Operators on values: numbers, arrays and matrices, texts, relations.
 
-use crate::instance::Instance;
+use crate::instance::Operators;
 use crate::instance::value::{Val, wider};
 use bramah_expr::types::{MessagePart, Type, Variability};
 use bramah_expr::{Binary, Exprs, Rel};
@@ -8,7 +8,7 @@ use bramah_syntax::ast::{BinaryOp, UnaryOp};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 use std::rc::Rc;
 
-impl<'a> Instance<'a, '_> {
+impl<'a> Operators<'_, 'a, '_> {
     pub(in crate::instance) fn unary(&mut self, op: UnaryOp, value: Val, span: Span) -> Option<Val> {
         if let Some(result) = self.overloaded_unary(op, &value, span) {
             return result;
@@ -16,14 +16,14 @@ impl<'a> Instance<'a, '_> {
         let ty = value.element_type();
         match op {
             UnaryOp::Not => match ty {
-                Some(Type::Boolean) => Some(value.map(&mut |e, _| self.exprs.not(e))),
-                _ => self.wrong_type("a Boolean", &value, span),
+                Some(Type::Boolean) => Some(value.map(&mut |e, _| self.instance.exprs.not(e))),
+                _ => self.instance.evaluator().wrong_type("a Boolean", &value, span),
             },
             UnaryOp::Plus | UnaryOp::ElementPlus => Some(value),
             UnaryOp::Minus | UnaryOp::ElementMinus => match ty {
-                Some(Type::Real | Type::Integer) => Some(value.map(&mut |e, _| self.exprs.neg(e))),
+                Some(Type::Real | Type::Integer) => Some(value.map(&mut |e, _| self.instance.exprs.neg(e))),
                 None if value.elements().is_empty() => Some(value),
-                _ => self.wrong_type("a number", &value, span),
+                _ => self.instance.evaluator().wrong_type("a number", &value, span),
             },
         }
     }
@@ -42,20 +42,24 @@ impl<'a> Instance<'a, '_> {
             B::Div if b.dims().is_empty() => self.broadcast(op, &a, &b, span),
             B::Pow if !a.dims().is_empty() => self.matrix_power(&a, &b, span),
             // arrays are divided and raised element by element with `./` and `.^` only (MLS 10.6)
-            B::Div => self.wrong_type("a single number as divisor", &b, span),
-            B::Pow if !b.dims().is_empty() => self.wrong_type("a single number as exponent", &b, span),
+            B::Div => self.instance.evaluator().wrong_type("a single number as divisor", &b, span),
+            B::Pow if !b.dims().is_empty() => {
+                self.instance.evaluator().wrong_type("a single number as exponent", &b, span)
+            }
             B::Pow | B::ElementMul | B::ElementDiv | B::ElementPow => self.broadcast(op, &a, &b, span),
             B::Lt | B::Le | B::Gt | B::Ge | B::Eq | B::Ne => self.relation(op, &a, &b, span),
             B::And | B::Or => {
                 let (ta, tb) = (a.element_type(), b.element_type());
                 if ta != Some(Type::Boolean) {
-                    return self.wrong_type("a Boolean", &a, span);
+                    return self.instance.evaluator().wrong_type("a Boolean", &a, span);
                 }
                 if tb != Some(Type::Boolean) {
-                    return self.wrong_type("a Boolean", &b, span);
+                    return self.instance.evaluator().wrong_type("a Boolean", &b, span);
                 }
                 let and = op == B::And;
-                let zipped = a.zip(&b, &mut |x, y, _| if and { self.exprs.and(x, y) } else { self.exprs.or(x, y) });
+                let zipped = a.zip(&b, &mut |x, y, _| {
+                    if and { self.instance.exprs.and(x, y) } else { self.instance.exprs.or(x, y) }
+                });
                 zipped.or_else(|| self.sizes_differ(&a, &b, span))
             }
         }
@@ -71,9 +75,9 @@ impl<'a> Instance<'a, '_> {
         if op == BinaryOp::Add {
             return Some(Val::Text(Rc::new(x.iter().chain(y.iter()).cloned().collect())));
         }
-        let words = |p: &Rc<Vec<MessagePart>>| Val::Text(p.clone()).as_text(&self.exprs);
+        let words = |p: &Rc<Vec<MessagePart>>| Val::Text(p.clone()).as_text(&self.instance.exprs);
         let (Some(x), Some(y)) = (words(x), words(y)) else {
-            return self.fail(Code::NotConstant, "this text must be known before the run", span);
+            return self.instance.fail(Code::NotConstant, "this text must be known before the run", span);
         };
         let truth = match op {
             BinaryOp::Eq => x == y,
@@ -82,22 +86,22 @@ impl<'a> Instance<'a, '_> {
             BinaryOp::Le => x <= y,
             BinaryOp::Gt => x > y,
             BinaryOp::Ge => x >= y,
-            _ => return self.fail(Code::TypeMismatch, "texts can only be joined with `+` or compared", span),
+            _ => return self.instance.fail(Code::TypeMismatch, "texts can only be joined with `+` or compared", span),
         };
-        Some(Val::Scalar(self.exprs.boolean(truth), Type::Boolean))
+        Some(Val::Scalar(self.instance.exprs.boolean(truth), Type::Boolean))
     }
 
     pub(in crate::instance) fn sizes_differ<T>(&mut self, a: &Val, b: &Val, span: Span) -> Option<T> {
         let message = format!("the two sides do not fit: {} and {}", a.describe(), b.describe());
         let code = if a.dims() == b.dims() { Code::TypeMismatch } else { Code::SizeMismatch };
-        self.fail(code, &message, span)
+        self.instance.fail(code, &message, span)
     }
 
     pub(in crate::instance) fn numeric(&mut self, v: &Val, span: Span) -> Option<()> {
         match v.element_type() {
             Some(Type::Real | Type::Integer) => Some(()),
             None if v.elements().is_empty() => Some(()),
-            _ => self.wrong_type("a number", v, span),
+            _ => self.instance.evaluator().wrong_type("a number", v, span),
         }
     }
 
@@ -108,7 +112,7 @@ impl<'a> Instance<'a, '_> {
             return self.broadcast(op, a, b, span);
         }
         let op = scalar_op(op);
-        let zipped = a.zip(b, &mut |x, y, _| self.exprs.binary(op, x, y));
+        let zipped = a.zip(b, &mut |x, y, _| self.instance.exprs.binary(op, x, y));
         zipped.or_else(|| self.sizes_differ(a, b, span))
     }
 
@@ -120,12 +124,12 @@ impl<'a> Instance<'a, '_> {
         let real = matches!(code, Binary::Div | Binary::Pow);
         let result = match (a.scalar(), b.scalar()) {
             (Some((x, tx)), _) if !b.dims().is_empty() => {
-                b.map(&mut |y, _| self.exprs.binary(code, x, y)).with_type(tx)
+                b.map(&mut |y, _| self.instance.exprs.binary(code, x, y)).with_type(tx)
             }
             (_, Some((y, ty))) if !a.dims().is_empty() => {
-                a.map(&mut |x, _| self.exprs.binary(code, x, y)).with_type(ty)
+                a.map(&mut |x, _| self.instance.exprs.binary(code, x, y)).with_type(ty)
             }
-            _ => match a.zip(b, &mut |x, y, _| self.exprs.binary(code, x, y)) {
+            _ => match a.zip(b, &mut |x, y, _| self.instance.exprs.binary(code, x, y)) {
                 Some(v) => v,
                 None => return self.sizes_differ(a, b, span),
             },
@@ -153,8 +157,8 @@ impl<'a> Instance<'a, '_> {
             for c in 0..columns {
                 let mut sum = Exprs::ZERO;
                 for k in 0..inner {
-                    let term = self.exprs.mul(entry(a, r * inner + k), entry(b, k * columns + c));
-                    sum = self.exprs.add(sum, term);
+                    let term = self.instance.exprs.mul(entry(a, r * inner + k), entry(b, k * columns + c));
+                    sum = self.instance.exprs.add(sum, term);
                 }
                 elements.push(Val::Scalar(sum, ty));
             }
@@ -169,7 +173,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     pub(in crate::instance) fn matrix_power(&mut self, a: &Val, b: &Val, span: Span) -> Option<Val> {
-        let n = b.as_number(&self.exprs).filter(|n| *n >= 0.0 && n.fract() == 0.0 && *n <= 100.0);
+        let n = b.as_number(&self.instance.exprs).filter(|n| *n >= 0.0 && n.fract() == 0.0 && *n <= 100.0);
         let (&[r, c], Some(n)) = (a.dims(), n) else { return self.sizes_differ(a, b, span) };
         if r != c {
             return self.sizes_differ(a, b, span);
@@ -201,18 +205,18 @@ impl<'a> Instance<'a, '_> {
             BinaryOp::Eq => Rel::Eq,
             _ => Rel::Ne,
         };
-        let plain = self.eval.mode.no_event
-            || self.eval.mode.procedure
-            || self.variability(x).max(self.variability(y)) <= Variability::Discrete;
+        let plain = self.instance.eval.mode.no_event
+            || self.instance.eval.mode.procedure
+            || self.instance.variability(x).max(self.instance.variability(y)) <= Variability::Discrete;
         if !plain && matches!(rel, Rel::Eq | Rel::Ne) {
-            self.report(
+            self.instance.report(
                 Diagnostic::new(Code::TypeMismatch, "two Reals cannot be compared with `==` or `<>` in a model")
                     .at(span, "Reals that change continuously are never exactly equal")
                     .help("compare with `<` or `>`, or test `abs(a - b) < eps`"),
             );
             return None;
         }
-        let e = if plain { self.exprs.rel(rel, x, y) } else { self.exprs.event_rel(rel, x, y) };
+        let e = if plain { self.instance.exprs.rel(rel, x, y) } else { self.instance.exprs.event_rel(rel, x, y) };
         Some(Val::Scalar(e, Type::Boolean))
     }
 }

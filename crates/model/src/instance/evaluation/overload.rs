@@ -6,7 +6,7 @@ use crate::instance::lookup::{Builtin, Found};
 use crate::instance::template::Template;
 use crate::instance::value::Val;
 use crate::instance::vectorised::Given;
-use crate::instance::{ClassRef, Instance};
+use crate::instance::{ClassRef, Operators};
 use bramah_expr::types::Type;
 use bramah_syntax::ast::{BinaryOp, Causality, ClassKind, UnaryOp};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
@@ -33,10 +33,10 @@ fn name_of(op: BinaryOp) -> Option<&'static str> {
     })
 }
 
-impl<'a> Instance<'a, '_> {
+impl<'a> Operators<'_, 'a, '_> {
     /// The number of a class of operator records; `None` for other classes.
     pub(in crate::instance) fn operator_class(&mut self, class: &ClassRef<'a>) -> Option<u32> {
-        let template = self.template(class.class, class.parent);
+        let template = self.instance.names().template(class.class, class.parent);
         self.operator_class_of(&template)
     }
 
@@ -48,10 +48,10 @@ impl<'a> Instance<'a, '_> {
         }
         let base = template.bases.last().filter(|b| matches!(b.ast.kind, ClassKind::Record { operator: true }))?;
         let (own, parent) = (base.class, base.parent);
-        let known = self.operator_records.iter().position(|c| c.class == own);
+        let known = self.instance.operator_records.iter().position(|c| c.class == own);
         let at = known.unwrap_or_else(|| {
-            self.operator_records.push(ClassRef { class: own, parent, args: [].into() });
-            self.operator_records.len() - 1
+            self.instance.operator_records.push(ClassRef { class: own, parent, args: [].into() });
+            self.instance.operator_records.len() - 1
         });
         u32::try_from(at).ok()
     }
@@ -95,7 +95,7 @@ impl<'a> Instance<'a, '_> {
             return self.ambiguous(name, span);
         }
         if let Some(&f) = fitting.first() {
-            return self.call_function(&functions[f], vec![a.clone(), b.clone()], Vec::new(), span);
+            return self.instance.calls().call_function(&functions[f], vec![a.clone(), b.clone()], Vec::new(), span);
         }
         // one side is made a record of the other's class
         for &class in classes {
@@ -105,7 +105,7 @@ impl<'a> Instance<'a, '_> {
             ] {
                 let (Some(x), Some(y)) = (x, y) else { continue };
                 if let [f] = self.fitting(&functions, &[x.clone(), y.clone()])[..] {
-                    return self.call_function(&functions[f], vec![x, y], Vec::new(), span);
+                    return self.instance.calls().call_function(&functions[f], vec![x, y], Vec::new(), span);
                 }
             }
         }
@@ -121,7 +121,7 @@ impl<'a> Instance<'a, '_> {
         if !fits || matrices {
             let message =
                 format!("there is no operator {} for {} and {}", name_of(op).unwrap_or(""), a.describe(), b.describe());
-            return self.fail(Code::TypeMismatch, &message, span);
+            return self.instance.fail(Code::TypeMismatch, &message, span);
         }
         let dims = if da.is_empty() { db } else { da };
         let count: usize = dims.iter().product();
@@ -153,8 +153,12 @@ impl<'a> Instance<'a, '_> {
         }
         let functions = self.operators(class, name);
         Some(match self.fitting(&functions, std::slice::from_ref(value))[..] {
-            [f] => self.call_function(&functions[f], vec![value.clone()], Vec::new(), span),
-            _ => self.fail(Code::TypeMismatch, &format!("there is no operator {name} for {}", value.describe()), span),
+            [f] => self.instance.calls().call_function(&functions[f], vec![value.clone()], Vec::new(), span),
+            _ => self.instance.fail(
+                Code::TypeMismatch,
+                &format!("there is no operator {name} for {}", value.describe()),
+                span,
+            ),
         })
     }
 
@@ -171,11 +175,11 @@ impl<'a> Instance<'a, '_> {
             return None;
         }
         for f in &functions {
-            let outputs = self.formals(f, |c, _| c.prefix.causality == Some(Causality::Output));
+            let outputs = self.instance.calls().formals(f, |c, _| c.prefix.causality == Some(Causality::Output));
             if let [_, second, ..] = outputs.as_slice() {
                 let at = second.component.name.span;
                 let message = format!("the constructor `{}` has more than one output", f.name);
-                return Some(self.fail(Code::BadCall, &message, at));
+                return Some(self.instance.fail(Code::BadCall, &message, at));
             }
         }
         let mut fitting = Vec::new();
@@ -185,7 +189,9 @@ impl<'a> Instance<'a, '_> {
             }
         }
         Some(match fitting[..] {
-            [f] => self.call_function(&functions[f], given.positional.clone(), given.named.clone(), span),
+            [f] => {
+                self.instance.calls().call_function(&functions[f], given.positional.clone(), given.named.clone(), span)
+            }
             [] => return None,
             _ => self.ambiguous("'constructor'", span),
         })
@@ -193,7 +199,7 @@ impl<'a> Instance<'a, '_> {
 
     fn ambiguous(&mut self, name: &str, span: Span) -> Option<Val> {
         let d = Diagnostic::new(Code::BadCall, format!("more than one function of {name} takes these arguments"));
-        self.report(
+        self.instance.report(
             d.at(span, "not clear which").help("let their inputs differ in type or number").note("Modelica 3.6, 14"),
         );
         None
@@ -201,17 +207,19 @@ impl<'a> Instance<'a, '_> {
 
     /// The functions behind an operator of a record class: the operator itself, or those it holds.
     fn operators(&mut self, class: u32, name: &str) -> Vec<Callee<'a>> {
-        let record = Found::Class(self.operator_records[class as usize].clone());
-        let Some(found @ Found::Class(_)) = self.member(&record, Symbol::new(name)) else { return Vec::new() };
+        let record = Found::Class(self.instance.operator_records[class as usize].clone());
+        let Some(found @ Found::Class(_)) = self.instance.names().member(&record, Symbol::new(name)) else {
+            return Vec::new();
+        };
         let Found::Class(operator) = &found else { return Vec::new() };
-        let template = self.template(operator.class, operator.parent);
+        let template = self.instance.names().template(operator.class, operator.parent);
         if matches!(template.kind, ClassKind::Function { .. }) {
             return vec![self.callee(operator)];
         }
         let names: Vec<Symbol> = template.elements.iter().map(|e| e.name).collect();
         let mut functions = Vec::new();
         for name in names {
-            if let Some(Found::Class(f)) = self.member(&found, name) {
+            if let Some(Found::Class(f)) = self.instance.names().member(&found, name) {
                 functions.push(self.callee(&f));
             }
         }
@@ -219,8 +227,12 @@ impl<'a> Instance<'a, '_> {
     }
 
     fn callee(&mut self, class: &ClassRef<'a>) -> Callee<'a> {
-        let template = self.template(class.class, class.parent);
-        Callee { scope: self.package(class), template, name: self.library.full_name(class.class) }
+        let template = self.instance.names().template(class.class, class.parent);
+        Callee {
+            scope: self.instance.names().package(class),
+            template,
+            name: self.instance.library.full_name(class.class),
+        }
     }
 
     /// Which functions take exactly these arguments.
@@ -229,7 +241,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     fn takes(&mut self, function: &Callee<'a>, args: &[Val], named: &[(bramah_syntax::ast::Ident, Val)]) -> bool {
-        let inputs = self.formals(function, is_input);
+        let inputs = self.instance.calls().formals(function, is_input);
         if args.len() > inputs.len() || named.iter().any(|(n, _)| inputs[args.len()..].iter().all(|f| f.name != n.name))
         {
             return false;
@@ -238,7 +250,7 @@ impl<'a> Instance<'a, '_> {
             let given = args.get(k).or_else(|| named.iter().find(|(n, _)| n.name == f.name).map(|(_, v)| v));
             let fits = match given {
                 Some(value) => self.fits_input(f, value),
-                None => self.reached(f.view.scope, f.index).binding.is_some(),
+                None => self.instance.names().reached(f.view.scope, f.index).binding.is_some(),
             };
             if !fits {
                 return false;
@@ -252,9 +264,9 @@ impl<'a> Instance<'a, '_> {
             return false;
         }
         let element = value.elements().first();
-        match self.lookup_path(f.view, &f.component.class) {
+        match self.instance.names().lookup_path(f.view, &f.component.class) {
             Ok(Found::Builtin(b)) => fits_builtin(b, element),
-            Ok(Found::Class(c)) => match self.template(c.class, c.parent).builtin {
+            Ok(Found::Class(c)) => match self.instance.names().template(c.class, c.parent).builtin {
                 Some(b) => fits_builtin(b, element),
                 None => {
                     let wanted = self.operator_class(&c);
@@ -272,7 +284,7 @@ impl<'a> Instance<'a, '_> {
         }
         let functions = self.operators(class, "'constructor'");
         match self.fitting(&functions, std::slice::from_ref(value))[..] {
-            [f] => self.call_function(&functions[f], vec![value.clone()], Vec::new(), span),
+            [f] => self.instance.calls().call_function(&functions[f], vec![value.clone()], Vec::new(), span),
             _ => None,
         }
     }

@@ -7,22 +7,22 @@ use crate::instance::lookup::Found;
 use crate::instance::modifiers::Binding;
 use crate::instance::template::Kind;
 use crate::instance::value::Val;
-use crate::instance::{Instance, View};
+use crate::instance::{ParameterValues, View};
 use bramah_expr::types::{Type, Variability};
 use bramah_syntax::ast::{self, ExprKind};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 use bramah_syntax::symbol::Symbol;
 
-impl<'a> Instance<'a, '_> {
+impl<'a> ParameterValues<'_, 'a, '_> {
     /// The value of a constant or parameter.
     pub(in crate::instance) fn known_value(&mut self, i: u32, span: Span) -> Option<Val> {
-        let data = &mut self.variables[i as usize];
+        let data = &mut self.instance.variables[i as usize];
         if let Some(known) = &data.constant {
             return known.clone().ok();
         }
         if data.busy {
             let (name, declared) = (data.name.clone(), data.span);
-            self.report(
+            self.instance.report(
                 Diagnostic::new(Code::CyclicParameter, format!("`{name}` depends on itself"))
                     .at(declared, "its value leads back to itself")
                     .at(span, "used here")
@@ -33,14 +33,14 @@ impl<'a> Instance<'a, '_> {
         data.busy = true;
         data.structural = true;
         let value = self.find_known(i, span);
-        let data = &mut self.variables[i as usize];
+        let data = &mut self.instance.variables[i as usize];
         data.busy = false;
         data.constant = Some(value.clone().ok_or(()));
         value
     }
 
     pub(in crate::instance) fn find_known(&mut self, i: u32, span: Span) -> Option<Val> {
-        let data = &self.variables[i as usize];
+        let data = &self.instance.variables[i as usize];
         let (name, declared, ty) = (data.name.clone(), data.span, data.ty);
         let start = data.attributes.iter().find(|(n, _)| *n == "start").map(|(_, b)| b.clone());
         match data.binding.clone().or(start) {
@@ -49,7 +49,7 @@ impl<'a> Instance<'a, '_> {
                 self.coerce(value, ty, &name, b.expr.span)
             }
             None => {
-                self.report(
+                self.instance.report(
                     Diagnostic::new(Code::NoValue, format!("`{name}` has no value"))
                         .at(declared, "declared without `= value`")
                         .at(span, "its value is needed here")
@@ -66,13 +66,13 @@ impl<'a> Instance<'a, '_> {
 
     /// The value bound to a variable; a quantity given from outside is converted to the variable's unit.
     pub fn bound(&mut self, i: u32, b: &Binding<'a>, constant: bool) -> Option<Val> {
-        if Some(b.expr.span.file) == self.eval.override_file
+        if Some(b.expr.span.file) == self.instance.eval.override_file
             && let Some(v) = self.outside_value(i, b)
         {
             return v;
         }
-        let value = self.binding_value(b, constant)?;
-        let data = &self.variables[i as usize];
+        let value = self.instance.evaluator().binding_value(b, constant)?;
+        let data = &self.instance.variables[i as usize];
         match (data.string, &value) {
             (false, Val::Text(_) | Val::Object(_)) if !data.object => {
                 let name = data.name.clone();
@@ -82,20 +82,21 @@ impl<'a> Instance<'a, '_> {
                 if numeric {
                     d = d.help("write a number without quotes, in the SI unit of the variable: 200 bar are `200e5`; only `--set` and experiment files take units");
                 }
-                self.report(d);
+                self.instance.report(d);
                 None
             }
             (_, other) if data.object && !matches!(other, Val::Object(_)) => {
                 let name = data.name.clone();
                 let message = format!("`{name}` is an external object and cannot take {}", value.describe());
-                self.report(Diagnostic::new(Code::TypeMismatch, message).at(b.expr.span, "the value").instance(name));
+                self.instance
+                    .report(Diagnostic::new(Code::TypeMismatch, message).at(b.expr.span, "the value").instance(name));
                 None
             }
             (true, other) if !matches!(other, Val::Text(_)) => {
                 let name = data.name.clone();
                 let message = format!("`{name}` is a String and cannot take {}", value.describe());
                 let d = Diagnostic::new(Code::TypeMismatch, message).at(b.expr.span, "the value").instance(name);
-                self.report(d.help("write a text in quotes; `String(x)` makes one of a number"));
+                self.instance.report(d.help("write a text in quotes; `String(x)` makes one of a number"));
                 None
             }
             _ => Some(value),
@@ -105,28 +106,32 @@ impl<'a> Instance<'a, '_> {
     /// Values from outside may be quantities with units, literals of the variable's own enumeration, and texts without
     /// quotes.
     pub(in crate::instance) fn outside_value(&mut self, i: u32, b: &Binding<'a>) -> Option<Option<Val>> {
-        let data = &self.variables[i as usize];
+        let data = &self.instance.variables[i as usize];
         if data.string && !matches!(b.expr.kind, ExprKind::String(_)) {
-            return self.eval.texts.get(&data.name).map(|raw| Some(Val::text(raw.trim())));
+            return self.instance.eval.texts.get(&data.name).map(|raw| Some(Val::text(raw.trim())));
         }
         match &b.expr.kind {
             ExprKind::Call { function, args, .. } if function.parts[0].name.name == QUANTITY => {
-                let (number, unit) = (self.eval(&args[0], b.view)?, self.eval(&args[1], b.view)?);
-                let x = number.as_number(&self.exprs)?;
-                let unit = unit.as_text(&self.exprs)?;
-                Some(self.converted(i, x, &unit).map(|x| Val::Scalar(self.exprs.num(x), Type::Real)))
+                let (number, unit) = (
+                    self.instance.evaluator().eval(&args[0], b.view)?,
+                    self.instance.evaluator().eval(&args[1], b.view)?,
+                );
+                let x = number.as_number(&self.instance.exprs)?;
+                let unit = unit.as_text(&self.instance.exprs)?;
+                Some(self.converted(i, x, &unit).map(|x| Val::Scalar(self.instance.exprs.num(x), Type::Real)))
             }
             ExprKind::Reference(r) if r.parts.len() == 1 => {
-                let Type::Enumeration(e) = self.variables[i as usize].ty else { return None };
-                let at = self.enumerations[e as usize].literals.iter().position(|l| *l == r.parts[0].name.name)?;
-                Some(Some(Val::Scalar(self.exprs.num(at as f64 + 1.0), Type::Enumeration(e))))
+                let Type::Enumeration(e) = self.instance.variables[i as usize].ty else { return None };
+                let at =
+                    self.instance.enumerations[e as usize].literals.iter().position(|l| *l == r.parts[0].name.name)?;
+                Some(Some(Val::Scalar(self.instance.exprs.num(at as f64 + 1.0), Type::Enumeration(e))))
             }
             _ => None,
         }
     }
 
     pub(in crate::instance) fn converted(&mut self, i: u32, x: f64, unit: &str) -> Option<f64> {
-        let name = self.variables[i as usize].name.clone();
+        let name = self.instance.variables[i as usize].name.clone();
         let own = self.text_attribute(i, "unit").unwrap_or_default();
         let parsed = (bramah_expr::units::Unit::parse(unit), bramah_expr::units::Unit::parse(&own));
         let converted = match parsed {
@@ -134,7 +139,7 @@ impl<'a> Instance<'a, '_> {
                 match self.is_difference(i) {
                     Some(difference) => from.meant(difference).convert(x, &to.meant(difference)),
                     None => {
-                        self.report(
+                        self.instance.report(
                             Diagnostic::new(Code::BadSet, format!("`{x} {unit}` can be two values of `{name}`"))
                                 .note(format!(
                                     "`{name}` is in `{own}`, and its type does not tell a temperature from a difference"
@@ -150,7 +155,7 @@ impl<'a> Instance<'a, '_> {
             _ => None,
         };
         if converted.is_none() {
-            self.report(
+            self.instance.report(
                 Diagnostic::new(Code::BadSet, format!("`{x} {unit}` cannot be given to `{name}`"))
                     .note(if own.is_empty() {
                         format!("`{name}` has no unit")
@@ -186,52 +191,54 @@ impl<'a> Instance<'a, '_> {
 
     /// The declared type of a variable and what it extends, outermost first; nothing for a built-in one.
     fn types_of(&mut self, i: u32) -> Vec<&'a ast::Class> {
-        let data = &self.variables[i as usize];
+        let data = &self.instance.variables[i as usize];
         let (scope, last) = (data.scope, data.name.rsplit('.').next().unwrap_or(""));
         let name = Symbol::new(last.split('[').next().unwrap_or(""));
-        let template = self.scope(scope).template.clone();
+        let template = self.instance.scope(scope).template.clone();
         let Some(element) = template.by_name.get(&name).map(|&e| &template.elements[e as usize]) else {
             return Vec::new();
         };
         let Kind::Component(declared) = element.kind else { return Vec::new() };
-        match self.lookup_path(View { scope, base: element.base }, &declared.class) {
-            Ok(Found::Class(c)) => self.template(c.class, c.parent).bases.iter().map(|b| b.ast).collect(),
+        match self.instance.names().lookup_path(View { scope, base: element.base }, &declared.class) {
+            Ok(Found::Class(c)) => {
+                self.instance.names().template(c.class, c.parent).bases.iter().map(|b| b.ast).collect()
+            }
             _ => Vec::new(),
         }
     }
 
     /// An attribute that is a text, such as `unit`.
     pub fn text_attribute(&mut self, i: u32, attribute: &str) -> Option<String> {
-        let found = self.variables[i as usize].attributes.iter().find(|(n, _)| *n == attribute);
+        let found = self.instance.variables[i as usize].attributes.iter().find(|(n, _)| *n == attribute);
         let b = found.map(|(_, b)| b.clone())?;
         if let (ExprKind::String(s), true) = (&b.expr.kind, b.access.is_empty()) {
             return Some(s.to_string());
         }
-        let value = self.binding_value(&b, true)?;
-        let text = value.as_text(&self.exprs);
+        let value = self.instance.evaluator().binding_value(&b, true)?;
+        let text = value.as_text(&self.instance.exprs);
         let reported = |d: &Diagnostic| d.labels.first().is_some_and(|l| l.span == b.expr.span);
-        if text.is_none() && !self.diagnostics.iter().any(reported) {
-            let name = self.variables[i as usize].name.clone();
+        if text.is_none() && !self.instance.diagnostics.iter().any(reported) {
+            let name = self.instance.variables[i as usize].name.clone();
             let message = format!("`{attribute}` of `{name}` is a String and cannot take {}", value.describe());
             let d = Diagnostic::new(Code::TypeMismatch, message).at(b.expr.span, "the value").instance(name);
-            self.report(d.help(format!("write a text in quotes, as in `{attribute} = \"...\"`")));
+            self.instance.report(d.help(format!("write a text in quotes, as in `{attribute} = \"...\"`")));
         }
         text
     }
 
     /// An attribute that must be known while the model is built, such as `fixed`.
     pub fn known_attribute(&mut self, i: u32, attribute: Symbol, b: &Binding<'a>, ty: Type) -> Option<f64> {
-        let value = self.binding_value(b, true)?;
-        let name = format!("{}.{attribute}", self.variables[i as usize].name);
-        self.coerce(value, ty, &name, b.expr.span)?.as_number(&self.exprs)
+        let value = self.instance.evaluator().binding_value(b, true)?;
+        let name = format!("{}.{attribute}", self.instance.variables[i as usize].name);
+        self.coerce(value, ty, &name, b.expr.span)?.as_number(&self.instance.exprs)
     }
 
     /// Texts have no place in the flat model: those of the model's own parameters are looked at here, read or not.
     pub fn check_texts(&mut self) {
-        for i in 0..u32::try_from(self.variables.len()).expect("limited above") {
-            let data = &self.variables[i as usize];
+        for i in 0..u32::try_from(self.instance.variables.len()).expect("limited above") {
+            let data = &self.instance.variables[i as usize];
             let given = data.binding.is_some() || data.variability <= Variability::Parameter;
-            if data.string && given && data.constant.is_none() && self.scope(data.scope).component {
+            if data.string && given && data.constant.is_none() && self.instance.scope(data.scope).component {
                 let span = data.span;
                 self.known_value(i, span);
             }
@@ -240,7 +247,7 @@ impl<'a> Instance<'a, '_> {
 
     pub(in crate::instance) fn type_words(&self, ty: Type) -> String {
         match ty {
-            Type::Enumeration(i) => format!("an enumeration `{}`", short(&self.enumerations[i as usize].name)),
+            Type::Enumeration(i) => format!("an enumeration `{}`", short(&self.instance.enumerations[i as usize].name)),
             other => type_name(other).into(),
         }
     }
@@ -258,7 +265,7 @@ impl<'a> Instance<'a, '_> {
                         Diagnostic::new(Code::TypeMismatch, format!("`{name}` is {wanted} and cannot take {given}"))
                             .at(span, "the value")
                             .help(conversion(*own, ty));
-                    self.report(d.instance(name.to_string()));
+                    self.instance.report(d.instance(name.to_string()));
                     None
                 }
             },
@@ -268,7 +275,7 @@ impl<'a> Instance<'a, '_> {
                     format!("`{name}` is a single value, {}, and cannot take {}", type_name(ty), value.describe()),
                 )
                 .at(span, "the value");
-                self.report(d.instance(name.to_string()));
+                self.instance.report(d.instance(name.to_string()));
                 None
             }
         }

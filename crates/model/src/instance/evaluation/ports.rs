@@ -2,12 +2,12 @@
 
 use crate::instance::evaluation::references::{Descent, Selection};
 use crate::instance::lookup::Found;
-use crate::instance::{ElementState, Instance, Node, NodeId, ScopeId, View};
+use crate::instance::{ElementState, Evaluator, Node, NodeId, ScopeId, View};
 use bramah_syntax::ast::Reference;
 use bramah_syntax::diag::Code;
 use bramah_syntax::symbol::Symbol;
 
-impl<'a> Instance<'a, '_> {
+impl<'a> Evaluator<'_, 'a, '_> {
     /// The ports a reference names, starting from an element; `Some(None)` if a conditional component on the way is
     /// absent, for then the connection vanishes.
     pub fn port_selection(
@@ -17,8 +17,8 @@ impl<'a> Instance<'a, '_> {
         index: u32,
         view: View,
     ) -> Option<Option<Selection>> {
-        let Some(node) = self.component(scope, index) else {
-            let absent = matches!(self.scope(scope).elements[index as usize], ElementState::Absent);
+        let Some(node) = self.instance.builder().component(scope, index) else {
+            let absent = matches!(self.instance.scope(scope).elements[index as usize], ElementState::Absent);
             return absent.then_some(None);
         };
         let mut at = self.selection(node);
@@ -36,7 +36,7 @@ impl<'a> Instance<'a, '_> {
                 match self.subscript_selection(&at, p, view, r.span)? {
                     Ok(next) => at = next,
                     Err(()) => {
-                        return self.fail(
+                        return self.instance.fail(
                             Code::NotConstant,
                             "the index of a port must be known before the run",
                             r.span,
@@ -51,13 +51,15 @@ impl<'a> Instance<'a, '_> {
     /// The one component that a reference names.
     pub(in crate::instance) fn named_node(&mut self, r: &'a Reference, view: View) -> Option<NodeId> {
         let from = if r.global { crate::instance::ROOT } else { view };
-        let Found::Component(scope, index) = self.lookup(from, r.parts[0].name.name)? else { return None };
-        let mut node = self.component(scope, index)?;
+        let Found::Component(scope, index) = self.instance.names().lookup(from, r.parts[0].name.name)? else {
+            return None;
+        };
+        let mut node = self.instance.builder().component(scope, index)?;
         for (i, part) in r.parts.iter().enumerate() {
             if i > 0 {
-                let Node::Object(s) = *self.node(node) else { return None };
-                let index = *self.scope(s).template.by_name.get(&part.name.name)?;
-                node = self.component(s, index)?;
+                let Node::Object(s) = *self.instance.node(node) else { return None };
+                let index = *self.instance.scope(s).template.by_name.get(&part.name.name)?;
+                node = self.instance.builder().component(s, index)?;
             }
             if !part.subscripts.is_empty() {
                 let at = self.selection(node);
@@ -70,9 +72,9 @@ impl<'a> Instance<'a, '_> {
 
     pub(in crate::instance) fn any_absent(&mut self, at: &Selection, name: Symbol) -> bool {
         at.nodes.iter().any(|&n| {
-            let Node::Object(s) = *self.node(n) else { return false };
-            let Some(&i) = self.scope(s).template.by_name.get(&name) else { return false };
-            matches!(self.scope(s).elements[i as usize], ElementState::Absent)
+            let Node::Object(s) = *self.instance.node(n) else { return false };
+            let Some(&i) = self.instance.scope(s).template.by_name.get(&name) else { return false };
+            matches!(self.instance.scope(s).elements[i as usize], ElementState::Absent)
         })
     }
 }

@@ -2,12 +2,12 @@
 
 use crate::instance::deduce::Body;
 use crate::instance::value::Val;
-use crate::instance::{Instance, View};
+use crate::instance::{Evaluator, View};
 use bramah_expr::types::{Type, Variability};
 use bramah_syntax::ast::{Expr, ExprKind};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 
-impl<'a> Instance<'a, '_> {
+impl<'a> Evaluator<'_, 'a, '_> {
     /// A dimension: a whole number that must be known, or a type whose values count.
     pub(in crate::instance) fn extent(&mut self, e: &'a Expr, view: View) -> Option<Extent> {
         if let Some(values) = self.enumeration_range(e, view) {
@@ -20,13 +20,13 @@ impl<'a> Instance<'a, '_> {
     /// A size that must be known.
     pub(in crate::instance) fn dimension(&mut self, e: &'a Expr, view: View) -> Option<usize> {
         let value = self.constant(e, view)?;
-        match (value.scalar(), value.as_number(&self.exprs)) {
+        match (value.scalar(), value.as_number(&self.instance.exprs)) {
             (Some((_, Type::Integer)), Some(x)) if (0.0..1e9).contains(&x) => Some(x as usize),
             (Some((_, Type::Integer)), Some(x)) => {
-                self.fail(Code::OutOfRange, &format!("an array cannot have {x} elements"), e.span)
+                self.instance.fail(Code::OutOfRange, &format!("an array cannot have {x} elements"), e.span)
             }
             (Some((_, Type::Integer)), None) => {
-                self.fail(Code::NotConstant, "the size of an array must be known before the run", e.span)
+                self.instance.fail(Code::NotConstant, "the size of an array must be known before the run", e.span)
             }
             _ => self.wrong_type("an Integer", &value, e.span),
         }
@@ -41,39 +41,42 @@ impl<'a> Instance<'a, '_> {
             None => (1.0, Type::Integer),
         };
         if step.0 == 0.0 {
-            return self.fail(Code::OutOfRange, "the step of a range is 0", e.span);
+            return self.instance.fail(Code::OutOfRange, "the step of a range is 0", e.span);
         }
         let ty = [from.1, step.1, to.1].into_iter().find(|t| *t != Type::Integer).unwrap_or(Type::Integer);
         // A tiny allowance keeps 0:0.1:1 at eleven elements.
         let count = ((to.0 - from.0) / step.0 + 1e-10).floor() + 1.0;
         if count > 1e7 {
-            return self.fail(Code::TooLarge, "this range has more than ten million elements", e.span);
+            return self.instance.fail(Code::TooLarge, "this range has more than ten million elements", e.span);
         }
         let count = count.max(0.0) as usize;
-        let values = (0..count).map(|i| Val::Scalar(self.exprs.num(from.0 + step.0 * i as f64), ty)).collect();
+        let values = (0..count).map(|i| Val::Scalar(self.instance.exprs.num(from.0 + step.0 * i as f64), ty)).collect();
         Some(Val::array(vec![count], values))
     }
 
     /// A number that must be known, with its type; in functions it may depend on inputs that are known.
     pub(in crate::instance) fn known_number(&mut self, e: &'a Expr, view: View) -> Option<(f64, Type)> {
-        let value =
-            if self.eval.mode.procedure || self.eval.frame > 0 { self.eval(e, view) } else { self.constant(e, view) };
+        let value = if self.instance.eval.mode.procedure || self.instance.eval.frame > 0 {
+            self.eval(e, view)
+        } else {
+            self.constant(e, view)
+        };
         let value = value?;
         let Some((id, ty)) = value.scalar() else { return self.wrong_type("a number", &value, e.span) };
-        match self.exprs.as_num(id) {
+        match self.instance.exprs.as_num(id) {
             Some(x) => Some((x, ty)),
             None => {
-                if self.eval.frame > 0 || self.eval.mode.procedure {
-                    self.eval.not_inline = true;
+                if self.instance.eval.frame > 0 || self.instance.eval.mode.procedure {
+                    self.instance.eval.not_inline = true;
                     return None;
                 }
-                self.fail(Code::NotConstant, "this must be known before the run", e.span)
+                self.instance.fail(Code::NotConstant, "this must be known before the run", e.span)
             }
         }
     }
 
     pub(in crate::instance) fn truth_values(&mut self) -> Vec<Val> {
-        [false, true].map(|b| Val::Scalar(self.exprs.boolean(b), Type::Boolean)).into()
+        [false, true].map(|b| Val::Scalar(self.instance.exprs.boolean(b), Type::Boolean)).into()
     }
 
     /// The literals when a range is an enumeration type or `Boolean`.
@@ -83,7 +86,7 @@ impl<'a> Instance<'a, '_> {
         if r.parts.iter().any(|p| !p.subscripts.is_empty()) {
             return None;
         }
-        if r.parts.len() == 1 && self.local(r.parts[0].name.name).is_some() {
+        if r.parts.len() == 1 && self.instance.local(r.parts[0].name.name).is_some() {
             return None;
         }
         let path = bramah_syntax::ast::Path {
@@ -91,16 +94,16 @@ impl<'a> Instance<'a, '_> {
             parts: r.parts.iter().map(|p| p.name).collect(),
             span: r.span,
         };
-        let builtin = match self.lookup_path(view, &path).ok()? {
+        let builtin = match self.instance.names().lookup_path(view, &path).ok()? {
             Found::Builtin(b) => b,
-            Found::Class(c) => self.template(c.class, c.parent).builtin?,
+            Found::Class(c) => self.instance.names().template(c.class, c.parent).builtin?,
             Found::Component(..) => return None,
         };
         match builtin {
             Builtin::Boolean => Some(self.truth_values()),
             Builtin::Enumeration(i) => {
-                let n = self.enumerations[i as usize].literals.len();
-                Some((1..=n).map(|k| Val::Scalar(self.exprs.num(k as f64), Type::Enumeration(i))).collect())
+                let n = self.instance.enumerations[i as usize].literals.len();
+                Some((1..=n).map(|k| Val::Scalar(self.instance.exprs.num(k as f64), Type::Enumeration(i))).collect())
             }
             _ => None,
         }
@@ -117,7 +120,7 @@ impl<'a> Instance<'a, '_> {
         if let Some(values) = self.enumeration_range(range, view) {
             return Some(values);
         }
-        let inside = self.eval.frame > 0 || self.eval.mode.procedure;
+        let inside = self.instance.eval.frame > 0 || self.instance.eval.mode.procedure;
         let mut value = match &range.kind {
             ExprKind::Range { .. } if !inside => self.constant(range, view)?,
             _ => self.eval(range, view)?,
@@ -125,7 +128,7 @@ impl<'a> Instance<'a, '_> {
         // Indices and counts must be known; other elements may change during the run.
         let mut scalars = Vec::new();
         value.scalars(&mut scalars);
-        let fixed = scalars.iter().all(|e| self.variability(*e) <= Variability::Parameter);
+        let fixed = scalars.iter().all(|e| self.instance.variability(*e) <= Variability::Parameter);
         if !inside && fixed && !matches!(value.element_type(), Some(Type::Real) | None) {
             value = self.constant(range, view)?;
         }
@@ -144,9 +147,11 @@ impl<'a> Instance<'a, '_> {
         let name = iterator.name.name;
         match self.deduced_extent(name, body, view) {
             Some(Extent { by: Type::Boolean, .. }) => Some(self.truth_values()),
-            Some(Extent { size, by }) => Some((1..=size).map(|i| Val::Scalar(self.exprs.num(i as f64), by)).collect()),
+            Some(Extent { size, by }) => {
+                Some((1..=size).map(|i| Val::Scalar(self.instance.exprs.num(i as f64), by)).collect())
+            }
             None => {
-                self.report(
+                self.instance.report(
                     Diagnostic::new(Code::BadIndex, format!("how often the loop over `{name}` runs is not said"))
                         .at(iterator.name.span, "no range, and no array that this alone indexes")
                         .help(format!("write `for {name} in 1:n`")),
@@ -169,7 +174,7 @@ impl<'a> Instance<'a, '_> {
             Some(f) => {
                 let mut values = Vec::new();
                 self.each_element(body, iterators, view, &mut values)?;
-                self.reduction(f, values, span)
+                self.instance.builtins().reduction(f, values, span)
             }
         }
     }
@@ -185,9 +190,9 @@ impl<'a> Instance<'a, '_> {
         let Some((last, rest)) = iterators.split_last() else { return self.eval(body, view) };
         let mut items = Vec::new();
         for value in self.iterate(last, Body::Expr(body), view)? {
-            self.eval.locals.push((last.name.name, value));
+            self.instance.eval.locals.push((last.name.name, value));
             let item = self.array_comprehension(body, rest, view, span);
-            self.eval.locals.pop();
+            self.instance.eval.locals.pop();
             items.push(item?);
         }
         if items.is_empty() {
@@ -208,9 +213,9 @@ impl<'a> Instance<'a, '_> {
             return Some(());
         };
         for value in self.iterate(first, Body::Expr(body), view)? {
-            self.eval.locals.push((first.name.name, value));
+            self.instance.eval.locals.push((first.name.name, value));
             let done = self.each_element(body, rest, view, out);
-            self.eval.locals.pop();
+            self.instance.eval.locals.pop();
             done?;
         }
         Some(())

@@ -5,7 +5,7 @@ use crate::instance::evaluation::indices::Pick;
 use crate::instance::lookup::{Builtin, Found};
 use crate::instance::template::Kind;
 use crate::instance::value::Val;
-use crate::instance::{ElementState, Instance, Node, NodeId, ScopeId, View};
+use crate::instance::{ElementState, Evaluator, Node, NodeId, ScopeId, View};
 use bramah_expr::types::{Type, Variability};
 use bramah_syntax::ast::{ClassKind, Reference, ReferencePart, Subscript};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
@@ -25,22 +25,15 @@ pub struct Selection {
     pub nodes: Rc<[NodeId]>,
 }
 
-impl<'a> Instance<'a, '_> {
-    /// A loop variable or local of the function being evaluated.
-    pub(in crate::instance) fn local(&self, name: Symbol) -> Option<usize> {
-        let frame = self.eval.frame;
-        let found = self.eval.locals[frame..].iter().rposition(|(n, _)| *n == name).map(|i| i + frame);
-        found.filter(|i| !(self.eval.mode.before && self.eval.section.contains(i)))
-    }
-
+impl<'a> Evaluator<'_, 'a, '_> {
     /// The value of a reference.
     pub(in crate::instance) fn reference(&mut self, r: &'a Reference, view: View) -> Option<Val> {
         let first = &r.parts[0];
         if !r.global {
-            if let Some(i) = self.local(first.name.name)
-                && !(self.eval.section.contains(&i) && lies_beside(&self.eval.locals[i].1, r))
+            if let Some(i) = self.instance.local(first.name.name)
+                && !(self.instance.eval.section.contains(&i) && lies_beside(&self.instance.eval.locals[i].1, r))
             {
-                let value = self.eval.locals[i].1.clone();
+                let value = self.instance.eval.locals[i].1.clone();
                 return self.local_part(value, r, view);
             }
             if r.parts.len() == 1 && first.name.name == "time" {
@@ -58,10 +51,10 @@ impl<'a> Instance<'a, '_> {
     }
 
     fn time(&mut self, span: Span) -> Option<Val> {
-        if self.eval.mode.constant {
-            return self.fail(Code::NotConstant, "`time` is not known before the run", span);
+        if self.instance.eval.mode.constant {
+            return self.instance.fail(Code::NotConstant, "`time` is not known before the run", span);
         }
-        Some(Val::Scalar(self.exprs.time(), Type::Real))
+        Some(Val::Scalar(self.instance.exprs.time(), Type::Real))
     }
 
     /// Fields and indices of a local.
@@ -80,8 +73,8 @@ impl<'a> Instance<'a, '_> {
 
     /// What counts along the dimensions with which a local of a function, or of an algorithm section, was declared.
     pub(in crate::instance) fn counted_by(&mut self, view: View, name: Symbol) -> Vec<Type> {
-        let Some(Found::Component(scope, index)) = self.lookup(view, name) else { return Vec::new() };
-        let template = self.scope(scope).template.clone();
+        let Some(Found::Component(scope, index)) = self.instance.names().lookup(view, name) else { return Vec::new() };
+        let template = self.instance.scope(scope).template.clone();
         let element = &template.elements[index as usize];
         let Kind::Component(declared) = element.kind else { return Vec::new() };
         let own = View { scope, base: element.base };
@@ -110,14 +103,18 @@ impl<'a> Instance<'a, '_> {
                 let all: Vec<Val> = parts.iter().flat_map(|v| v.elements().to_vec()).collect();
                 Some(Val::array(dims.iter().copied().chain(inner).collect(), all))
             }
-            _ => self.fail(Code::UnknownName, &format!("{} has no field `{name}`", value.describe()), span),
+            _ => self.instance.fail(Code::UnknownName, &format!("{} has no field `{name}`", value.describe()), span),
         }
     }
 
     /// What the first part of a reference means, or a message.
     fn start(&mut self, r: &Reference, view: View) -> Option<Found<'a>> {
         let name = r.parts[0].name;
-        let found = if r.global { self.lookup(crate::instance::ROOT, name.name) } else { self.lookup(view, name.name) };
+        let found = if r.global {
+            self.instance.names().lookup(crate::instance::ROOT, name.name)
+        } else {
+            self.instance.names().lookup(view, name.name)
+        };
         if found.is_none() {
             let names = self.visible_names(view);
             self.unknown_name(name.name, name.span, &names);
@@ -126,9 +123,9 @@ impl<'a> Instance<'a, '_> {
             && !r.global
             && self.is_variable_around(view, scope, index)
         {
-            let class = self.scope(view.scope).template.class;
-            let class = self.library.full_name(class);
-            self.report(
+            let class = self.instance.scope(view.scope).template.class;
+            let class = self.instance.library.full_name(class);
+            self.instance.report(
                 Diagnostic::new(Code::UnknownName, format!("`{}` belongs to what lies around `{class}`", name.name))
                     .at(name.span, "only constants of enclosing classes can be read")
                     .help("give it to the class as a parameter, an input or through `inner` and `outer`")
@@ -144,10 +141,12 @@ impl<'a> Instance<'a, '_> {
     /// A function called through a component, as in `oil.density(p)`, reads what that holds; no other function is found there.
     fn is_variable_around(&self, mut view: View, scope: ScopeId, index: u32) -> bool {
         // the modifiers of a short class stand around it
-        while let Some(base) = self.scope(view.scope).template.bases.get(view.base as usize).filter(|b| b.short) {
+        while let Some(base) =
+            self.instance.scope(view.scope).template.bases.get(view.base as usize).filter(|b| b.short)
+        {
             view = base.parent;
         }
-        let (found, from) = (self.scope(scope), self.scope(view.scope));
+        let (found, from) = (self.instance.scope(scope), self.instance.scope(view.scope));
         if scope == view.scope || !found.component || matches!(from.template.kind, ClassKind::Function { .. }) {
             return false;
         }
@@ -167,30 +166,30 @@ impl<'a> Instance<'a, '_> {
             Some(near) => d.meant(near),
             None => d.help(list_names("known here are", names)),
         };
-        self.report(d);
+        self.instance.report(d);
     }
 
     pub(in crate::instance) fn visible_names(&self, view: View) -> Vec<Symbol> {
-        let frame = self.eval.frame;
-        let mut names: Vec<Symbol> = self.eval.locals[frame..].iter().map(|(n, _)| *n).collect();
-        names.extend(self.scope(view.scope).template.elements.iter().map(|e| e.name));
+        let frame = self.instance.eval.frame;
+        let mut names: Vec<Symbol> = self.instance.eval.locals[frame..].iter().map(|(n, _)| *n).collect();
+        names.extend(self.instance.scope(view.scope).template.elements.iter().map(|e| e.name));
         names
     }
 
     /// The node of an element, with a message when it is absent.
     fn element_node(&mut self, scope: ScopeId, index: u32, r: &Reference) -> Option<NodeId> {
-        let busy = matches!(self.scope(scope).elements[index as usize], ElementState::Busy);
-        if let Some(node) = self.component(scope, index) {
+        let busy = matches!(self.instance.scope(scope).elements[index as usize], ElementState::Busy);
+        if let Some(node) = self.instance.builder().component(scope, index) {
             return Some(node);
         }
-        let name = self.scope(scope).template.elements[index as usize].name;
+        let name = self.instance.scope(scope).template.elements[index as usize].name;
         if busy {
-            self.report(
+            self.instance.report(
                 Diagnostic::new(Code::CyclicParameter, format!("`{name}` is needed to build itself"))
                     .at(r.span, "used here while its size or condition is being found"),
             );
-        } else if !self.diagnostics.iter().any(Diagnostic::is_error) {
-            self.report(
+        } else if !self.instance.diagnostics.iter().any(Diagnostic::is_error) {
+            self.instance.report(
                 Diagnostic::new(Code::UnknownName, format!("the conditional component `{name}` is not there"))
                     .at(r.span, "its condition is false")
                     .help("use it only in `connect`, which vanishes with it, or under the same condition"),
@@ -201,7 +200,7 @@ impl<'a> Instance<'a, '_> {
 
     /// A node as a selection.
     pub fn selection(&self, node: NodeId) -> Selection {
-        match self.node(node) {
+        match self.instance.node(node) {
             Node::Array { dims, by, elements } => {
                 Selection { dims: dims.clone(), own: dims.len(), by: by.clone(), nodes: elements.clone() }
             }
@@ -257,7 +256,7 @@ impl<'a> Instance<'a, '_> {
             } else {
                 format!("`{}` has {} dimensions, not {}", p.name.name, at.own, p.subscripts.len())
             };
-            return self.fail(Code::BadIndex, &message, span);
+            return self.instance.fail(Code::BadIndex, &message, span);
         }
         // Indices belong to the component just named: the last dimensions came with it.
         let own = at.dims.len() - at.own;
@@ -280,15 +279,15 @@ impl<'a> Instance<'a, '_> {
         let mut nodes = Vec::new();
         let mut inner: Option<(Vec<usize>, Rc<[Type]>)> = None;
         for &node in &*at.nodes {
-            let Node::Object(scope) = *self.node(node) else {
-                let whole = self.node_name(node);
-                self.report(
+            let Node::Object(scope) = *self.instance.node(node) else {
+                let whole = self.instance.node_name(node);
+                self.instance.report(
                     Diagnostic::new(Code::UnknownName, format!("`{whole}` has no element `{}`", short(name.as_str())))
                         .at(p.name.span, "it is a simple variable"),
                 );
                 return Descent::Failed;
             };
-            let template = self.scope(scope).template.clone();
+            let template = self.instance.scope(scope).template.clone();
             let Some(&i) = template.by_name.get(&name) else {
                 self.unknown_member(scope, name, p.name.span);
                 return Descent::Failed;
@@ -298,17 +297,17 @@ impl<'a> Instance<'a, '_> {
             }
             if matches!(template.elements[i as usize].kind, Kind::Class(_)) {
                 let owner = View { scope, base: 0 };
-                return match self.lookup(owner, name) {
+                return match self.instance.names().lookup(owner, name) {
                     Some(found) => Descent::Class(found),
                     None => Descent::Failed,
                 };
             }
-            let child = match self.component(scope, i) {
+            let child = match self.instance.builder().component(scope, i) {
                 Some(c) => c,
                 None => {
-                    if !self.diagnostics.iter().any(Diagnostic::is_error) {
-                        let whole = self.scope(scope).name.clone();
-                        self.report(
+                    if !self.instance.diagnostics.iter().any(Diagnostic::is_error) {
+                        let whole = self.instance.scope(scope).name.clone();
+                        self.instance.report(
                             Diagnostic::new(
                                 Code::UnknownName,
                                 format!("the conditional component `{name}` of `{whole}` is not there"),
@@ -321,7 +320,7 @@ impl<'a> Instance<'a, '_> {
             };
             let chosen = self.selection(child);
             if inner.as_ref().is_some_and(|(d, _)| *d != chosen.dims) {
-                self.fail::<()>(
+                self.instance.evaluator().instance.fail::<()>(
                     Code::SizeMismatch,
                     "the elements of this array have parts of different sizes",
                     p.name.span,
@@ -338,9 +337,9 @@ impl<'a> Instance<'a, '_> {
     }
 
     fn protected_element(&mut self, scope: ScopeId, name: Symbol, span: Span) {
-        let (instance, class) = (self.scope(scope).name.clone(), self.scope(scope).template.class);
-        let class = self.library.full_name(class);
-        self.report(
+        let (instance, class) = (self.instance.scope(scope).name.clone(), self.instance.scope(scope).template.class);
+        let class = self.instance.library.full_name(class);
+        self.instance.report(
             Diagnostic::new(Code::UnknownName, format!("`{instance}.{name}` is protected"))
                 .at(span, format!("`{class}` keeps this element to itself"))
                 .instance(instance)
@@ -350,10 +349,10 @@ impl<'a> Instance<'a, '_> {
     }
 
     fn unknown_member(&mut self, scope: ScopeId, name: Symbol, span: Span) {
-        let s = self.scope(scope);
+        let s = self.instance.scope(scope);
         let template = s.template.clone();
         let instance = s.name.clone();
-        let class = self.library.full_name(template.class);
+        let class = self.instance.library.full_name(template.class);
         let names: Vec<Symbol> = template.elements.iter().filter(|e| !e.protected).map(|e| e.name).collect();
         let mut d = Diagnostic::new(Code::UnknownName, format!("`{instance}` has no `{}`", short(name.as_str())))
             .at(span, format!("`{class}` has no element of this name"))
@@ -363,19 +362,7 @@ impl<'a> Instance<'a, '_> {
             Some(near) => d.meant(near),
             None => d.help(list_names("it has", &names)),
         };
-        self.report(d);
-    }
-
-    /// The name of a component as the user knows it.
-    pub fn node_name(&self, node: NodeId) -> String {
-        match self.node(node) {
-            Node::Var(i) => self.variables[*i as usize].name.clone(),
-            Node::Object(s) => self.scope(*s).name.clone(),
-            Node::Array { elements, .. } => {
-                let first = elements.first().map_or(String::new(), |&e| self.node_name(e));
-                first.rsplit_once('[').map_or(first.clone(), |(head, _)| head.to_string())
-            }
-        }
+        self.instance.report(d);
     }
 
     /// The value of a class reference: a constant of a package, a literal of an enumeration.
@@ -384,22 +371,22 @@ impl<'a> Instance<'a, '_> {
             if let Some(v) = self.literal(&found, part.name.name) {
                 return Some(v);
             }
-            let inside = self.member(&found, part.name.name);
+            let inside = self.instance.names().member(&found, part.name.name);
             if let Some(inside) = &inside {
-                self.check_member(&found, inside, part.name);
+                self.instance.names().check_member(&found, inside, part.name);
             }
             match inside {
                 Some(Found::Component(scope, index)) => {
                     if let Found::Class(c) = &found
-                        && self.library.class(c.class).prefixes.partial
+                        && self.instance.library.class(c.class).prefixes.partial
                     {
-                        let name = self.library.full_name(c.class);
+                        let name = self.instance.library.full_name(c.class);
                         let d = Diagnostic::new(
                             Code::Partial,
                             format!("`{name}` is partial: its constants may be missing"),
                         );
                         let d = d.at(r.span, "read here").help("name a package that extends it");
-                        self.report(d.note("Modelica 3.6, 5.3.2"));
+                        self.instance.report(d.note("Modelica 3.6, 5.3.2"));
                         return None;
                     }
                     let node = self.element_node(scope, index, r)?;
@@ -413,11 +400,11 @@ impl<'a> Instance<'a, '_> {
             }
         }
         if let Found::Class(class) = &found
-            && let Some(function) = self.function_value(class, Vec::new())
+            && let Some(function) = self.instance.calls().function_value(class, Vec::new())
         {
             return Some(function);
         }
-        self.fail(Code::WrongClassKind, "this is a class, and a value is needed here", r.span)
+        self.instance.fail(Code::WrongClassKind, "this is a class, and a value is needed here", r.span)
     }
 
     /// The rest of a reference that reached a class inside a component.
@@ -426,48 +413,50 @@ impl<'a> Instance<'a, '_> {
             if let Some(v) = self.literal(&found, part.name.name) {
                 return Some(v);
             }
-            match self.member(&found, part.name.name)? {
+            match self.instance.names().member(&found, part.name.name)? {
                 Found::Component(scope, index) => {
                     let node = self.element_node(scope, index, r)?;
                     let at = self.selection(node);
-                    return self.in_mode(|m| m.constant = true, |s| s.selection_value(&at, r.span));
+                    return self
+                        .instance
+                        .in_mode(|m| m.constant = true, |s| s.evaluator().selection_value(&at, r.span));
                 }
                 next => found = next,
             }
         }
-        self.fail(Code::WrongClassKind, "this is a class, and a value is needed here", r.span)
+        self.instance.fail(Code::WrongClassKind, "this is a class, and a value is needed here", r.span)
     }
 
     fn literal(&mut self, found: &Found<'a>, name: Symbol) -> Option<Val> {
         let builtin = match found {
             Found::Builtin(b) => *b,
-            Found::Class(c) => self.template(c.class, c.parent).builtin?,
+            Found::Class(c) => self.instance.names().template(c.class, c.parent).builtin?,
             Found::Component(..) => return None,
         };
         let Builtin::Enumeration(i) = builtin else { return None };
-        let k = self.enumerations[i as usize].literals.iter().position(|l| *l == name)?;
-        Some(Val::Scalar(self.exprs.num(k as f64 + 1.0), Type::Enumeration(i)))
+        let k = self.instance.enumerations[i as usize].literals.iter().position(|l| *l == name)?;
+        Some(Val::Scalar(self.instance.exprs.num(k as f64 + 1.0), Type::Enumeration(i)))
     }
 
     fn unknown_in_class(&mut self, found: &Found<'a>, part: &ReferencePart) {
         let (class, mut names) = match found {
             Found::Class(c) => {
-                let t = self.template(c.class, c.parent);
+                let t = self.instance.names().template(c.class, c.parent);
                 let literals = match t.builtin {
-                    Some(Builtin::Enumeration(i)) => self.enumerations[i as usize].literals.clone(),
+                    Some(Builtin::Enumeration(i)) => self.instance.enumerations[i as usize].literals.clone(),
                     _ => Vec::new(),
                 };
                 let names: Vec<Symbol> = t.elements.iter().map(|e| e.name).chain(literals).collect();
-                (self.library.full_name(c.class), names)
+                (self.instance.library.full_name(c.class), names)
             }
             Found::Builtin(Builtin::Enumeration(i)) => {
-                let e = &self.enumerations[*i as usize];
+                let e = &self.instance.enumerations[*i as usize];
                 (e.name.clone(), e.literals.clone())
             }
             _ => ("this type".into(), Vec::new()),
         };
         if let Found::Class(c) = found {
-            names.extend(self.library.folder_members(c.class));
+            names.extend(self.instance.library.folder_members(c.class));
         }
         let name = part.name.name;
         let mut d = Diagnostic::new(Code::UnknownName, format!("`{class}` has no `{}`", short(name.as_str())))
@@ -476,7 +465,7 @@ impl<'a> Instance<'a, '_> {
             Some(near) => d.meant(near),
             None => d.help(list_names("it has", &names)),
         };
-        self.report(d);
+        self.instance.report(d);
     }
 
     /// The value of selected components.
@@ -491,7 +480,7 @@ impl<'a> Instance<'a, '_> {
 
     /// The value of a component: a variable, or a record.
     pub fn node_value(&mut self, node: NodeId, span: Span) -> Option<Val> {
-        match self.node(node) {
+        match self.instance.node(node) {
             Node::Var(i) => self.variable_value(*i, span),
             Node::Array { .. } => {
                 let at = self.selection(node);
@@ -502,11 +491,11 @@ impl<'a> Instance<'a, '_> {
     }
 
     fn record_value(&mut self, scope: ScopeId, span: Span) -> Option<Val> {
-        let template = self.scope(scope).template.clone();
+        let template = self.instance.scope(scope).template.clone();
         if !matches!(template.kind, ClassKind::Record { .. } | ClassKind::Connector { .. }) {
-            let name = self.scope(scope).name.clone();
-            let class = self.library.full_name(template.class);
-            self.report(
+            let name = self.instance.scope(scope).name.clone();
+            let class = self.instance.library.full_name(template.class);
+            self.instance.report(
                 Diagnostic::new(Code::TypeMismatch, format!("`{name}` is a component, not a value"))
                     .at(span, format!("an instance of `{class}`"))
                     .help("name one of its variables"),
@@ -516,29 +505,30 @@ impl<'a> Instance<'a, '_> {
         let mut fields = Vec::new();
         for (i, element) in (0u32..).zip(&template.elements) {
             if matches!(element.kind, Kind::Component(_))
-                && let Some(node) = self.component(scope, i)
+                && let Some(node) = self.instance.builder().component(scope, i)
             {
                 fields.push((element.name, self.node_value(node, span)?));
             }
         }
-        let class = self.operator_class_of(&template);
+        let class = self.instance.operators().operator_class_of(&template);
         Some(Val::Record(Rc::new(crate::instance::value::Record { fields, class })))
     }
 
     /// The value of a scalar variable: itself, or its number where values count.
     fn variable_value(&mut self, i: u32, span: Span) -> Option<Val> {
-        let data = &self.variables[i as usize];
+        let data = &self.instance.variables[i as usize];
         // Constants of packages are not part of the model, so only their value can stand in it.
         let by_value = data.string
             || data.object
-            || (data.variability <= Variability::Parameter && (self.eval.mode.constant || data.id.0 == u32::MAX));
+            || (data.variability <= Variability::Parameter
+                && (self.instance.eval.mode.constant || data.id.0 == u32::MAX));
         if by_value {
-            return self.known_value(i, span);
+            return self.instance.parameters().known_value(i, span);
         }
-        if self.eval.mode.constant {
+        if self.instance.eval.mode.constant {
             let name = data.name.clone();
             let declared = data.span;
-            self.report(
+            self.instance.report(
                 Diagnostic::new(Code::NotConstant, format!("`{name}` is not known before the run"))
                     .at(span, "a constant or parameter is needed here")
                     .at(declared, "declared here as a variable")
@@ -551,10 +541,10 @@ impl<'a> Instance<'a, '_> {
             let (name, declared) = (data.name.clone(), data.span);
             let d = Diagnostic::new(Code::Restricted, format!("`{name}` belongs to no component"));
             let d = d.at(span, "used here").at(declared, "declared here, in a class that is used as a package");
-            self.report(d.note("Modelica 3.6, 4.6").help("declare it `constant`, or in the model"));
+            self.instance.report(d.note("Modelica 3.6, 4.6").help("declare it `constant`, or in the model"));
             return None;
         }
-        Some(Val::Scalar(self.exprs.var(id), ty))
+        Some(Val::Scalar(self.instance.exprs.var(id), ty))
     }
 }
 

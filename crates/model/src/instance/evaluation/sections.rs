@@ -5,61 +5,61 @@ use crate::instance::deduce::Body;
 use crate::instance::evaluation::state::Work;
 use crate::instance::lookup::Found;
 use crate::instance::value::{Record, Val};
-use crate::instance::{Instance, Node, NodeId, View};
+use crate::instance::{Instance, Node, NodeId, Statements, View};
 use bramah_syntax::ast::{ClassKind, Equation, Expr, Iterator as LoopIterator, Reference, ReferencePart, Statement};
 use bramah_syntax::symbol::Symbol;
 use std::rc::Rc;
 
-impl<'a> Instance<'a, '_> {
+impl<'a> Statements<'_, 'a, '_> {
     /// Runs something for every value of the iterators, innermost last.
     pub fn for_each(
         &mut self,
         iterators: &'a [LoopIterator],
         repeated: Body<'a>,
         view: View,
-        body: &mut dyn FnMut(&mut Self),
+        body: &mut dyn FnMut(&mut Instance<'a, '_>),
     ) {
-        let Some((first, rest)) = iterators.split_first() else { return body(self) };
-        let Some(values) = self.iterate(first, repeated, view) else { return };
+        let Some((first, rest)) = iterators.split_first() else { return body(self.instance) };
+        let Some(values) = self.instance.evaluator().iterate(first, repeated, view) else { return };
         for value in values {
-            self.eval.locals.push((first.name.name, value));
+            self.instance.eval.locals.push((first.name.name, value));
             self.for_each(rest, repeated, view, body);
-            self.eval.locals.pop();
+            self.instance.eval.locals.pop();
         }
     }
 
     /// The values of a loop variable.
     pub fn loop_values(&mut self, iterator: &'a LoopIterator, body: &'a [Equation], view: View) -> Option<Vec<Val>> {
-        self.iterate(iterator, Body::Equations(body), view)
+        self.instance.evaluator().iterate(iterator, Body::Equations(body), view)
     }
 
     /// Enters a loop variable.
     pub fn push_local(&mut self, name: Symbol, value: Val) {
-        self.eval.locals.push((name, value));
+        self.instance.eval.locals.push((name, value));
     }
 
     /// Leaves the innermost loop variable.
     pub fn pop_local(&mut self) {
-        self.eval.locals.pop();
+        self.instance.eval.locals.pop();
     }
 
     /// Switches events of relations off or on; returns what was before.
     pub fn set_no_event(&mut self, off: bool) -> bool {
-        std::mem::replace(&mut self.eval.mode.no_event, off)
+        std::mem::replace(&mut self.instance.eval.mode.no_event, off)
     }
 
     /// The value of an element of which an algorithm section assigns these parts; of a component that is no value only these.
     pub fn assigned_value(&mut self, view: View, targets: &[&'a Reference]) -> Option<Val> {
         let first = &targets.first()?.parts[0];
-        match self.lookup(view, first.name.name) {
+        match self.instance.names().lookup(view, first.name.name) {
             Some(Found::Component(scope, index)) => {
-                let node = self.component(scope, index)?;
+                let node = self.instance.builder().component(scope, index)?;
                 let parts: Vec<&'a [ReferencePart]> = targets.iter().map(|r| &r.parts[1..]).collect();
                 self.assigned_parts(node, &parts, first)
             }
             _ => {
-                let names = self.visible_names(view);
-                self.unknown_name(first.name.name, first.name.span, &names);
+                let names = self.instance.evaluator().visible_names(view);
+                self.instance.evaluator().unknown_name(first.name.name, first.name.span, &names);
                 None
             }
         }
@@ -67,20 +67,22 @@ impl<'a> Instance<'a, '_> {
 
     /// What these references, which begin below it, name of a node.
     fn assigned_parts(&mut self, node: NodeId, targets: &[&'a [ReferencePart]], named: &ReferencePart) -> Option<Val> {
-        let scope = match self.node(node) {
+        let scope = match self.instance.node(node) {
             Node::Object(scope) => *scope,
-            Node::Array { dims, elements, .. } if matches!(self.node(elements.first().copied()?), Node::Object(_)) => {
+            Node::Array { dims, elements, .. }
+                if matches!(self.instance.node(elements.first().copied()?), Node::Object(_)) =>
+            {
                 let (dims, elements) = (dims.clone(), elements.clone());
                 let values: Option<Vec<Val>> =
                     elements.iter().map(|&node| self.assigned_parts(node, targets, named)).collect();
                 return Some(Val::array(dims, values?));
             }
-            _ => return self.node_value(node, named.name.span),
+            _ => return self.instance.evaluator().node_value(node, named.name.span),
         };
-        let template = self.scope(scope).template.clone();
+        let template = self.instance.scope(scope).template.clone();
         let is_value = matches!(template.kind, ClassKind::Record { .. } | ClassKind::Connector { .. });
         if is_value || targets.iter().any(|parts| parts.is_empty()) {
-            return self.node_value(node, named.name.span);
+            return self.instance.evaluator().node_value(node, named.name.span);
         }
         let mut fields: Vec<(Symbol, Val)> = Vec::new();
         for part in targets.iter().map(|parts| &parts[0]) {
@@ -88,9 +90,9 @@ impl<'a> Instance<'a, '_> {
                 continue;
             }
             let element = template.elements.iter().position(|e| e.name == part.name.name);
-            let Some(node) = element.and_then(|i| self.component(scope, i as u32)) else {
+            let Some(node) = element.and_then(|i| self.instance.builder().component(scope, i as u32)) else {
                 let names: Vec<Symbol> = template.elements.iter().map(|e| e.name).collect();
-                self.unknown_name(part.name.name, part.name.span, &names);
+                self.instance.evaluator().unknown_name(part.name.name, part.name.span, &names);
                 return None;
             };
             let below = targets.iter().filter(|parts| parts[0].name.name == part.name.name).map(|parts| &parts[1..]);
@@ -102,38 +104,38 @@ impl<'a> Instance<'a, '_> {
 
     /// Carries out an algorithm section of the model on the `count` locals that were pushed for it.
     pub fn run_section(&mut self, section: &'a [Statement], view: View, count: usize) -> Option<()> {
-        self.eval.work = Work::allowed([MOST_SECTION_STEPS, MOST_SECTION_STEPS]);
-        self.eval.not_inline = false;
-        let end = self.eval.locals.len();
-        self.eval.section = end - count..end;
-        self.eval.calls.clear();
-        self.eval.guards.clear();
+        self.instance.eval.work = Work::allowed([MOST_SECTION_STEPS, MOST_SECTION_STEPS]);
+        self.instance.eval.not_inline = false;
+        let end = self.instance.eval.locals.len();
+        self.instance.eval.section = end - count..end;
+        self.instance.eval.calls.clear();
+        self.instance.eval.guards.clear();
         let done = self.execute(section, view).map(|_| ());
-        self.eval.section = 0..0;
+        self.instance.eval.section = 0..0;
         done
     }
 
     /// Calls a function for what it asserts.
     pub fn call_keeping_assertions(&mut self, call: &'a Expr, view: View) -> Vec<AlgorithmCall> {
-        self.eval.calls.clear();
-        self.in_mode(|m| m.keep_asserts = true, |s| s.eval_all(call, view));
-        std::mem::take(&mut self.eval.calls)
+        self.instance.eval.calls.clear();
+        self.instance.in_mode(|m| m.keep_asserts = true, |s| s.evaluator().eval_all(call, view));
+        std::mem::take(&mut self.instance.eval.calls)
     }
 
     /// Removes the last locals and hands out their values.
     pub fn take_locals(&mut self, count: usize) -> Vec<Val> {
-        let at = self.eval.locals.len() - count;
-        self.eval.locals.split_off(at).into_iter().map(|(_, v)| v).collect()
+        let at = self.instance.eval.locals.len() - count;
+        self.instance.eval.locals.split_off(at).into_iter().map(|(_, v)| v).collect()
     }
 
     /// What must hold besides equations, and `terminate`s, met outside `when` since the last call.
     pub fn take_calls(&mut self) -> Vec<AlgorithmCall> {
-        std::mem::take(&mut self.eval.calls)
+        std::mem::take(&mut self.instance.eval.calls)
     }
 
     /// The `when`s met since the last call.
     pub fn take_whens(&mut self) -> Vec<AlgorithmWhen> {
-        std::mem::take(&mut self.eval.whens)
+        std::mem::take(&mut self.instance.eval.whens)
     }
 }
 

@@ -2,20 +2,22 @@
 
 use crate::instance::evaluation::references::Descent;
 use crate::instance::lookup::Found;
-use crate::instance::{Instance, View};
+use crate::instance::{Evaluator, View};
 use bramah_syntax::ast::{Expr, ExprKind};
 
-impl<'a> Instance<'a, '_> {
+impl<'a> Evaluator<'_, 'a, '_> {
     /// Sizes of what a reference to components of the model selects: they are known where the values are not. `None` where
     /// it is anything else.
     pub(in crate::instance) fn declared_dims(&mut self, e: &'a Expr, view: View) -> Option<Vec<usize>> {
         let ExprKind::Reference(r) = &e.kind else { return None };
-        if !self.eval.mode.constant || !r.global && self.local(r.parts[0].name.name).is_some() {
+        if !self.instance.eval.mode.constant || !r.global && self.instance.local(r.parts[0].name.name).is_some() {
             return None;
         }
         let from = if r.global { crate::instance::ROOT } else { view };
-        let Found::Component(scope, index) = self.lookup(from, r.parts[0].name.name)? else { return None };
-        let node = self.component(scope, index)?;
+        let Found::Component(scope, index) = self.instance.names().lookup(from, r.parts[0].name.name)? else {
+            return None;
+        };
+        let node = self.instance.builder().component(scope, index)?;
         let mut at = self.selection(node);
         for (i, p) in r.parts.iter().enumerate() {
             if i > 0 {
@@ -31,7 +33,7 @@ impl<'a> Instance<'a, '_> {
 
     /// Sizes of an expression whose value may change, where its form tells them.
     pub(in crate::instance) fn shape(&mut self, e: &'a Expr, view: View) -> Option<Vec<usize>> {
-        self.in_mode(|m| m.constant = true, |s| s.shape_inside(e, view))
+        self.instance.in_mode(|m| m.constant = true, |s| s.evaluator().shape_inside(e, view))
     }
 
     pub(in crate::instance) fn shape_inside(&mut self, e: &'a Expr, view: View) -> Option<Vec<usize>> {
@@ -74,9 +76,9 @@ impl<'a> Instance<'a, '_> {
             }
             ExprKind::If { branches, otherwise } => {
                 for (condition, value) in branches {
-                    let mark = self.diagnostics.len();
+                    let mark = self.instance.diagnostics.len();
                     let known = self.constant_boolean(condition, view);
-                    self.diagnostics.truncate(mark);
+                    self.instance.diagnostics.truncate(mark);
                     if known != Some(false) {
                         return self.shape_inside(value, view);
                     }
@@ -87,9 +89,9 @@ impl<'a> Instance<'a, '_> {
                 match function.parts[0].name.name.as_str() {
                     "fill" => {
                         let inner = self.shape_inside(args.first()?, view)?;
-                        let mark = self.diagnostics.len();
+                        let mark = self.instance.diagnostics.len();
                         let outer: Option<Vec<usize>> = args[1..].iter().map(|e| self.dimension(e, view)).collect();
-                        self.diagnostics.truncate(mark);
+                        self.instance.diagnostics.truncate(mark);
                         Some(outer?.into_iter().chain(inner).collect())
                     }
                     "noEvent" | "pre" | "der" | "abs" | "sqrt" | "sin" | "cos" | "exp" => {

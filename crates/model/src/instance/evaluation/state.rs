@@ -80,6 +80,13 @@ impl Instance<'_, '_> {
         self.eval.frame = frame;
         done
     }
+
+    /// A loop variable or local of the function being evaluated.
+    pub(in crate::instance) fn local(&self, name: Symbol) -> Option<usize> {
+        let frame = self.eval.frame;
+        let found = self.eval.locals[frame..].iter().rposition(|(n, _)| *n == name).map(|i| i + frame);
+        found.filter(|i| !(self.eval.mode.before && self.eval.section.contains(i)))
+    }
 }
 
 /// Statements carried out, against the most that are allowed.

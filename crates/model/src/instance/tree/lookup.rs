@@ -2,7 +2,7 @@
 
 use crate::instance::modifiers::{Arg, ArgKind, Reached};
 use crate::instance::template::{Base, DEEPEST, Element, Kind, Source, Template, What};
-use crate::instance::{ClassRef, ElementState, Enumeration, Inherited, Instance, NodeId, ROOT, Scope, ScopeId, View};
+use crate::instance::{ClassRef, ElementState, Enumeration, Inherited, NameLookup, NodeId, ROOT, Scope, ScopeId, View};
 use crate::resolve::ClassId;
 use bramah_syntax::ast::{self, ClassBody, Import};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
@@ -65,7 +65,7 @@ fn builtin(name: Symbol) -> Option<Builtin> {
     })
 }
 
-impl<'a> Instance<'a, '_> {
+impl<'a> NameLookup<'_, 'a, '_> {
     /// What a simple name means at a place.
     pub fn lookup(&mut self, view: View, name: Symbol) -> Option<Found<'a>> {
         self.lookup_nested(view, name).or_else(|| self.lookup_top(name))
@@ -74,7 +74,7 @@ impl<'a> Instance<'a, '_> {
     /// What a name means below the top level.
     pub(in crate::instance) fn lookup_nested(&mut self, mut view: View, name: Symbol) -> Option<Found<'a>> {
         while view != ROOT {
-            let template = self.scope(view.scope).template.clone();
+            let template = self.instance.scope(view.scope).template.clone();
             let base = &template.bases[view.base as usize];
             if !base.short {
                 if base.names.contains(&name)
@@ -82,7 +82,7 @@ impl<'a> Instance<'a, '_> {
                 {
                     return Some(self.found(view.scope, &template, i));
                 }
-                if let Some(class) = self.library.child(base.class, name) {
+                if let Some(class) = self.instance.library.child(base.class, name) {
                     return Some(Found::Class(ClassRef { class, parent: view, args: Rc::from([]) }));
                 }
                 if let Some(found) = self.imported(base, name) {
@@ -98,7 +98,7 @@ impl<'a> Instance<'a, '_> {
         if let Some(b) = builtin(name) {
             return Some(Found::Builtin(b));
         }
-        self.library.top(name).map(|class| Found::Class(ClassRef { class, parent: ROOT, args: Rc::from([]) }))
+        self.instance.library.top(name).map(|class| Found::Class(ClassRef { class, parent: ROOT, args: Rc::from([]) }))
     }
 
     fn imported(&mut self, base: &Base<'a>, name: Symbol) -> Option<Found<'a>> {
@@ -144,11 +144,11 @@ impl<'a> Instance<'a, '_> {
 
     /// A class element of an instance, redeclarations considered.
     fn class_element(&mut self, scope: ScopeId, index: u32) -> ClassRef<'a> {
-        if let ElementState::Class(found) = &self.scope(scope).elements[index as usize] {
+        if let ElementState::Class(found) = &self.instance.scope(scope).elements[index as usize] {
             return found.clone();
         }
         let reached = self.reached(scope, index);
-        let template = self.scope(scope).template.clone();
+        let template = self.instance.scope(scope).template.clone();
         let element = &template.elements[index as usize];
         let Kind::Class(declared) = element.kind else { unreachable!("the caller found a class") };
         let own = View { scope, base: element.base };
@@ -157,7 +157,7 @@ impl<'a> Instance<'a, '_> {
             _ => (declared, own, false),
         };
         let textual = template.bases[element.base as usize].class;
-        let class = self.library.enter(ast, Some(textual));
+        let class = self.instance.library.enter(ast, Some(textual));
         let mut args = reached.args;
         if let Some(m) = constraining(declared, redeclared) {
             let none: Rc<[_]> = Rc::from([]);
@@ -165,13 +165,13 @@ impl<'a> Instance<'a, '_> {
             args.extend(given.map(|a| Arg { default: redeclared, ..a }));
         }
         let mut found = ClassRef { class, parent, args: args.into() };
-        self.scope_mut(scope).elements[index as usize] = ElementState::Class(found.clone());
+        self.instance.scope_mut(scope).elements[index as usize] = ElementState::Class(found.clone());
         self.check_class_chain(declared, own, textual, &reached.redeclarations);
         if redeclared && !self.fits_declared(declared, own, textual, ast.name.span, &found) {
             // what follows is said of the declared class, which the rest of the text was written for
-            let class = self.library.enter(declared, Some(textual));
+            let class = self.instance.library.enter(declared, Some(textual));
             found = ClassRef { class, parent: own, args: Rc::from([]) };
-            self.scope_mut(scope).elements[index as usize] = ElementState::Class(found.clone());
+            self.instance.scope_mut(scope).elements[index as usize] = ElementState::Class(found.clone());
         }
         found
     }
@@ -194,8 +194,13 @@ impl<'a> Instance<'a, '_> {
             let Some(constraint) = &step.constraint else { continue };
             let Ok(promised) = self.lookup_path(view, &constraint.path) else { continue };
             let itself = self.class_of(step, view, textual);
-            if !self.check_subtype(&promised, &itself, step.name.span, constraint.path.span)
-                || !self.check_subtype(&promised, &outermost, steps[0].0.name.span, constraint.path.span)
+            if !self.instance.builder().check_subtype(&promised, &itself, step.name.span, constraint.path.span)
+                || !self.instance.builder().check_subtype(
+                    &promised,
+                    &outermost,
+                    steps[0].0.name.span,
+                    constraint.path.span,
+                )
             {
                 return;
             }
@@ -203,7 +208,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     fn class_of(&mut self, ast: &'a ast::Class, parent: View, textual: ClassId) -> Found<'a> {
-        let class = self.library.enter(ast, Some(textual));
+        let class = self.instance.library.enter(ast, Some(textual));
         Found::Class(ClassRef { class, parent, args: Rc::from([]) })
     }
 
@@ -221,31 +226,31 @@ impl<'a> Instance<'a, '_> {
             (None, ClassBody::Short { base, .. }) => Some(base),
             _ => None,
         };
-        let class = self.library.enter(declared, Some(textual));
-        if self.constrained.len() >= DEEPEST {
-            self.endless_lookup("constraining", class, &self.constrained.clone());
+        let class = self.instance.library.enter(declared, Some(textual));
+        if self.instance.constrained.len() >= DEEPEST {
+            self.endless_lookup("constraining", class, &self.instance.constrained.clone());
             return true;
         }
         // the lookup may meet other redeclared classes, whose constraints are looked up first
-        self.constrained.push(class);
+        self.instance.constrained.push(class);
         let (constraint, place) = match path {
             Some(path) => (self.lookup_path(own, path).ok(), path.span),
             None => (Some(Found::Class(ClassRef { class, parent: own, args: Rc::from([]) })), declared.name.span),
         };
-        self.constrained.pop();
-        constraint.is_none_or(|c| self.check_subtype(&c, &Found::Class(found.clone()), at, place))
+        self.instance.constrained.pop();
+        constraint.is_none_or(|c| self.instance.builder().check_subtype(&c, &Found::Class(found.clone()), at, place))
     }
 
     /// What a dotted name may reach: nothing protected, and in a class that is used as a package only what does not depend
     /// on its components (MLS 4.1, 5.3.2).
     pub(in crate::instance) fn check_member(&mut self, around: &Found<'a>, inside: &Found<'a>, part: ast::Ident) {
         let Found::Class(class) = around else { return };
-        if self.gathering.iter().any(|(c, _)| *c == class.class) {
+        if self.instance.gathering.iter().any(|(c, _)| *c == class.class) {
             return;
         }
         let template = self.template(class.class, class.parent);
         let element = template.by_name.get(&part.name).map(|&i| &template.elements[i as usize]);
-        let name = self.library.full_name(class.class);
+        let name = self.instance.library.full_name(class.class);
         let (message, label, help) = if element.is_some_and(|e| e.protected) {
             let message = format!("`{}` of `{name}` is protected", part.name);
             (
@@ -254,7 +259,7 @@ impl<'a> Instance<'a, '_> {
                 "declare it above `protected`, or use it in a class that extends this one",
             )
         } else if let (Found::Class(c), false) = (inside, template.is_package()) {
-            if self.library.class(c.class).prefixes.encapsulated {
+            if self.instance.library.class(c.class).prefixes.encapsulated {
                 return;
             }
             let message = format!("`{}` stands in `{name}`, which is no package", part.name);
@@ -266,28 +271,28 @@ impl<'a> Instance<'a, '_> {
         } else {
             return;
         };
-        if self.diagnostics.iter().any(|d| d.labels.first().is_some_and(|l| l.span == part.span)) {
+        if self.instance.diagnostics.iter().any(|d| d.labels.first().is_some_and(|l| l.span == part.span)) {
             return;
         }
         let d = Diagnostic::new(Code::UnknownName, message).at(part.span, label).class(name);
-        self.report(d.help(help).note("Modelica 3.6, 4.1 and 5.3.2"));
+        self.instance.report(d.help(help).note("Modelica 3.6, 4.1 and 5.3.2"));
     }
 
     /// A member of something found: a class in a package, a constant, an inherited class.
     pub fn member(&mut self, found: &Found<'a>, name: Symbol) -> Option<Found<'a>> {
         let Found::Class(class) = found else { return None };
-        let scope = if self.gathering.contains(&(class.class, class.parent)) {
+        let scope = if self.instance.gathering.contains(&(class.class, class.parent)) {
             // `package P extends P.Icons.Package`: what P inherits is not known yet, what is written in it is.
             self.bare_scope(class.class, class.parent)
         } else {
             self.package(class)
         };
-        let template = self.scope(scope).template.clone();
+        let template = self.instance.scope(scope).template.clone();
         if let Some(&i) = template.by_name.get(&name) {
             return Some(self.found(scope, &template, i));
         }
         for (base, view) in template.bases.iter().zip(0u32..) {
-            if let Some(child) = self.library.child(base.class, name) {
+            if let Some(child) = self.instance.library.child(base.class, name) {
                 let parent = View { scope, base: view };
                 return Some(Found::Class(ClassRef { class: child, parent, args: Rc::from([]) }));
             }
@@ -316,7 +321,7 @@ impl<'a> Instance<'a, '_> {
         match self.lookup_path(view, path) {
             Ok(Found::Component(..)) => {
                 let name = path.dotted();
-                self.report(
+                self.instance.report(
                     Diagnostic::new(Code::WrongClassKind, format!("`{name}` is a component, not a class"))
                         .at(path.span, "a class is needed here"),
                 );
@@ -324,7 +329,7 @@ impl<'a> Instance<'a, '_> {
             }
             Ok(found) => Some(found),
             Err(part) => {
-                self.unknown_class_at(view, path, part);
+                self.instance.unknown_class_at(view, path, part);
                 None
             }
         }
@@ -338,7 +343,7 @@ impl<'a> Instance<'a, '_> {
         parent: View,
         path: &ast::Path,
     ) -> Option<Found<'a>> {
-        let own = !path.global && matches!(self.library.class(class).body, ClassBody::Long(_));
+        let own = !path.global && matches!(self.instance.library.class(class).body, ClassBody::Long(_));
         if own {
             let bare = self.bare_scope(class, parent);
             return self.lookup_path(View { scope: bare, base: 0 }, path).ok();
@@ -348,10 +353,10 @@ impl<'a> Instance<'a, '_> {
 
     /// A scope that knows only the classes and imports written in a class itself.
     fn bare_scope(&mut self, class: ClassId, parent: View) -> ScopeId {
-        if let Some(&scope) = self.bare.get(&(class, parent)) {
+        if let Some(&scope) = self.instance.bare.get(&(class, parent)) {
             return scope;
         }
-        let ast = self.library.class(class);
+        let ast = self.instance.library.class(class);
         let mut base = Base::of(class, ast, parent);
         let mut elements = Vec::new();
         let written = if let ClassBody::Long(body) = &ast.body { body.elements.as_slice() } else { &[] };
@@ -359,7 +364,7 @@ impl<'a> Instance<'a, '_> {
             match &e.kind {
                 ast::ElementKind::Import(i) => base.imports.push(i),
                 ast::ElementKind::Class(c) if !c.prefixes.redeclare => {
-                    self.library.enter(c, Some(class));
+                    self.instance.library.enter(c, Some(class));
                     base.names.insert(c.name.name);
                     elements.push(Element {
                         name: c.name.name,
@@ -375,9 +380,9 @@ impl<'a> Instance<'a, '_> {
         }
         let by_name: FxHashMap<_, _> = elements.iter().map(|e| e.name).zip(0u32..).collect();
         let template = Template { bases: vec![base], elements, by_name, ..Template::empty(class, ast.kind) };
-        let name = self.library.full_name(class);
+        let name = self.instance.library.full_name(class);
         let scope = self.new_scope(Rc::new(template), name, Rc::from([]), None, ast.name.span);
-        self.bare.insert((class, parent), scope);
+        self.instance.bare.insert((class, parent), scope);
         scope
     }
 
@@ -391,7 +396,7 @@ impl<'a> Instance<'a, '_> {
     ) -> ScopeId {
         let elements = vec![ElementState::Unknown; template.elements.len()];
         let prefix = Inherited::default();
-        self.scopes.push(Scope {
+        self.instance.scopes.push(Scope {
             template,
             name,
             args,
@@ -402,52 +407,55 @@ impl<'a> Instance<'a, '_> {
             span,
             component: false,
         });
-        ScopeId(u32::try_from(self.scopes.len() - 1).expect("fewer than 2^32 instances"))
+        ScopeId(u32::try_from(self.instance.scopes.len() - 1).expect("fewer than 2^32 instances"))
     }
 
     /// The scope of a package, or of a class used as one.
     pub fn package(&mut self, class: &ClassRef<'a>) -> ScopeId {
         let key = (class.class, class.parent);
         if class.args.is_empty() {
-            if let Some(&scope) = self.packages.get(&key) {
+            if let Some(&scope) = self.instance.packages.get(&key) {
                 return scope;
             }
-        } else if let Some(&(_, scope)) =
-            self.dynamic_packages.iter().find(|(c, _)| (c.class, c.parent) == key && Rc::ptr_eq(&c.args, &class.args))
+        } else if let Some(&(_, scope)) = self
+            .instance
+            .dynamic_packages
+            .iter()
+            .find(|(c, _)| (c.class, c.parent) == key && Rc::ptr_eq(&c.args, &class.args))
         {
             return scope;
         }
         let template = self.template(class.class, class.parent);
-        let name = self.library.full_name(class.class);
-        let span = self.library.class(class.class).name.span;
+        let name = self.instance.library.full_name(class.class);
+        let span = self.instance.library.class(class.class).name.span;
         let scope = self.new_scope(template, name, class.args.clone(), None, span);
         if class.args.is_empty() {
-            self.packages.insert(key, scope);
+            self.instance.packages.insert(key, scope);
         } else {
-            self.dynamic_packages.push((class.clone(), scope));
+            self.instance.dynamic_packages.push((class.clone(), scope));
         }
         scope
     }
 
     /// The enumeration type of a class.
     pub(in crate::instance) fn enumeration(&mut self, class: ClassId) -> u32 {
-        if let Some(&i) = self.enumeration_index.get(&class) {
+        if let Some(&i) = self.instance.enumeration_index.get(&class) {
             return i;
         }
-        let literals = match &self.library.class(class).body {
+        let literals = match &self.instance.library.class(class).body {
             ClassBody::Enumeration(Some(literals)) => literals.iter().map(|l| l.name.name).collect(),
             _ => Vec::new(),
         };
-        let name = self.library.full_name(class);
-        self.enumerations.push(Enumeration { name, literals });
-        let i = u32::try_from(self.enumerations.len() - 1).expect("fewer than 2^32 types");
-        self.enumeration_index.insert(class, i);
+        let name = self.instance.library.full_name(class);
+        self.instance.enumerations.push(Enumeration { name, literals });
+        let i = u32::try_from(self.instance.enumerations.len() - 1).expect("fewer than 2^32 types");
+        self.instance.enumeration_index.insert(class, i);
         i
     }
 
     /// All modifications that reach an element, and its value.
     pub fn reached(&mut self, scope: ScopeId, index: u32) -> Reached<'a> {
-        let s = self.scope(scope);
+        let s = self.instance.scope(scope);
         let template = s.template.clone();
         let element = &template.elements[index as usize];
         let mut reached = Reached::default();
@@ -515,7 +523,7 @@ impl<'a> Instance<'a, '_> {
 
     pub(in crate::instance) fn check_final(&mut self, final_: bool, outer: Option<Span>, span: Span, name: Symbol) {
         if let (true, Some(outer)) = (final_, outer) {
-            self.report(
+            self.instance.report(
                 Diagnostic::new(Code::FinalModified, format!("`{name}` is final and cannot be modified"))
                     .at(outer, "modified here")
                     .at(span, "declared `final` here")
@@ -526,17 +534,17 @@ impl<'a> Instance<'a, '_> {
 
     /// The component that an `outer` element means: the nearest `inner` of that name above.
     pub(in crate::instance) fn inner_of(&mut self, scope: ScopeId, name: Symbol) -> Option<NodeId> {
-        let mut at = self.scope(scope).owner;
+        let mut at = self.instance.scope(scope).owner;
         while let Some(owner) = at {
-            let template = self.scope(owner).template.clone();
+            let template = self.instance.scope(owner).template.clone();
             if let Some(&i) = template.by_name.get(&name)
                 && matches!(template.elements[i as usize].kind, Kind::Component(c) if c.prefixes.inner)
             {
-                return self.component(owner, i);
+                return self.instance.builder().component(owner, i);
             }
-            at = self.scope(owner).owner;
+            at = self.instance.scope(owner).owner;
         }
-        self.inner_declared.get(&(self.root, name)).copied()
+        self.instance.inner_declared.get(&(self.instance.root, name)).copied()
     }
 }
 

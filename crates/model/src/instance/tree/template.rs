@@ -2,7 +2,7 @@
 
 use crate::instance::lookup::{Builtin, Found};
 use crate::instance::modifiers::Arg;
-use crate::instance::{ClassRef, Instance, View};
+use crate::instance::{ClassRef, NameLookup, View};
 use crate::resolve::ClassId;
 use bramah_syntax::ast::{self, ArgumentKind, ClassBody, ElementKind};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
@@ -162,48 +162,48 @@ pub(super) const DEEPEST: usize = 100;
 /// has some hundreds. What goes in circles many times over would take for ever before it is [`DEEPEST`].
 const MOST_BASES: usize = 20_000;
 
-impl<'a> Instance<'a, '_> {
+impl<'a> NameLookup<'_, 'a, '_> {
     /// The template of a class at a place.
     pub fn template(&mut self, class: ClassId, parent: View) -> Rc<Template<'a>> {
-        if let Some(t) = self.templates.get(&(class, parent)) {
+        if let Some(t) = self.instance.templates.get(&(class, parent)) {
             return t.clone();
         }
-        let ast = self.library.class(class);
+        let ast = self.instance.library.class(class);
         let mut t = Template::empty(class, ast.kind);
-        if self.gathering.is_empty() {
-            self.gathered = 0;
+        if self.instance.gathering.is_empty() {
+            self.instance.gathered = 0;
         }
-        if self.gathering.len() < DEEPEST {
-            self.gathering.push((class, parent));
+        if self.instance.gathering.len() < DEEPEST {
+            self.instance.gathering.push((class, parent));
             self.gather(&mut t, class, parent, &mut Vec::new());
-            self.gathering.pop();
+            self.instance.gathering.pop();
         } else {
             self.endless_lookup("base", class, &self.gathered_now());
             t.broken = true;
             t.bases.push(Base::of(class, ast, parent));
         }
         let t = Rc::new(t);
-        self.templates.insert((class, parent), t.clone());
+        self.instance.templates.insert((class, parent), t.clone());
         t
     }
 
     fn gathered_now(&self) -> Vec<ClassId> {
-        self.gathering.iter().map(|&(class, _)| class).collect()
+        self.instance.gathering.iter().map(|&(class, _)| class).collect()
     }
 
     /// A class whose own lookup asks for further ones without end: those being looked up, innermost last.
     pub(super) fn endless_lookup(&mut self, what: &str, class: ClassId, around: &[ClassId]) {
         let mut circle: Vec<String> = Vec::new();
         for &c in around.iter().rev() {
-            let name = self.library.full_name(c);
+            let name = self.instance.library.full_name(c);
             if circle.contains(&name) {
                 break;
             }
             circle.push(name);
         }
         circle.reverse();
-        let (span, name) = (self.library.class(class).name.span, self.library.full_name(class));
-        self.report(
+        let (span, name) = (self.instance.library.class(class).name.span, self.instance.library.full_name(class));
+        self.instance.report(
             Diagnostic::new(Code::CyclicExtends, format!("the {what} classes of `{name}` need each other to be found"))
                 .at(span, "found again while its own are being looked up")
                 .class(name)
@@ -213,14 +213,14 @@ impl<'a> Instance<'a, '_> {
 
     /// Adds a class and what it extends to the template; returns the index of its base.
     fn gather(&mut self, t: &mut Template<'a>, class: ClassId, parent: View, chain: &mut Vec<ClassId>) -> u32 {
-        let ast = self.library.class(class);
+        let ast = self.instance.library.class(class);
         let base = u32::try_from(t.bases.len()).expect("fewer than 2^32 bases");
         t.bases.push(Base::of(class, ast, parent));
         if chain.contains(&class) || chain.len() > DEEPEST {
-            let name = self.library.full_name(class);
+            let name = self.instance.library.full_name(class);
             let from = chain.iter().position(|&c| c == class).unwrap_or(0);
             let circle: Vec<String> =
-                chain[from..].iter().map(|&c| format!("`{}`", self.library.full_name(c))).collect();
+                chain[from..].iter().map(|&c| format!("`{}`", self.instance.library.full_name(c))).collect();
             let mut made = Diagnostic::new(Code::CyclicExtends, format!("`{name}` extends itself"))
                 .at(ast.name.span, "this class is among its own bases")
                 .class(name.clone())
@@ -228,19 +228,19 @@ impl<'a> Instance<'a, '_> {
             if circle.len() > 1 {
                 made = made.note(format!("{} extends `{name}` again", circle.join(" extends ")));
             }
-            self.report(made);
+            self.instance.report(made);
             t.broken = true;
             return base;
         }
-        self.check_class(class);
-        self.gathered += 1;
+        self.instance.builder().check_class(class);
+        self.instance.gathered += 1;
         // reported once, and then not tried to its end again
-        let most = if self.tangled { DEEPEST } else { MOST_BASES };
-        if self.gathered > most {
-            if !self.tangled {
+        let most = if self.instance.tangled { DEEPEST } else { MOST_BASES };
+        if self.instance.gathered > most {
+            if !self.instance.tangled {
                 self.endless_lookup("base", class, &self.gathered_now());
             }
-            self.tangled = true;
+            self.instance.tangled = true;
             t.broken = true;
             return base;
         }
@@ -255,7 +255,7 @@ impl<'a> Instance<'a, '_> {
                 self.gather_extends(t, base, path, modification.as_ref(), chain);
             }
             ClassBody::Enumeration(_) => t.builtin = Some(Builtin::Enumeration(self.enumeration(class))),
-            ClassBody::Derivative { .. } => self.unsupported(ast.span, "a function defined by `der(...)`"),
+            ClassBody::Derivative { .. } => self.instance.unsupported(ast.span, "a function defined by `der(...)`"),
         }
         chain.pop();
         base
@@ -281,7 +281,7 @@ impl<'a> Instance<'a, '_> {
                     self.add_element(t, base, element, c.name, Kind::Component(c), redeclare);
                 }
                 ElementKind::Class(c) => {
-                    self.library.enter(c, Some(t.bases[base as usize].class));
+                    self.instance.library.enter(c, Some(t.bases[base as usize].class));
                     // `model extends M` takes the place of the inherited class, with or without `redeclare`
                     let extends = matches!(&c.body, ClassBody::Long(body) if body.class_extends.is_some());
                     self.add_element(t, base, element, c.name, Kind::Class(c), c.prefixes.redeclare || extends);
@@ -303,9 +303,9 @@ impl<'a> Instance<'a, '_> {
         if let Some(&i) = t.by_name.get(&name.name) {
             let old = &mut t.elements[i as usize];
             if redeclare && old.protected != element.protected && old.base != base {
-                let class = self.library.full_name(t.bases[base as usize].class);
+                let class = self.instance.library.full_name(t.bases[base as usize].class);
                 let now = if element.protected { "protected" } else { "public" };
-                self.report(
+                self.instance.report(
                     Diagnostic::new(Code::BadRedeclare, format!("`{}` is redeclared as a {now} element", name.name))
                         .at(name.span, "its visibility cannot change")
                         .class(class)
@@ -320,8 +320,8 @@ impl<'a> Instance<'a, '_> {
                 What::Argument(_) => false,
             });
             if redeclare && closed {
-                let class = self.library.full_name(t.bases[base as usize].class);
-                self.report(
+                let class = self.instance.library.full_name(t.bases[base as usize].class);
+                self.instance.report(
                     Diagnostic::new(Code::BadRedeclare, format!("`{}` is not replaceable any more", name.name))
                         .at(name.span, "redeclared again here")
                         .class(class)
@@ -343,8 +343,8 @@ impl<'a> Instance<'a, '_> {
             return;
         }
         if redeclare {
-            let class = self.library.full_name(t.bases[base as usize].class);
-            self.report(
+            let class = self.instance.library.full_name(t.bases[base as usize].class);
+            self.instance.report(
                 Diagnostic::new(
                     Code::BadRedeclare,
                     format!("`{}` redeclares nothing that `{class}` inherits", name.name),
@@ -366,12 +366,12 @@ impl<'a> Instance<'a, '_> {
     }
 
     fn duplicate(&mut self, t: &Template<'a>, old: u32, name: ast::Ident) {
-        let class = self.library.full_name(t.class);
+        let class = self.instance.library.full_name(t.class);
         let first = match t.elements[old as usize].kind {
             Kind::Component(c) => c.name.span,
             Kind::Class(c) => c.name.span,
         };
-        self.report(
+        self.instance.report(
             Diagnostic::new(Code::Duplicate, format!("`{}` is declared twice in `{class}`", name.name))
                 .at(name.span, "declared again here")
                 .at(first, "first declared here")
@@ -392,28 +392,28 @@ impl<'a> Instance<'a, '_> {
         let arguments = modification.map_or(&[][..], |m| m.arguments.as_slice());
         match self.find_base(class, parent, path) {
             Some(Found::Builtin(b)) => {
-                if matches!(self.library.class(class).body, ClassBody::Long(_)) {
-                    self.check_builtin_base(class, b, path.span);
+                if matches!(self.instance.library.class(class).body, ClassBody::Long(_)) {
+                    self.instance.builder().check_builtin_base(class, b, path.span);
                 }
                 t.builtin = Some(b);
                 let sources = arguments.iter().map(|a| Source { what: What::Argument(a), base });
                 t.builtin_args.extend(sources);
             }
             Some(Found::Class(found)) => {
-                let long = matches!(self.library.class(class).body, ClassBody::Long(_));
+                let long = matches!(self.instance.library.class(class).body, ClassBody::Long(_));
                 if long {
-                    self.check_base(class, found.class, path.span);
+                    self.instance.builder().check_base(class, found.class, path.span);
                 }
                 let shaped = t.dims.len();
                 self.gather_base(t, base, &found, arguments, chain);
                 if long && t.dims.len() > shaped && t.builtin.is_none() {
-                    self.check_array_base(class, path.span);
+                    self.instance.builder().check_array_base(class, path.span);
                 }
             }
-            Some(_) => self.unknown_class(path, class),
+            Some(_) => self.instance.unknown_class(path, class),
             None => {
                 t.broken = true;
-                self.unknown_base(path, class, parent);
+                self.instance.unknown_base(path, class, parent);
             }
         }
     }
@@ -455,8 +455,8 @@ impl<'a> Instance<'a, '_> {
                 }
                 ArgumentKind::BreakConnect(a, b) => {
                     if !t.broken && !t.bases[inner as usize..].iter().any(|base| connects(base.ast, (a, b))) {
-                        let class = self.library.full_name(t.bases[inner as usize].class);
-                        self.unknown_connection(a, b, &class);
+                        let class = self.instance.library.full_name(t.bases[inner as usize].class);
+                        self.instance.unknown_connection(a, b, &class);
                     }
                     for i in inner as usize..t.bases.len() {
                         t.bases[i].broken_connects.push((a, b));
@@ -483,9 +483,9 @@ impl<'a> Instance<'a, '_> {
                 }
                 None if t.broken => {}
                 None => {
-                    let class = self.library.full_name(t.bases[inner as usize].class);
+                    let class = self.instance.library.full_name(t.bases[inner as usize].class);
                     let names: Vec<Symbol> = t.elements.iter().map(|e| e.name).collect();
-                    self.unknown_modifier(target, &class, &names);
+                    self.instance.unknown_modifier(target, &class, &names);
                 }
             }
         }
@@ -495,13 +495,13 @@ impl<'a> Instance<'a, '_> {
     /// or the redeclaration nearest to it, below the one that is given.
     fn replaced_class(&mut self, ast: &'a ast::Class, parent: View) -> Option<ClassRef<'a>> {
         let mut scope = parent.scope;
-        let mut holder = self.scope(scope).template.clone();
+        let mut holder = self.instance.scope(scope).template.clone();
         if !holder.by_name.contains_key(&ast.name.name) {
             // seen from an `extends` clause beside it, before anything inherited is known
             let base = holder.bases.get(parent.base as usize)?;
             let around = ClassRef { class: base.class, parent: base.parent, args: Rc::from([]) };
             scope = self.package(&around);
-            holder = self.scope(scope).template.clone();
+            holder = self.instance.scope(scope).template.clone();
         }
         let element = &holder.elements[*holder.by_name.get(&ast.name.name)? as usize];
         let Kind::Class(declared) = element.kind else { return None };
@@ -516,7 +516,7 @@ impl<'a> Instance<'a, '_> {
             What::Component(_) => None,
         });
         let (class, base) = redeclared.unwrap_or((declared, element.base));
-        let class = self.library.enter(class, Some(holder.bases[base as usize].class));
+        let class = self.instance.library.enter(class, Some(holder.bases[base as usize].class));
         Some(ClassRef { class, parent: View { scope, base }, args: Rc::from([]) })
     }
 
@@ -532,9 +532,9 @@ impl<'a> Instance<'a, '_> {
                 }
             }
             None => {
-                let class = self.library.full_name(t.bases[inner as usize].class);
+                let class = self.instance.library.full_name(t.bases[inner as usize].class);
                 let names: Vec<Symbol> = t.elements.iter().map(|e| e.name).collect();
-                self.unknown_modifier(name, &class, &names);
+                self.instance.unknown_modifier(name, &class, &names);
             }
         }
     }
